@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import degrees, entry
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups.reasons import Reason, Words, told
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.guide_ends import Ended, as_ended, bounds_name
@@ -19,6 +20,8 @@ from compoundkin.structure.kinematic_structure import Structure
 # An end is reached, not passed, within this part of the size (or radians): positions are right to a few units of
 # 1e-12, and gaps are found to 1e-9.
 AT_END = 1e-11
+# Where a sentence tells the two places.
+HERE, THERE = "{here}", "{there}"
 # What is known before any group is solved.
 BEFORE = -1
 
@@ -77,15 +80,21 @@ class GuideEnds(PrintsShort):
         if failed <= self._groups:
             return None
         pair = self.pairs[failed - self._groups - 1]
+        return PassedEnd(pair, told(self.reasons(block, pair), at))
+
+    def reasons(self, block: Block, pair: Ended) -> tuple[Reason, ...]:
+        """Return why a pose may be beyond a guide's end or its beginning."""
         start, stop = self._distances(block, pair)
-        is_end = bool(entry(stop, (at, 0)) < entry(start, (at, 0)))
         poses = tuple(block.world[name] for name in pair.members)
-        here = _shown(pair, pair.coordinate(block.ends[pair.name], poses).c[0], at)
-        there = _shown(pair, block.ends[bounds_name(pair)][is_end].point, at)
+        here = _shown(pair, pair.coordinate(block.ends[pair.name], poses).c[0])
+        ends = (_shown(pair, side.point) for side in block.ends[bounds_name(pair)])
         assert pair.reach is not None
-        letter = pair.reach[is_end]
-        told = f"{letter} at {there}" if isinstance(letter, str) else there
-        return PassedEnd(pair, pair.passed(here, told, is_end))
+        named = [
+            (f"{letter} at ", *end) if isinstance(letter, str) else end
+            for letter, end in zip(pair.reach, ends, strict=True)
+        ]
+        first, last = (_filled(pair.passed(HERE, THERE, is_end), here, named[is_end]) for is_end in (False, True))
+        return Reason(stop < start, last), Reason(True, first)
 
     def _margins(self, block: Block) -> list[Number]:
         return [self._margin(block, pair) for pair in self.pairs]
@@ -100,6 +109,11 @@ class GuideEnds(PrintsShort):
         return pair.inside((low, high), block.ends[pair.name], poses)
 
 
-def _shown(pair: Ended, value: Any, at: int) -> str:
-    one = float(entry(value, (at, 0)))
-    return f"{float(degrees(one)):.6g} degrees" if pair.free_is_angle else f"{one:.6g}"
+def _shown(pair: Ended, value: Any) -> Words:
+    return (np.rad2deg(value), " degrees") if pair.free_is_angle else (value,)
+
+
+def _filled(sentence: str, here: Words, there: Words) -> Words:
+    """Return a sentence about two places as words and numbers."""
+    before, between, after = re.split(f"{HERE}|{THERE}", sentence)
+    return (before, *here, between, *there, after)

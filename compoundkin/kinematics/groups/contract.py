@@ -18,6 +18,7 @@ from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.equilibrium import reactions_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.groups.mounted_body import MountedBody
+from compoundkin.kinematics.groups.reasons import Reason, told
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Group
 
@@ -64,8 +65,12 @@ class GroupSolver(ABC):
         """Return all configurations in these surroundings, in a fixed order."""
 
     @abstractmethod
+    def reasons(self, block: Block) -> tuple[Reason, ...]:
+        """Return why the group may not be assembled; the first that holds is told."""
+
     def why(self, block: Block, at: int) -> str:
         """Say why the group cannot be assembled at a pose's flat index."""
+        return told(self.reasons(block), at)
 
     @property
     def is_numbered(self) -> bool:

@@ -23,6 +23,7 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.equilibrium import load_on
 from compoundkin.kinematics.groups.lower_dyads import lower_dyad
 from compoundkin.kinematics.groups.mounted_body import in_world, side_of
+from compoundkin.kinematics.groups.reasons import Reason, told
 from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.kinematics.limits import Root, clipped_root
 from compoundkin.model.pairs.contract import Ends
@@ -84,10 +85,17 @@ class DyadSolver(GroupSolver):
 
     @staticmethod
     @abstractmethod
+    def reasons_of(
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, names: tuple[str, str, str]
+    ) -> tuple[Reason, ...]:
+        """Return why it may not be assembled. `names` are the letters of its pairs."""
+
+    @classmethod
     def explain(
-        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
+        cls, first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """Say why it cannot be assembled at the flat pose index `at`. `names` are the letters of its pairs."""
+        """Say why it cannot be assembled at the flat pose index `at`."""
+        return told(cls.reasons_of(first, inner, second, names), at)
 
     @staticmethod
     @abstractmethod
@@ -203,6 +211,6 @@ class DyadSolver(GroupSolver):
         """Return one configuration for each mode."""
         return self.in_modes(block)
 
-    def why(self, block: Block, at: int) -> str:
-        """Say why it cannot be assembled at a pose."""
-        return self.explain(*self.arguments(block), at, self.letters)
+    def reasons(self, block: Block) -> tuple[Reason, ...]:
+        """Return why it may not be assembled."""
+        return self.reasons_of(*self.arguments(block), self.letters)

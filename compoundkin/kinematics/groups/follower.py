@@ -19,6 +19,7 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
 from compoundkin.kinematics.groups.mounted_body import MountedBody
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
@@ -154,9 +155,9 @@ class FollowerSolver(GroupSolver):
         """Return one configuration for each mode."""
         return self.in_modes(block)
 
-    def why(self, block: Block, at: int) -> str:
-        """Say why it cannot be assembled at a pose."""
-        return self.pair.no_contact_reason()
+    def reasons(self, block: Block) -> tuple[Reason, ...]:
+        """Return why it may not be assembled."""
+        return alone(self.pair.no_contact_reason())
 
 
 class FollowerFromState(FollowerSolver):

@@ -13,6 +13,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import MountedBody
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.geared import as_geared
@@ -124,11 +125,11 @@ class GearTrainSolver(GroupSolver):
         """Return the only configuration."""
         return self.in_modes(block)
 
-    def why(self, block: Block, at: int) -> str:
-        """Say what leaves it free. Otherwise it can be assembled wherever what it hangs on can."""
+    def reasons(self, block: Block) -> tuple[Reason, ...]:
+        """Return what leaves it free. Otherwise it can be assembled wherever what it hangs on can."""
         if len(self.mounted) == 1:
-            return f"{self.mounted[0].side.pair.name} may move without any effect on {self.highers[0].name}"
-        return f"the ratios of {', '.join(pair.name for pair in self.highers)} do not determine it"
+            return alone(f"{self.mounted[0].side.pair.name} may move without any effect on {self.highers[0].name}")
+        return alone(f"the ratios of {', '.join(pair.name for pair in self.highers)} do not determine it")
 
 
 def _hangs(pair: Pair, body: Body, left: list[Body]) -> bool:

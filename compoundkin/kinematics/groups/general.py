@@ -19,6 +19,7 @@ from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.groups.newton_steps import NewtonSteps
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.groups.transmission import PassedForce, forces_of, worst_transmission
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.profile_contact import as_profiled
@@ -111,12 +112,12 @@ class GeneralSolver(GroupSolver):
         found = known_configurations(self.group, block, self.equations.size)
         return self._searched(block) if found is None else found
 
-    def why(self, block: Block, at: int) -> str:
-        """Say that its path came to a limit, or a pair to its end. The limit is a limit position."""
+    def reasons(self, block: Block) -> tuple[Reason, ...]:
+        """Return that its path came to a limit, or a pair to its end. The limit is a limit position."""
         limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
         profiled = (pair for pair in map(as_profiled, self.pairs) if pair and pair.has_ends)
         open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in profiled]
-        return f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit
+        return alone(f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit)
 
     def _searched(self, block: Block) -> Configurations:
         """Return what Newton finds from random states around the places where the group is attached."""

@@ -16,6 +16,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
 from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
@@ -64,11 +65,11 @@ class PRP(DyadSolver):
         return Loci(tuple(lines), meeting, (told,))
 
     @staticmethod
-    def explain(
-        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
-    ) -> str:
+    def reasons_of(
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, names: tuple[str, str, str]
+    ) -> tuple[Reason, ...]:
         """Say that the guides are parallel."""
-        return f"the guides of {names[0]} and {names[2]} are parallel, so that {names[1]} is not fixed"
+        return alone(f"the guides of {names[0]} and {names[2]} are parallel, so that {names[1]} is not fixed")
 
 
 def _line(attachment: OuterPair, pin: End) -> tuple[Series, Series]:

@@ -17,6 +17,7 @@ from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, plac
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
 from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
 from compoundkin.kinematics.groups.prp import separated
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -66,8 +67,9 @@ class RPP(DyadSolver):
         return Loci((held, way), meeting, (told,))
 
     @staticmethod
-    def explain(
-        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
-    ) -> str:
+    def reasons_of(
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, names: tuple[str, str, str]
+    ) -> tuple[Reason, ...]:
         """Say that the guides are parallel."""
-        return f"the guides of {names[1]} and {names[2]} are parallel, so that the position along them is not fixed"
+        guides = f"the guides of {names[1]} and {names[2]} are parallel"
+        return alone(f"{guides}, so that the position along them is not fixed")

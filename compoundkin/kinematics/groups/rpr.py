@@ -16,7 +16,8 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import CircleLocus, LineLocus, Loci, direction_of, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import element, heading, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
+from compoundkin.kinematics.groups.reasons import Reason
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # A pin nearer to the guide's line than this part of the pins' distance is on it.
@@ -87,17 +88,16 @@ class RPR(DyadSolver):
         return Loci((*circles, *over, guide), feet[apart[0] if apart else 1], told)
 
     @staticmethod
-    def explain(
-        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
-    ) -> str:
+    def reasons_of(
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, names: tuple[str, str, str]
+    ) -> tuple[Reason, ...]:
         """Say that the pins are nearer to each other than their eccentricity."""
-        line, across = _distances(first, inner, second)
-        if element(np.abs(line.c[0]) - np.abs(across.c[0]), at) >= 0:
-            pins = f"{names[0]} and {names[2]} coincide"
-            return f"{pins}, so that the direction of the guide of {names[1]} is not determined"
+        line, across = (np.abs(s.c[0]) for s in _distances(first, inner, second))
+        together = f"{names[0]} and {names[2]} coincide, so that the direction of the guide of {names[1]}"
+        beside = f", the distance of the two pins across the guide of {names[1]}"
         return (
-            f"|{names[0]}{names[2]}| = {text(np.abs(line.c[0]), at)} < {text(np.abs(across.c[0]), at)},"
-            f" the distance of the two pins across the guide of {names[1]}"
+            Reason(line - across >= 0, (f"{together} is not determined",)),
+            Reason(True, (f"|{names[0]}{names[2]}| = ", line, " < ", across, beside)),
         )
 
 

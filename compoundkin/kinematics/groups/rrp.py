@@ -16,7 +16,8 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -64,16 +65,13 @@ class RRP(DyadSolver):
         return Loci((rod, LineLocus(meeting, direction_of(own.second.world))), meeting, (told,))
 
     @staticmethod
-    def explain(
-        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
-    ) -> str:
+    def reasons_of(
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, names: tuple[str, str, str]
+    ) -> tuple[Reason, ...]:
         """Say that the rod does not reach the line of its other pin."""
         rod, start, guide, _ = _line(first, inner, second)
-        distance = np.abs(guide.cross(start).c[0])
-        return (
-            f"{names[0]} is {text(distance, at)} from the line on which {names[1]} runs"
-            f" > |{names[0]}{names[1]}| = {text(np.abs(rod.c[0]), at)}"
-        )
+        distance, runs = np.abs(guide.cross(start).c[0]), f"the line on which {names[1]} runs"
+        return alone(f"{names[0]} is ", distance, f" from {runs} > |{names[0]}{names[1]}| = ", np.abs(rod.c[0]))
 
 
 def _line(first: OuterPair, inner: tuple[End, End], second: OuterPair) -> tuple[Series, Series, Series, Series]:

@@ -16,7 +16,8 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import Loci, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import COINCIDENT, AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import element, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad_sides import placed_at, spot
+from compoundkin.kinematics.groups.reasons import Reason
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -72,18 +73,21 @@ class RRR(DyadSolver):
         return Loci((one, two), meeting, (told,))
 
     @staticmethod
-    def explain(
-        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
-    ) -> str:
+    def reasons_of(
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, names: tuple[str, str, str]
+    ) -> tuple[Reason, ...]:
         """Say that the pins are too far apart or too near."""
         a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
         outer, pin, other = names
-        between = f"|{outer}{other}| = {text(line, at)}"
-        if element(line - (a + b), at) > 0:
-            return f"{between} > |{outer}{pin}| + |{pin}{other}| = {text(a, at)} + {text(b, at)}"
-        if element(line - np.abs(a - b), at) < 0 and element(line, at) > COINCIDENT * element(a, at):
-            return f"{between} < ||{outer}{pin}| - |{pin}{other}|| = |{text(a, at)} - {text(b, at)}|"
-        return f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
+        between = f"|{outer}{other}| = "
+        apart = (between, line, f" > |{outer}{pin}| + |{pin}{other}| = ", a, " + ", b)
+        near = (between, line, f" < ||{outer}{pin}| - |{pin}{other}|| = |", a, " - ", b, "|")
+        together = f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
+        return (
+            Reason(line - (a + b) > 0, apart),
+            Reason((line - np.abs(a - b) < 0) & (line > COINCIDENT * a), near),
+            Reason(True, (together,)),
+        )
 
 
 def _sides(first: OuterPair, inner: tuple[End, End], second: OuterPair) -> tuple[Series, Series, Series]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from compoundkin.base.display import PrintsShort
@@ -22,9 +22,10 @@ WIDTH = 5
 class OperationTable(PrintsShort):
     """A table of operations, in the order in which they are computed.
 
-    `before` is computed once for all poses, `along` at every pose, the first `positions` of it for the results asked
-    for first. A place that is not negative is a row over the poses, -1 - k is number k: `constants` are the first
-    numbers, the dimensions of a call the next. `rows` and `numbers` are how many there are, `places` those of nodes.
+    `before` is computed once for all poses, `along` at every pose: section by section, of which `ends` tells after how
+    many operations each ends. A place that is not negative is a row over the poses, -1 - k is number k: `constants` are
+    the first numbers, the dimensions of a call the next. `rows` and `numbers` are how many there are, `places` those of
+    nodes.
     """
 
     constants: tuple[float, ...]
@@ -32,34 +33,33 @@ class OperationTable(PrintsShort):
     rows: int
     before: tuple[int, ...]
     along: tuple[int, ...]
-    positions: int
+    ends: tuple[int, ...]
     places: Mapping[int, int]
 
 
 def operation_table(
     graph: OperationGraph,
-    first: Sequence[int],
-    then: Sequence[int],
+    sections: Sequence[Sequence[int]],
     fixed: Sequence[InputNumber],
     along: Sequence[InputNumber],
 ) -> OperationTable:
-    """Return the table that computes some nodes first, and others then.
+    """Return the table that computes some nodes, section by section.
 
     `fixed` are the inputs that are one number for all poses, `along` those that are rows, both in their order.
 
     >>> graph, x, a = OperationGraph(), InputNumber("drive", "crank", "0"), InputNumber("dimension", "crank.B", "x")
     >>> node = graph.apply("mul", graph.input(a), graph.apply("cos", graph.input(x)))
-    >>> table = operation_table(graph, [node], [], [a], [x])
+    >>> table = operation_table(graph, [[node]], [a], [x])
     >>> [CODES[table.along[k]] for k in (0, 5)], table.rows, table.numbers
     (['cos', 'mul'], 2, 1)
     """
-    needed = graph.needed([*first, *then])
+    wanted = [k for section in sections for k in section]
+    needed = graph.needed(wanted)
     strata = node_strata(graph, needed, {**dict.fromkeys(fixed, BY_DESIGN), **dict.fromkeys(along, BY_POSE)})
-    early = set(graph.needed(first))
     work = [k for k in needed if graph.nodes[k].operation not in (CONSTANT, INPUT)]
-    rows = sorted((k for k in work if strata[k] & BY_POSE), key=lambda k: k not in early)
+    rows, ends = _in_sections(graph, sections, {k for k in work if strata[k] & BY_POSE})
     kept = [Instruction(graph.nodes[k].operation, graph.nodes[k].operands, k) for k in rows]
-    allocation = allocated(kept, {*first, *then})
+    allocation = allocated(kept, {*wanted})
     constants = [k for k in needed if graph.nodes[k].operation == CONSTANT]
     given = [graph.input(one) for one in fixed]
     before = [k for k in work if not strata[k] & BY_POSE]
@@ -72,9 +72,20 @@ def operation_table(
         len(along) + allocation.counts[False],
         _entries(graph, before, places),
         _entries(graph, rows, places),
-        sum(k in early for k in rows),
+        ends,
         places,
     )
+
+
+def _in_sections(
+    graph: OperationGraph, sections: Sequence[Sequence[int]], among: Collection[int]
+) -> tuple[list[int], tuple[int, ...]]:
+    """Return the nodes in the order in which sections need them, and after how many each section ends."""
+    found, ends = dict[int, None](), list[int]()
+    for section in sections:
+        found.update(dict.fromkeys(k for k in graph.needed(section) if k in among))
+        ends.append(len(found))
+    return list(found), tuple(ends)
 
 
 def _entries(graph: OperationGraph, nodes: Sequence[int], places: Mapping[int, int]) -> tuple[int, ...]:

@@ -22,7 +22,7 @@ from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.sources.carried_states import CarriedState, carried_states, followed
 from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
 from compoundkin.programs.sources.identifiers import Identifiers, identifier
-from compoundkin.programs.sources.told_configuration import notes
+from compoundkin.programs.sources.told_configuration import changed_modes, notes
 
 
 def written_program(path: PathVariants, name: str = "") -> WrittenProgram:
@@ -62,12 +62,10 @@ def _assembled(mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> 
 
 def _of_one_configuration(motion: Motion) -> None:
     """Raise InvalidInput where a group changes its mode along the motion."""
-    places = np.arange(motion.shape[-1], dtype=float)[None, :]
-    for solver in motion.solving_order.solvers:
-        if not solver.is_numbered and np.ptp(motion.tracker.sign(solver.index, np.array([[0]]), places)):
-            where = ", ".join(solver.group.links)
-            what = "it passes a change point and goes on in its other mode, and a text keeps one"
-            raise InvalidInput(Problem(where, what, "compile it with values that lie between two change points"))
+    links = changed_modes(motion)
+    if links:
+        what = "it passes a change point and goes on in its other mode, and a text keeps one"
+        raise InvalidInput(Problem(", ".join(links), what, "compile it with values that lie between two change points"))
 
 
 def _arguments(path: PathVariants, mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> Iterator[Argument]:

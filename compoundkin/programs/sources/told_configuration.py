@@ -14,6 +14,18 @@ from compoundkin.model.attributes import coordinate_dimension, unit_of
 MOST = 6
 
 
+def changed_modes(motion: Motion) -> tuple[str, ...]:
+    """Return the links of the first group that changes its mode along a motion.
+
+    There are none where no group does. The motion is of one design.
+    """
+    places = np.arange(motion.shape[-1], dtype=float)[None, :]
+    for solver in motion.solving_order.solvers:
+        if not solver.is_numbered and np.ptp(motion.tracker.sign(solver.index, np.array([[0]]), places)):
+            return solver.group.links
+    return ()
+
+
 def notes(motion: Motion, order: int, has_states: bool = False) -> Iterator[str]:
     """Yield paragraphs on a motion whose configuration a program keeps."""
     signed = [(mode.links, mode.sign) for mode in motion.modes.values() if mode.sign is not None]

@@ -16,6 +16,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups import SOLVERS, GroupSolver
 from compoundkin.kinematics.groups.general import bodies_at
+from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Group
@@ -133,8 +134,8 @@ class Pinned(GroupSolver):
     def every(self, block: Block) -> Configurations:
         return self.in_modes(block)
 
-    def why(self, block: Block, at: int) -> str:
-        return "for a reason of our own"
+    def reasons(self, block: Block) -> tuple[Reason, ...]:
+        return alone("for a reason of our own")
 
 
 def told(name: str) -> list[Any]:

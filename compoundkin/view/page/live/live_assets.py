@@ -9,6 +9,7 @@ PLAYER_SCRIPT, PLAYER_STYLE = "player.js", "player.css"
 # In this order: each uses those before it.
 SCRIPTS = (
     "live/machine.js",
+    "live/states.js",
     "live/path.js",
     "live/design.js",
     "live/poles.js",

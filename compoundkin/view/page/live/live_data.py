@@ -10,15 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.model.attributes import RADIANS, coordinate_dimension, unit_of
+from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
+from compoundkin.programs.sources.changeable_dimensions import changeable_dimensions
 from compoundkin.programs.sources.operation_table import CODES
-from compoundkin.programs.sources.page_program import PageProgram
+from compoundkin.programs.sources.page_program import PageProgram, RecordedReason
 from compoundkin.view.page.live.followed_quantities import followed_quantities
 from compoundkin.view.page.markup import exact
 from compoundkin.view.report.shown_poses import Sample
@@ -56,13 +58,26 @@ class LiveData:
 
     @cached_property
     def dimensions(self) -> tuple[FreeDimension, ...]:
-        """Those that may be changed: single numbers, of no law."""
-        return tuple(one for one in self.stated.known.values() if not one.is_of_law and not one.is_vector)
+        """Those that may be changed.
+
+        They are points' coordinates, and numbers of pairs that the motion depends on.
+        """
+        wanted = [one for one in self._all.dimensions if one.is_of_link or self._all.reads(one)]
+        return changeable_dimensions(self._all, self.stated, wanted)
+
+    @cached_property
+    def _all(self) -> PageProgram:
+        """The program of all single numbers but those of laws."""
+        single = [one for one in self.stated.known.values() if not one.is_of_law and not one.is_vector]
+        return PageProgram.of(self.motion, single, [*self._told()])
 
     @cached_property
     def program(self) -> PageProgram:
         """What computes it."""
-        return PageProgram.of(self.motion, self.dimensions, [*self._told()])
+        every = self._all
+        if self.dimensions == every.dimensions:
+            return every
+        return PageProgram.of(self.motion, self.dimensions, every.outputs)
 
     def _told(self) -> Iterator[ProgramOutput]:
         """Yield the page's outputs, and what its figures are made of."""
@@ -83,12 +98,16 @@ class LiveData:
     def data(self) -> dict[str, Any]:
         """All of it for a script: lengths in the user's unit, angles in radians."""
         program, table = self.program, self.program.table
-        if program.seeds:
-            return {"why": "This mechanism cannot be changed here: it has groups without a closed form."}
+        if not self.dimensions:
+            what = "it is overconstrained, and moves by its special dimensions only"
+            raise InvalidInput(Problem(self.motion.mechanism.title, what, "take out what is redundant"))
         return {
             "dimensions": [self._dimension(one) for one in self.dimensions],
             "drives": [self._drive(name) for name in program.mechanism.drives],
-            "groups": [{"name": group.name, "links": list(group.links)} for group in self.motion.structure.groups],
+            "size": self.motion.size,
+            "states": list(self._states()),
+            "sides": [self.places[one.now.x] for one in program.carried[1]],
+            "groups": list(self._groups()),
             "program": {
                 "codes": list(CODES),
                 "constants": list(map(_number, table.constants)),
@@ -96,12 +115,35 @@ class LiveData:
                 "rows": table.rows,
                 "before": whole(table.before),
                 "along": whole(table.along),
-                "positions": table.positions,
+                "ends": list(table.ends),
                 "goods": [[index, self.places[node]] for index, node in program.goods],
                 "links": [self._link(name) for name in self.links],
                 "outputs": list(self._outputs()),
             },
         }
+
+    def _groups(self) -> Iterator[dict[str, Any]]:
+        """Yield what may keep a pose from being assembled: groups, then guides with ends, and why."""
+        guides = self.program.mechanism.order.guide_ends.pairs
+        named = [(group.name, group.links) for group in self.motion.structure.groups]
+        named += [(pair.name, pair.members) for pair in guides]
+        ended = {pair.name for pair in guides}
+        for (name, links), reasons in zip(named, self.program.reasons, strict=True):
+            told = [self._reason(one) for one in reasons]
+            yield {"name": name, "links": list(links), "guide": name in ended, "reasons": told}
+
+    def _reason(self, one: RecordedReason) -> dict[str, Any]:
+        holds = None if one.holds is None else self.places[one.holds]
+        return {"holds": holds, "words": [word if isinstance(word, str) else self.places[word] for word in one.words]}
+
+    def _states(self) -> Iterator[dict[str, Any]]:
+        """Yield what is carried from design to design: its row, what becomes of it, what it is in the own motion."""
+        program = self.program
+        own = seed_values(program.seeds, self.motion)
+        for row, (given, state) in enumerate(zip(program.seeds, program.carried[0], strict=True), len(program.drives)):
+            values = exact(own[given][0][self.chosen])
+            kinds = {"angle": state.is_angle, "corrected": state.is_corrected}
+            yield {"row": row, "now": self.places[state.now.x], "own": values, **kinds}
 
     def _dimension(self, one: FreeDimension) -> dict[str, Any]:
         unit = self.stated.unit(one)

@@ -30,6 +30,13 @@
     }
   }
 
+  // a number as Python writes it with six digits
+  const six = (value) => {
+    const [digits, exponent] = value.toExponential(5).split("e").map(Number);
+    if (exponent >= -4 && exponent < 6) return String(Number(value.toPrecision(6)));
+    return `${digits}e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
+  };
+
   class Path {
     constructor(data) {
       const { live } = data;
@@ -41,14 +48,24 @@
       this.own = Float64Array.from(live.dimensions, ({ value }) => value);
       this.drives = live.drives.map((one) => [one.value, ...one.rates].map((text) => unpacked(text, data.poses)));
       this.whole = new page.Machine(this.program, data.poses);
+      this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
+      this.states = new page.States(live, this.program);
+      this.states.units = live.dimensions.map(({ kind, value }) => (kind === "angle" ? 1 : kind === "ratio" ? Math.abs(value) : live.size));
+      this.states.single = this.one;
+      this.states.driven = (machine, k) => this.driven(machine, this.drives.map((values) => values.map((value) => value[k])));
+      this.home = { numbers: this.own, values: live.states.map(({ own }) => unpacked(own, data.poses)), sides: null };
+    }
+    driven(machine, drives) {
+      drives.forEach((values, index) => values.forEach((value, order) => { machine.rows[3 * index + order][0] = value; }));
     }
 
     // the motion for dimensions; `near` is that of dimensions nearby. Without rates only positions are computed.
     solved(numbers, near = null, { rates = true } = {}) {
-      const machine = this.whole, { links, outputs, positions } = this.program;
-      machine.take(numbers);
-      machine.run(0, rates ? machine.count : positions);
+      const machine = this.whole, { links, outputs, ends } = this.program;
+      const states = this.states.any ? this.states.carried(machine, numbers, this.near(near)) : null;
+      if (!states) machine.take(numbers);
+      machine.run(states ? ends[0] : 0, rates ? ends[2] : ends[1]);
       const { failed, assembled } = this.closed(machine);
       const known = (place) => {
         const found = machine.copy(place);
@@ -61,7 +78,12 @@
         return { x, y, angle: wrapped ? unwrap(angle) : angle, v, a };
       };
       const told = rates ? Object.fromEntries(outputs.map((one) => [one.name, this.output(one, known)])) : null;
-      return new Solved({ numbers: Float64Array.from(numbers), assembled, failed, links: links.map(moved), outputs: told });
+      return new Solved({ numbers: Float64Array.from(numbers), assembled, failed, links: links.map(moved), outputs: told, states });
+    }
+    // the states to begin with: of a design nearby, or of the mechanism as it was
+    near(solved) {
+      if (this.home.sides === null) this.home = this.states.carried(this.whole, this.own, this.home);
+      return (solved && solved.states) || this.home;
     }
 
     // which group fails at each pose: the first that does not close
@@ -86,13 +108,22 @@
       return Object.fromEntries(Object.entries(parts).map(([part, place]) => [part, told(place)]));
     }
 
+    // brings the machine of one pose to it, for some of the program's sections
+    posed(numbers, drives, near, k, section) {
+      const machine = this.one;
+      const states = this.states.any ? this.near(near).values.map((row) => row[k]) : null;
+      machine.take(numbers);
+      this.driven(machine, drives);
+      if (states) {
+        this.states.newton(machine, states);
+        this.states.give(machine, states, 0);
+      }
+      machine.run(0, this.program.ends[section]);
+      return machine;
+    }
     // one pose: drives are [value, rate, second] of each driver, `k` is the pose nearest
     at(numbers, drives, near = null, k = this.start) {
-      this.one ||= new page.Machine(this.program, 1);
-      const machine = this.one, { links, outputs } = this.program;
-      machine.take(numbers);
-      drives.forEach((values, index) => values.forEach((value, order) => { machine.rows[3 * index + order][0] = value; }));
-      machine.run(0, machine.count);
+      const machine = this.posed(numbers, drives, near, k, 2), { links, outputs } = this.program;
       const { failed } = this.closed(machine);
       const known = (place) => (failed[0] ? NaN : machine.row(place, 0)[0]);
       const moved = ({ at }) => {
@@ -104,10 +135,15 @@
       return { assembled: !failed[0], failed: failed[0], links: links.map(moved), outputs: Object.fromEntries(outputs.map(told)) };
     }
 
-    // why a pose is not assembled: the group, and words for it; "" where it is
+    // why a pose is not assembled: which group, or which guide with ends, and the words of Python's gaps; "" where it is
     why(numbers, solved, k) {
       const group = this.data.groups[solved.failed[k] - 1];
-      return group ? { group: `${group.name}(${group.links.join(", ")})`, text: "cannot be assembled" } : "";
+      if (!group) return "";
+      const machine = this.posed(numbers, this.drives.map((values) => values.map((value) => value[k])), solved, k, 3);
+      const value = (place) => machine.row(place, 0)[0];
+      const reason = group.reasons.find(({ holds }) => holds === null || value(holds) === 1);
+      const text = reason ? reason.words.map((word) => (typeof word === "string" ? word : six(value(word)))).join("") : "";
+      return { group: group.guide ? group.name : `${group.name}(${group.links.join(", ")})`, text };
     }
   }
 
