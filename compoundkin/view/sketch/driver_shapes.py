@@ -10,6 +10,7 @@ from compoundkin.model.attributes import ANGLE
 from compoundkin.model.elements import Lead
 from compoundkin.model.pairs.symbols import Sliding, Track
 from compoundkin.structure import DrivenPair
+from compoundkin.view.sketch.cylinder_shapes import beside
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.scene import Seen
 from compoundkin.view.sketch.shapes import (
@@ -44,7 +45,7 @@ def drives(painter: Painter) -> Iterator[Laid]:
             shapes = turning(painter, step, at, float(np.sign(speed)))
         else:
             e = _way(painter, straight, step.link) * float(np.sign(speed))
-            shapes = pushing(painter, at, e)
+            shapes = pushing(painter, at, e, beside(painter, straight))
         # the arrow beside a wheel that is pushed along its track does not turn with it
         rolls = straight is not None and isinstance(straight.mark, Track) and letter in painter.scene.points[step.link]
         yield from (Laid(Layer.PIN, shape, step.link, letter if rolls else "") for shape in shapes)
@@ -96,11 +97,11 @@ def turning(painter: Painter, step: DrivenPair, at: complex, sense: float, link:
     return arc, arrow_head(as_place(tip), as_place(heading), "drive-head")
 
 
-def pushing(painter: Painter, at: complex, e: complex) -> tuple[Shape, ...]:
-    """Draw a straight arrow beside a block."""
+def pushing(painter: Painter, at: complex, e: complex, room: float = BLOCK[1] / 2.0) -> tuple[Shape, ...]:
+    """Draw a straight arrow beside a block. It needs so much room on its sides."""
     across = 1j * e
     side = -1.0 if (np.conjugate(across) * (painter.middle - at)).real > 0 else 1.0
     if abs(across.imag) > 0.5:
         side = -1.0 if across.imag > 0 else 1.0
-    beside = at + across * side * (BLOCK[1] / 2.0 + 9.0)
-    return arrow(beside - e * PUSH / 2.0, beside + e * PUSH / 2.0, "drive")
+    middle = at + across * side * (room + 9.0)
+    return arrow(middle - e * PUSH / 2.0, middle + e * PUSH / 2.0, "drive")

@@ -12,6 +12,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Pin
 from compoundkin.view.sketch.guide_points import shown_points
 from compoundkin.view.sketch.noted_numbers import as_place
+from compoundkin.view.sketch.own_discs import is_inside, smallest_wheel
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import (
@@ -37,6 +38,8 @@ OUTER = 17.0
 DOWNWARD = (1j, 1 + 0j, -1 + 0j, -1j)
 # How much more than the next direction a pivot may be in the way of bars before it is turned there.
 LEANING = 0.35
+# The pin of a wheel is no larger than this part of it.
+WITHIN = 0.45
 
 
 def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[Shape, ...]:
@@ -49,7 +52,9 @@ def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[S
     if len(corners) < 2:
         return ()
     if len(corners) == 2:
-        return (Polyline(corners, style_of("bar", group), among),)
+        # within a wheel or a cam of its own it is a spoke
+        kind = "line" if is_inside(scene, link) else "bar"
+        return (Polyline(corners, style_of(kind, group), among),)
     return (Polygon(corners, style_of("plate", group), among),)
 
 
@@ -104,7 +109,9 @@ def pins(painter: Painter) -> Iterator[Laid]:
         if len(joined) > 1 and painter.only is None:
             yield Laid(Layer.PIN, CircleShape(at, PIN + 3.5, "pin ink"), carriers[0], letter)
         if joined:
-            yield Laid(Layer.PIN, CircleShape(at, PIN, "pin ink"), carriers[0], letter)
+            # that of a small wheel leaves it to be seen
+            radius = min(PIN, WITHIN * smallest_wheel(scene, letter) * float(painter.window.scale))
+            yield Laid(Layer.PIN, CircleShape(at, radius, "pin ink"), carriers[0], letter)
         elif letter not in gliding(painter):
             yield Laid(Layer.PIN, CircleShape(at, 2.5, "dot"), carriers[0], letter)
 

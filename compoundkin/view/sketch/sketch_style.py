@@ -100,6 +100,7 @@ GROUPED: Mapping[str, str] = {
     "plate": "fill:{};fill-opacity:.22;stroke:{};stroke-width:2.5;stroke-linejoin:round",
     "line": f"{_LINE};stroke:{{}};stroke-width:2",
     "thin": f"{_LINE};stroke:{{}};stroke-width:1.2",
+    "pitch": f"{_LINE};stroke:{{}};stroke-width:.9;stroke-dasharray:9 2.5 2 2.5",
     "dashed": f"{_LINE};stroke:{{}};stroke-width:1.2;stroke-dasharray:5 4",
     "track": f"{_LINE};stroke:{{}};stroke-width:12",
     "ring": "stroke:{}",

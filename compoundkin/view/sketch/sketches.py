@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import Any
 
@@ -11,14 +11,16 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Strap, Track, Wheel
 from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.view.sketch.driver_shapes import drives
+from compoundkin.view.sketch.geneva_shapes import genevas
 from compoundkin.view.sketch.label_places import placed
 from compoundkin.view.sketch.link_contours import contours
 from compoundkin.view.sketch.link_shapes import body, edges, pins, skeleton
+from compoundkin.view.sketch.own_discs import is_inside, racks
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted, smooth, thinned, window_of
 from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.scene_extent import extent
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, ShapeGroup, corners, sheet
 from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
@@ -46,12 +48,11 @@ def window_on(
     scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), wishes: Sequence[complex] = ()
 ) -> Window:
     """Return the window that holds a scene, its ghosts and paths. It also holds `wishes` that are not far."""
-    places = [place for shown in (scene, *more) for place in _extent(shown)]
+    places = [place for shown in (scene, *more) for place in extent(shown)]
     places += [scene.places(letter) for letter in paths]
     plain = Window(1.0, 0j, 0.0, 0.0)
-    bars = [
-        abs(b - a) for name in scene.mechanism.links if name != FRAME for a, b in edges(skeleton(scene, plain, name))
-    ]
+    links = [name for name in scene.mechanism.links if name != FRAME and not is_inside(scene, name)]
+    bars = [abs(b - a) for name in links for a, b in edges(skeleton(scene, plain, name))]
     first = window_of(places, bars)
     drawn = layered(Painter(scene, first))
     drawn += [shape for other in more for shape in layered(Painter(other, first), grounded=False)]
@@ -69,27 +70,6 @@ def nearby(points: Number, wishes: Sequence[complex]) -> list[complex]:
     return [wish for wish in wishes if box.holds(wish - low + room * (1 + 1j))]
 
 
-def _extent(scene: Scene) -> Iterator[Number]:
-    """Places that must be on the picture."""
-    yield np.array(list(scene.carried.values()))
-    guides = Painter(scene, Window(1.0, 0j, 0.0, 0.0))
-    for seen in scene.seen:
-        mark = seen.mark
-        if isinstance(mark, Wheel):
-            rim = mark.radius * np.array([1, 1j, -1, -1j])
-            yield scene.at(seen.members[mark.member], mark.at) + rim
-        elif isinstance(mark, Groove | Strap | Outline):
-            yield scene.here[seen.members[mark.member]].at(mark.line).c[0]
-        elif isinstance(mark, Track):
-            yield scene.here[seen.members[mark.member]].at(mark.at + mark.along * np.array([mark.low, mark.high])).c[0]
-        elif isinstance(mark, Sliding):
-            way = np.array([mark.low, mark.high])
-            if guides.is_rod(seen):
-                yield scene.here[seen.members[1]].at(mark.block - mark.turn * way).c[0]
-            elif not guides.is_cylinder(seen):
-                yield scene.here[seen.members[0]].at(mark.at + mark.along * way).c[0]
-
-
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
     """Return the shapes of a scene from back to front. Without what does not move where it is a ghost."""
     return [laid.shape for laid in in_layers(painter, grounded=grounded)]
@@ -98,9 +78,12 @@ def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
 def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
     """Return the same as `layered`, each shape with the link that it moves with."""
     laid: list[Laid] = [*contours(painter), *marks(painter)]
-    for name in filter(painter.shows, painter.scene.mechanism.links):
+    behind = racks(painter.scene)
+    whole = {found.wheel for found in genevas(painter.scene)} if painter.only is None else set()
+    for name in (link for link in painter.scene.mechanism.links if painter.shows(link) and link not in whole):
         shapes = body(painter.scene, painter.window, name)
-        laid += [Laid(Layer.PLATE if isinstance(shape, Polygon) else Layer.BAR, shape, name) for shape in shapes]
+        flat = Layer.BEHIND if name in behind else Layer.BAR
+        laid += [Laid(Layer.PLATE if isinstance(shape, Polygon) else flat, shape, name) for shape in shapes]
     laid += [*pins(painter), *drives(painter)] if grounded else []
     ordered = sorted(laid, key=lambda one: one.layer)  # which keeps the order within a layer
     return [one for one in ordered if grounded or one.layer > Layer.FRAME]

@@ -14,6 +14,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding
 from compoundkin.view.sketch.block_sizes import block_size
 from compoundkin.view.sketch.noted_numbers import as_place
+from compoundkin.view.sketch.own_discs import racks
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene, Seen
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, box, direction, hatching
@@ -31,12 +32,14 @@ class Layer(IntEnum):
     OUTLINE = -1
     BACK = 0
     FRAME = 1
-    WHEEL = 2
-    PLATE = 3
-    BAR = 4
-    GROOVE = 5
-    BLOCK = 6
-    PIN = 7
+    BEHIND = 2  # bars of links that carry a rack
+    RACK = 3
+    WHEEL = 4
+    PLATE = 5
+    BAR = 6
+    GROOVE = 7
+    BLOCK = 8
+    PIN = 9
 
 
 class Laid(NamedTuple):
@@ -82,7 +85,7 @@ class Painter:
         """Return the style of a shape that belongs to a link. The frame has its own."""
         if link != FRAME:
             return style_of(kind, self.scene.groups[link])
-        return {"plate": "frame-face frame", "track": "frame-track"}.get(kind, "frame")
+        return {"plate": "frame-face frame", "track": "frame-track", "pitch": "hatch"}.get(kind, "frame")
 
     @cached_property
     def middle(self) -> complex:
@@ -137,7 +140,8 @@ def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
         yield painter.block_at(guide, painter.place(guide, mark.at), painter.along(guide, mark.along))
     else:
         yield from _guide(painter, guide, mark)
-        yield painter.block_at(block, painter.place(block, mark.block), painter.along(block, mark.turn))
+        if block not in racks(painter.scene):  # which slide without a block
+            yield painter.block_at(block, painter.place(block, mark.block), painter.along(block, mark.turn))
 
 
 def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
