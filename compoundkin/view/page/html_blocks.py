@@ -178,7 +178,8 @@ class Blocks:
 
     @_block.register
     def _(self, block: Paragraph) -> str:
-        return element("p", safe(block.text))
+        # the badges at the head of the page say the rest
+        return element("p", safe(block.text.removesuffix(block.badged).rstrip()))
 
     @_block.register
     def _(self, block: FormulaBlock) -> str:

@@ -26,7 +26,7 @@ from compoundkin.view.report.published_section import Comparison, comparisons, p
 from compoundkin.view.report.report_data import Alert, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.structure_sections import about_section, counted_sections, structure_in_short
+from compoundkin.view.report.structure_sections import about_section, counted_sections
 from compoundkin.view.report.wording import counted
 
 
@@ -61,7 +61,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
     return Report(
         motion.mechanism.title,
         (
-            about_section(structure, f"{structure_in_short(structure)} {motion_in_short(outcome)}", told),
+            about_section(structure, motion_in_short(outcome), told),
             *counted_sections(structure, motion=motion),
             solving_section(structure, motion),
             drivers_section(structure, sample),

@@ -21,9 +21,10 @@ Style: TypeAlias = Literal["text", "fixed", "each", "brief", "passed"]
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A sentence or several."""
+    """A sentence or several. `badged` are the last ones where a page has badges that say the same."""
 
     text: str
+    badged: str = ""
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ def _shortened(block: Block) -> Iterator[Block]:
     elif isinstance(block, StepBlock):
         yield StepBlock(_cut(block.title), tuple((term, _cut(fact)) for term, fact in block.facts))
     elif isinstance(block, Paragraph):
-        yield Paragraph(_cut(block.text))
+        yield replace(block, text=_cut(block.text))
     elif isinstance(block, Alert):
         yield Alert(_cut(block.text), _cut(block.remedy))
     else:

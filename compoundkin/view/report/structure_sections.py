@@ -164,17 +164,18 @@ def counted_sections(structure: Structure, design: int = 0, motion: Motion | Non
     return (*parts, chain_section(without_leads(structure)), loops_section(structure))
 
 
-def about_section(structure: Structure, in_short: str, more: str = "") -> Section:
+def about_section(structure: Structure, outcome: str = "", more: str = "") -> Section:
     """Tell what the mechanism is, in which units, and what the report comes to."""
+    in_short = structure_in_short(structure)
     mechanism = structure.mechanism
     said = (
         mechanism.description,
         f"Source: {mechanism.source}" if mechanism.source else "",
         f"Lengths in {mechanism.unit or 'the unit of the file (none is named)'}, angles in degrees, time in seconds.",
         more,
-        in_short,
     )
-    return Section("about", "", tuple(Paragraph(text) for text in said if text))
+    short = Paragraph(f"{in_short} {outcome}" if outcome else in_short, badged=outcome)
+    return Section("about", "", (*(Paragraph(text) for text in said if text), short))
 
 
 def structure_in_short(structure: Structure) -> str:

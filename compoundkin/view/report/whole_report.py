@@ -26,7 +26,6 @@ from compoundkin.view.report.structure_sections import (
     about_section,
     counted_sections,
     faults_section,
-    structure_in_short,
 )
 from compoundkin.view.report.study_report import study_report
 from compoundkin.view.report.tolerance_report import tolerance_report
@@ -141,7 +140,7 @@ def _solved(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
 def _of_structure(structure: Structure) -> Report:
     """Report a structure before it is solved, one with faults included."""
     outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
-    about = about_section(structure, structure_in_short(structure))
+    about = about_section(structure)
     faults = [faults_section(structure)] if structure.faults else []
     solving = solving_section(structure, None), drivers_section(structure, None)
     sections = about, *counted_sections(structure), *faults, *solving
