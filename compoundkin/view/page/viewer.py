@@ -78,9 +78,9 @@ def player_html(moving: MotionData, data: dict[str, Any]) -> str:
             [
                 element("figure", lines([_sketch(moving), _legend(moving)]), class_="moving"),
                 _transport(moving),
-                _switches(moving, data),
                 element("p", "", class_="said", role="status"),
                 element("p", "", class_="reason"),
+                _switches(moving, data),
                 element("table", _unseen_caption("Numbers at the pose shown") + "<tbody></tbody>", class_="reading"),
                 *_notes(moving),
             ]
