@@ -33,6 +33,12 @@ CAPTION = "text-align:left;caption-side:top;font-weight:bold;padding:.5em 0"
 FITTED = "max-width:100%;height:auto;"
 # The section that stands in the head of the page, and the one whose steps are the groups.
 ABOUT, GROUPS = "about", "groups"
+# Sections whose numbers are of the dimensions that the report is about: pages that change them say so.
+OF_DIMENSIONS = frozenset((
+    "links", "circuits", "outputs", "performance", "checks", "published", "gaps", "forces", "force-checks", "centres",
+    "secondary", "velocities", "figures", "limits", "toggles", "changes", "cams", "configurations", "branches",
+    "equations", "newton", "constants", "states", "simulation", "unknowns",
+))  # fmt: skip
 
 
 def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
@@ -134,7 +140,9 @@ class Blocks:
         """
         heading = element("h2", safe(section.title or "Report"), id=f"{section.key}-title")
         body = lines([heading, self.figures.get(section.key, ""), *self._blocks(section)])
-        return element("section", f"\n{body}\n", id=section.key, aria_labelledby=f"{section.key}-title")
+        depends = "" if section.key in OF_DIMENSIONS else None
+        named = f"{section.key}-title"
+        return element("section", f"\n{body}\n", id=section.key, aria_labelledby=named, data_depends=depends)
 
     def about(self, sections: Sequence[Section]) -> str:
         """Write what stands in the head of the page. The paragraphs of the section about the whole."""

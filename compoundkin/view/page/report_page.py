@@ -18,12 +18,12 @@ from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.view.page.html_blocks import ABOUT, Blocks
-from compoundkin.view.page.html_document import Document, asset, vendored
+from compoundkin.view.page.html_document import Document
 from compoundkin.view.page.html_tables import names_of
-from compoundkin.view.page.live.live_assets import scripts_of, styles_of
 from compoundkin.view.page.markup import data_script, element, safe
+from compoundkin.view.page.moving_document import with_viewer
 from compoundkin.view.page.study_pictures import study_pictures
-from compoundkin.view.page.viewer import Viewer, viewer_of
+from compoundkin.view.page.viewer import viewer_of
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.report_data import Outcome, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
@@ -48,8 +48,6 @@ VIEWS = {
     "derivation": ("circle", "The circle diagram: a line for each instant centre, numbered in the order of the steps."),
 }
 OUTPUTS = "outputs"
-# What draws the plots.
-PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plots.js")
 # More cells than these make a page slow and large: the table then has the poses of the report.
 MOST_CELLS = 12_000
 
@@ -181,7 +179,7 @@ def page_of(
     document = _document(title, sections, outcome, blocks)
     moving = None if motion is None else viewer_of(motion, design, outputs)
     if moving is not None:
-        return Page(_with_viewer(document, moving).html, title)
+        return Page(with_viewer(document, moving).html, title)
     return Page(replace(document, viewer=sketch(subject) if subject is not None else "").html, title)
 
 
@@ -190,18 +188,6 @@ def _document(title: str, sections: Sequence[Section], outcome: Outcome, blocks:
     contents = tuple((section.key, section.title) for section in sections)
     text = tuple(blocks.section(section) for section in sections if section.key != ABOUT)
     return Document(title, outcome, contents, blocks.about(sections), text, VERSION, data=(data,))
-
-
-def _with_viewer(document: Document, moving: Viewer) -> Document:
-    """The document with the moving sketch beside its text and the plots before it."""
-    plots = (moving.section, *document.sections) if moving.plots else document.sections
-    before = (("motion", "Motion"),) if moving.plots else ()
-    data = (*document.data, data_script("ck-motion", moving.data))
-    library = vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
-    scripts = *map(asset, scripts_of(moving.data)), library, *map(asset, PLOTS)
-    styles = asset("vendor/uPlot.min.css"), *map(asset, styles_of(moving.data))
-    changed = replace(document, viewer=moving.html, sections=plots, before=before)
-    return replace(changed, data=data, scripts=scripts, styles=styles)
 
 
 def temporary() -> Path:

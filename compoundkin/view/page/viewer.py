@@ -82,7 +82,7 @@ def player_html(moving: MotionData, data: dict[str, Any]) -> str:
                 element("p", "", class_="reason"),
                 _switches(moving, data),
                 element("table", _unseen_caption("Numbers at the pose shown") + "<tbody></tbody>", class_="reading"),
-                *_notes(moving),
+                *_notes(moving, data),
             ]
         ),
         class_="player",
@@ -174,8 +174,11 @@ def _box(key: str, word: str, told: str, on: bool) -> str:
     return f'<label title="{safe(told)}"><input type="checkbox" data-show="{safe(key)}"{checked}> {safe(word)}</label>'
 
 
-def _notes(moving: MotionData) -> Iterator[str]:
-    """Where what is seen is not all there is, or not as quick."""
+def _notes(moving: MotionData, data: dict[str, Any]) -> Iterator[str]:
+    """Where what is seen is not all there is, or not as quick; why dimensions cannot be changed."""
+    why = (data["live"] or {}).get("why")
+    if why:
+        yield element("p", safe(why), class_="note")
     shown, poses, slowness = len(moving.chosen), moving.sample.poses, moving.slowness
     if shown < poses:
         text = f"The sketch moves through {shown:,} of the {poses:,} poses that were solved."

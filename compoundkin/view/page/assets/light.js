@@ -68,7 +68,7 @@
   document.addEventListener("click", (event) => {
     const element = of(event);
     // who selects text or presses another button does not want to pin
-    const other = event.target.closest("button:not(.who), a, input, label");
+    const other = event.target.closest("button:not(.who), a, input, label, summary");
     if (!element || other || String(getSelection())) return;
     pin(element === pinned ? null : element);
   });

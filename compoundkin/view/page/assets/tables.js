@@ -26,7 +26,7 @@
     area.remove();
     return done;
   };
-  const written = async (text) => {
+  page.copied = async (text) => {
     try {
       await navigator.clipboard.writeText(text);
       return true;
@@ -35,7 +35,7 @@
     }
   };
   const copy = async (button, table) => {
-    const done = await written(page.tabbed(table));
+    const done = await page.copied(page.tabbed(table));
     button.focus();
     page.say(done ? `${visible(table).length} rows copied` : "The browser does not allow copying");
     if (!done) return;

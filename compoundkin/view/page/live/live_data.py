@@ -22,6 +22,7 @@ from compoundkin.programs.sources.changeable_dimensions import changeable_dimens
 from compoundkin.programs.sources.operation_table import CODES
 from compoundkin.programs.sources.page_program import PageProgram, RecordedReason
 from compoundkin.view.page.live.followed_quantities import followed_quantities
+from compoundkin.view.page.live.panel_data import panel_data, template_data
 from compoundkin.view.page.markup import exact
 from compoundkin.view.report.shown_poses import Sample
 
@@ -101,6 +102,7 @@ class LiveData:
         if not self.dimensions:
             what = "it is overconstrained, and moves by its special dimensions only"
             raise InvalidInput(Problem(self.motion.mechanism.title, what, "take out what is redundant"))
+        names = [one.name for one in self.dimensions]
         return {
             "dimensions": [self._dimension(one) for one in self.dimensions],
             "drives": [self._drive(name) for name in program.mechanism.drives],
@@ -108,6 +110,8 @@ class LiveData:
             "states": list(self._states()),
             "sides": [self.places[one.now.x] for one in program.carried[1]],
             "groups": list(self._groups()),
+            "panel": panel_data(self.stated, names),
+            "toml": template_data(self.stated, names),
             "program": {
                 "codes": list(CODES),
                 "constants": list(map(_number, table.constants)),

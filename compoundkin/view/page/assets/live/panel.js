@@ -1,0 +1,254 @@
+// The panel of dimensions beside the sketch: fields for lengths and angles of links, numbers of pairs, and drivers.
+(() => {
+  "use strict";
+  const page = window.compoundkin;
+  const COLOURS = 7; // of groups; the frame and driven links have their own
+  const MANY = 60; // rows from which links are folded
+  const COARSE = 10; // steps of PageUp, and of an arrow with Shift
+  const BEGUN = /^\s*[+\-−]?\d*[.,]?\d*(e[+-]?\d*)?\s*$/i; // what may become a number yet
+  const REST = 700; // milliseconds after the last arrow until it is one step of undo
+
+  const make = (name, className, text, parent) => {
+    const element = document.createElement(name);
+    if (className) element.className = className;
+    if (text) element.textContent = text;
+    if (parent) parent.append(element);
+    return element;
+  };
+  // as typed: a hyphen for minus, six digits
+  const typed = (value) => page.written(value).replace("−", "-");
+
+  // A number field with its label, its unit, what it was, and what is wrong or possible.
+  class Field {
+    constructor(panel, row, links, place) {
+      Object.assign(this, { panel, row, shown: "" });
+      const id = `dimension-${panel.fields.length}`;
+      this.root = make("div", "dimension", "", place);
+      if (links.length) this.root.dataset.links = links.join(",");
+      const label = make("label", "", "", this.root);
+      label.htmlFor = id;
+      make("span", "", row.label, label).ariaHidden = "true";
+      make("span", "unseen", `${row.spoken} of ${row.owner}`, label);
+      if (row.doc) label.title = row.doc;
+      this.input = make("input", "", "", this.root);
+      Object.assign(this.input, { id, type: "text", inputMode: row.positive ? "decimal" : "text", autocomplete: "off", spellcheck: false });
+      this.input.setAttribute("role", "spinbutton");
+      this.input.setAttribute("aria-describedby", `${id}-unit ${id}-was ${id}-more`);
+      make("span", "of", row.unit, this.root).id = `${id}-unit`;
+      const was = make("span", "was", "", this.root);
+      this.was = make("span", "", "", was);
+      this.was.id = `${id}-was`;
+      this.back = this.button(was);
+      this.more = make("p", "more", "", this.root);
+      this.more.id = `${id}-more`;
+      this.listen();
+    }
+    button(place) {
+      if (!this.row.original) return null;
+      const back = make("button", "back", "↺", place);
+      back.type = "button";
+      back.title = "Back to the original value";
+      back.setAttribute("aria-label", `Reset ${this.row.spoken} of ${this.row.owner}`);
+      back.addEventListener("click", () => { this.input.focus(); this.apply(this.row.original(), true); });
+      return back;
+    }
+    listen() {
+      const { input } = this;
+      input.addEventListener("input", () => { this.wrong(BEGUN.test(input.value) ? "" : this.row.wrong(input.value)); });
+      input.addEventListener("change", () => this.taken());
+      input.addEventListener("focus", () => { input.select(); this.focused(); });
+      input.addEventListener("blur", () => { this.forget(); this.panel.rest(); if (!this.bad) this.say(""); });
+      input.addEventListener("keydown", (event) => this.key(event));
+    }
+    key(event) {
+      const by = { ArrowUp: 1, ArrowDown: -1, PageUp: COARSE, PageDown: -COARSE }[event.key];
+      if (event.key === "Enter") this.taken();
+      else if (event.key === "Escape" && (this.bad || this.input.value !== this.shown)) {
+        this.write();
+        this.wrong("");
+      } else if (by) this.stepped(by * (event.shiftKey && Math.abs(by) === 1 ? COARSE : 1));
+      else return;
+      event.preventDefault();
+      if (event.key === "Escape") event.stopPropagation();
+    }
+    // an arrow steps from what is in the field, if that is a number
+    stepped(by) {
+      const { row } = this, text = this.input.value;
+      const from = text !== this.shown && !row.wrong(text) ? row.value(text) : this.value;
+      const to = Number((from + by * row.step).toPrecision(12));
+      if (this.check(String(to))) this.apply(to, false);
+    }
+    taken() {
+      const text = this.input.value;
+      if (text === this.shown) return this.wrong("");
+      if (this.check(text)) this.apply(this.row.value(text), true);
+    }
+    check(text) {
+      this.wrong(this.row.wrong(text));
+      return !this.bad;
+    }
+    wrong(text) {
+      this.bad = text;
+      this.input.setAttribute("aria-invalid", String(Boolean(text)));
+      this.root.classList.toggle("wrong", Boolean(text));
+      this.say(text);
+    }
+    say(text) {
+      if (this.more.textContent === text) return;
+      this.more.textContent = text;
+      if (text) page.say(text);
+    }
+    apply(value, atOnce) {
+      this.forget();
+      this.panel.apply(this, value, atOnce);
+      this.write();
+      if (document.activeElement === this.input) this.focused();
+    }
+
+    // --- what it shows --------------------------------------------------------------------------------------------------
+    get value() { return this.row.get(this.panel.now); }
+    update() {
+      const { row } = this, value = this.value, own = row.original ? row.original() : value;
+      const changed = Boolean(row.original) && !row.isSame(value, own);
+      this.root.hidden = row.late && !changed && document.activeElement !== this.input;
+      this.root.classList.toggle("changed", changed);
+      this.was.textContent = changed ? `was ${page.written(own)}` : "";
+      if (this.back) this.back.hidden = !changed;
+      // what somebody is typing, right or wrong, stays
+      if (!this.bad && (document.activeElement !== this.input || this.input.value === this.shown)) this.write();
+    }
+    write() {
+      const value = this.value, text = Number.isFinite(value) ? typed(value) : "";
+      if (text === this.shown && text === this.input.value) return;
+      this.shown = this.input.value = text;
+      if (Number.isFinite(value)) this.input.setAttribute("aria-valuenow", typed(value));
+      else this.input.removeAttribute("aria-valuenow");
+      this.input.setAttribute("aria-valuetext", page.withUnit(value, this.row.isAngle ? "deg" : this.row.unit));
+    }
+
+    // --- the range in which it assembles, while it is focused -----------------------------------------------------------
+    focused() {
+      if (this.row.told) return this.say(this.row.told());
+      if (!this.bad) this.look();
+    }
+    look() {
+      const { design } = this.panel;
+      this.range = new page.AssembledRange(design, this.row, (range) => {
+        const all = design.solved.assembled.every((one) => one === 1);
+        if (!this.bad) this.say(`${all ? "Assembles at all poses" : "Poses that assemble now do so"} ${page.rangeTold(this.row, range)}.`);
+      });
+    }
+    forget() {
+      if (this.range) this.range.stop();
+      this.range = null;
+    }
+  }
+
+  // A driver at the pose shown; another value goes to the nearest pose.
+  class DriverRow {
+    constructor(panel, driver) {
+      Object.assign(this, { panel, driver, values: driver.parts[""], owner: "the driver", label: driver.name, spoken: `value of ${driver.name}` });
+      Object.assign(this, { late: false, positive: false, isAngle: driver.unit === "deg", unit: driver.unit === "deg" ? "°" : page.raised(driver.unit) });
+      this.low = Math.min(...this.values);
+      this.high = Math.max(...this.values);
+      this.step = (this.high - this.low) / Math.max(1, this.values.length - 1) || 1;
+    }
+    get() { return this.values[this.panel.player.pose]; }
+    value(text) { return page.NumberRow.prototype.value.call(this, text); }
+    told() { return `from ${page.written(this.low)} to ${page.withUnit(this.high, this.driver.unit)}`; }
+    wrong(text) {
+      if (!text.trim()) return "Write a number.";
+      const value = this.value(text), slack = 1e-9 * (this.high - this.low);
+      if (!Number.isFinite(value)) return `“${text.trim().slice(0, 20)}” is not a number.`;
+      return value < this.low - slack || value > this.high + slack ? `It goes ${this.told()}.` : "";
+    }
+    // the pose whose value is nearest; of several the one nearest to the pose shown
+    nearest(value) {
+      const { pose } = this.panel.player;
+      let best = pose;
+      this.values.forEach((one, k) => {
+        const nearer = Math.abs(one - value) - Math.abs(this.values[best] - value);
+        if (nearer < -1e-9 * this.step || (nearer <= 1e-9 * this.step && Math.abs(k - pose) < Math.abs(best - pose))) best = k;
+      });
+      return best;
+    }
+  }
+
+  class Panel {
+    constructor(root, player) {
+      const { live } = player.data;
+      Object.assign(this, { root, player, design: player.design, fixed: live.panel.fixed, unit: player.data.unit, fields: [] });
+      this.size = page.sizeOf(live.dimensions);
+      this.now = (name) => this.design.value(name);
+      this.own = (name) => this.design.own[this.design.index.get(name)];
+      this.build(live.panel);
+      player.listeners.push(() => this.soon());
+      for (const kind of ["change", "commit"]) this.design.on(kind, () => this.soon());
+      this.update();
+    }
+    build({ links, pairs }) {
+      const place = this.root.querySelector(".dimensions");
+      const rows = [...links, ...pairs].reduce((sum, { rows }) => sum + rows.filter((row) => !row[2]).length, 0);
+      if (this.player.drivers.length) {
+        const group = this.group(place, "Drivers", null, true);
+        for (const driver of this.player.drivers) this.field(new DriverRow(this, driver), [], group);
+      }
+      for (const { name, rows: own } of links) {
+        const group = this.group(place, name, this.player.data.links.find((link) => link.name === name), rows <= MANY);
+        for (const row of own) this.field(new page.PointRow(this, name, row), [name], group);
+      }
+      for (const { name, links: members, rows: own } of pairs) {
+        const group = this.group(place, name, null, rows <= MANY);
+        for (const row of own) this.field(new page.NumberRow(this, name, row), members, group);
+      }
+    }
+    group(place, name, link, open) {
+      const group = make("details", "group", "", place), head = make("summary", "", "", group);
+      group.open = open;
+      if (link) {
+        make("i", `swatch g${link.group ? ((link.group - 1) % COLOURS) + 1 : 0}`, "", head);
+        make("b", "", String(link.number), head);
+        head.dataset.links = name;
+      }
+      make("span", "", name, head);
+      return group;
+    }
+    field(row, links, group) {
+      if (!(row instanceof DriverRow)) row.original = () => row.get(this.own);
+      this.fields.push(new Field(this, row, links, group));
+    }
+
+    // --- changes ----------------------------------------------------------------------------------------------------------
+    apply({ row }, value, atOnce) {
+      const { player, design } = this;
+      if (row instanceof DriverRow) {
+        player.stop();
+        return player.show(row.nearest(value));
+      }
+      design.change(row.set(value, this.now));
+      this.words = `${row.label} of ${row.owner}: ${page.written(value)} ${row.unit}`.trim();
+      clearTimeout(this.resting);
+      if (atOnce) this.rest();
+      else this.resting = setTimeout(() => this.rest(), REST);
+    }
+    // what was stepped by arrows becomes one step of undo
+    rest() {
+      clearTimeout(this.resting);
+      if (this.words) this.design.commit(this.words);
+      this.words = "";
+    }
+    soon() {
+      if (this.waits) return;
+      this.waits = requestAnimationFrame(() => this.update());
+    }
+    update() {
+      this.waits = 0;
+      for (const field of this.fields) field.update();
+      for (const group of this.root.querySelectorAll(".group")) group.hidden = !group.querySelector(".dimension:not([hidden])");
+      this.root.classList.toggle("changed", this.design.isChanged);
+    }
+  }
+
+  const root = document.getElementById("dimensions");
+  if (root && page.design) page.panel = new Panel(root, page.design.player);
+})();
