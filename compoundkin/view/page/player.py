@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from compoundkin.kinematics import Motion
 from compoundkin.view.page.html_document import POLICY, asset, palette
-from compoundkin.view.page.live.live_assets import scripts_of, styles_of
+from compoundkin.view.page.live.live_assets import scripts_of, styles_of, without_panel
 from compoundkin.view.page.markup import data_script, element, lines, safe
 from compoundkin.view.page.moving_data import MotionData
 from compoundkin.view.page.viewer import player_html
@@ -47,7 +47,7 @@ def _document(moving: MotionData) -> str:
     body = [
         scripted,
         player_html(moving, data),
-        data_script("ck-motion", data),
+        data_script("ck-motion", without_panel(data)),
         *(f"<script>{asset(name)}</script>" for name in scripts_of(data)),
     ]
     return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'

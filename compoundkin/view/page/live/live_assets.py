@@ -55,3 +55,14 @@ def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:
     ('player.css',)
     """
     return (PLAYER_STYLE, *(STYLES if is_live(data) else ()))
+
+
+def without_panel(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a motion that is shown without a panel of dimensions.
+
+    >>> without_panel({"live": {"dimensions": [], "panel": {}, "toml": []}})
+    {'live': {'dimensions': []}}
+    """
+    live = data.get("live")
+    kept = live and {key: value for key, value in live.items() if key not in ("panel", "toml")}
+    return {**data, "live": kept}
