@@ -8,14 +8,17 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import residual
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.graph.input_kinds import DRIVE
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS
-from compoundkin.programs.sources.page_program import PageProgram
+from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
+from compoundkin.programs.sources.carried_states import CarriedState
 
 # By which part of the size, or of itself, a dimension is changed: what opens in the second order opens by 1e-4, and no
 # number of teeth becomes another one.
@@ -26,75 +29,85 @@ OPEN = 1e-6
 POSES, STEPS = 5, 8
 
 
-def changeable_dimensions(
-    program: PageProgram, stated: StatedDimensions, dimensions: Sequence[FreeDimension]
-) -> tuple[FreeDimension, ...]:
-    """Return the dimensions of a program of which each may be changed alone.
+def buildable_dimensions(stated: StatedDimensions, dimensions: Sequence[FreeDimension]) -> tuple[FreeDimension, ...]:
+    """Return the dimensions of which each may be changed alone.
 
-    Numbers of teeth may not, nor the axes of wheels of a given module, nor what an overconstrained mechanism hangs on.
+    Numbers of teeth may not, nor the axes of wheels of a given module.
     """
-    found = tuple(_buildable(stated, dimensions))
-    return tuple(_consistent(program, stated, found)) if program.motion.structure.redundant and found else found
+    size = stated.mechanism.geometry.size
+    return tuple(_buildable(stated, [(one, _changed(stated, one, size)) for one in dimensions]))
 
 
-def _changed(stated: StatedDimensions, one: FreeDimension, part: float) -> float:
+def _changed(stated: StatedDimensions, one: FreeDimension, size: float) -> tuple[float, float]:
+    """Return the own value of a dimension, and by how much it is changed."""
     own = float(np.ravel(stated.own(one))[0])
-    return own + CHANGE * part * (stated.mechanism.geometry.size if one.is_of_link else abs(own) or 1.0)
+    return own, CHANGE * (size if one.is_of_link else abs(own) or 1.0)
 
 
-def _buildable(stated: StatedDimensions, dimensions: Sequence[FreeDimension]) -> Iterator[FreeDimension]:
-    """Yield those that can be changed; where all can together, by different parts, each can alone."""
-    if not dimensions or _can_be_built(stated, dimensions):
-        yield from dimensions
-    elif len(dimensions) > 1:
-        half = len(dimensions) // 2
-        yield from _buildable(stated, dimensions[:half])
-        yield from _buildable(stated, dimensions[half:])
-
-
-def _can_be_built(stated: StatedDimensions, dimensions: Sequence[FreeDimension]) -> bool:
-    parts = {one: 1.0 + k / len(dimensions) for k, one in enumerate(dimensions)}
-    try:
-        designed(stated, {one: _changed(stated, one, part) for one, part in parts.items()})
-    except InvalidMechanism:
-        return False
-    return True
-
-
-def _consistent(
-    program: PageProgram, stated: StatedDimensions, dimensions: Sequence[FreeDimension]
+def _buildable(
+    stated: StatedDimensions, changes: Sequence[tuple[FreeDimension, tuple[float, float]]]
 ) -> Iterator[FreeDimension]:
-    """Yield those whose change opens no redundant pair, whether it is assembled elsewhere or not."""
-    mechanism = program.mechanism
-    pairs = program.motion.structure.redundant
+    """Yield those that can be changed; where all can together, by different parts, each can alone."""
+    parts = ((one, own + change * (1.0 + k / len(changes))) for k, (one, (own, change)) in enumerate(changes))
+    try:
+        designed(stated, dict(parts))
+    except InvalidMechanism:
+        if len(changes) > 1:
+            half = len(changes) // 2
+            yield from _buildable(stated, changes[:half])
+            yield from _buildable(stated, changes[half:])
+    else:
+        yield from (one for one, _ in changes)
+
+
+def consistent_dimensions(
+    motion: Motion,
+    mechanism: RecordedMechanism,
+    states: Sequence[CarriedState],
+    stated: StatedDimensions,
+    dimensions: Sequence[FreeDimension],
+) -> tuple[FreeDimension, ...]:
+    """Return those whose change opens no redundant pair at any pose.
+
+    All are inputs of the recorded mechanism, whose groups without a closed form have `states`.
+    """
+    pairs = motion.structure.redundant
+    if not pairs or not dimensions:
+        return tuple(dimensions)
     opened = mechanism.number(residual(pairs, mechanism.block, mechanism.order.size)).x
-    given = dict(_given(program, stated, dimensions))
-    states = program.carried[0]
+    given = dict(_given(motion, mechanism, stated, dimensions))
+    given |= _own_states(motion, states)
     for _ in range(STEPS if states else 0):
         now = _values(mechanism.graph, [one.now.x for one in states], given)
         given |= {one.given: value for one, value in zip(states, now, strict=True)}
     (found,) = _values(mechanism.graph, [opened], given)
     rows = np.broadcast_to(found, (len(dimensions), np.shape(found)[-1] if np.ndim(found) else 1))
-    for one, row in zip(dimensions, rows, strict=True):
-        if np.any(row <= OPEN**2) and not np.any(row > OPEN**2):
-            yield one
+    stays = np.any(rows <= OPEN**2, axis=1) & ~np.any(rows > OPEN**2, axis=1)
+    return tuple(one for one, good in zip(dimensions, stays, strict=True) if good)
+
+
+def _looked_at(motion: Motion) -> Number:
+    """Return the indices of some poses that are assembled."""
+    known = np.flatnonzero(motion.failed[0] == 0)
+    return known[np.linspace(0, len(known) - 1, POSES).round().astype(int)]
+
+
+def _own_states(motion: Motion, states: Sequence[CarriedState]) -> dict[InputNumber, Number]:
+    own, at = seed_values([one.given for one in states], motion), _looked_at(motion)
+    return {given: values[:, at] for given, values in own.items()}
 
 
 def _given(
-    program: PageProgram, stated: StatedDimensions, dimensions: Sequence[FreeDimension]
+    motion: Motion, mechanism: RecordedMechanism, stated: StatedDimensions, dimensions: Sequence[FreeDimension]
 ) -> Iterator[tuple[InputNumber, Number]]:
     """Yield inputs over (designs, poses): each design has one dimension changed."""
-    motion = program.motion
-    known = np.flatnonzero(motion.failed[0] == 0)
-    at = known[np.linspace(0, len(known) - 1, POSES).round().astype(int)]
-    for one in program.dimensions:
-        own, changed = np.ravel(stated.own(one))[0], _changed(stated, one, 1.0)
-        yield one.inputs[0], np.array([[changed if one == other else own] for other in dimensions])
-    for given in program.drives:
-        values = motion.inputs.drives[given.name][int(given.part)]
-        yield given, np.broadcast_to(values, motion.failed.shape)[:, at]
-    for given, values in seed_values(program.seeds, motion).items():
-        yield given, values[:, at]
+    at, size = _looked_at(motion), motion.size
+    for one in mechanism.recording.free:
+        own, change = _changed(stated, one, size)
+        yield one.inputs[0], np.array([[own + change * (one == other)] for other in dimensions])
+    for name, values in motion.inputs.drives.items():
+        for k, value in enumerate(values):
+            yield InputNumber(DRIVE, name, str(k)), np.broadcast_to(value, motion.failed.shape)[:, at]
 
 
 def _values(graph: OperationGraph, wanted: Sequence[int], given: Mapping[InputNumber, Number]) -> list[Number]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.programs.backends.tape.row_allocation import allocated
@@ -42,10 +43,12 @@ def operation_table(
     sections: Sequence[Sequence[int]],
     fixed: Sequence[InputNumber],
     along: Sequence[InputNumber],
+    known: Mapping[InputNumber, float] = MappingProxyType({}),
 ) -> OperationTable:
     """Return the table that computes some nodes, section by section.
 
-    `fixed` are the inputs that are one number for all poses, `along` those that are rows, both in their order.
+    `fixed` are the inputs that are one number for all poses, `along` those that are rows, both in their order; others
+    are `known` numbers.
 
     >>> graph, x, a = OperationGraph(), InputNumber("drive", "crank", "0"), InputNumber("dimension", "crank.B", "x")
     >>> node = graph.apply("mul", graph.input(a), graph.apply("cos", graph.input(x)))
@@ -55,26 +58,29 @@ def operation_table(
     """
     wanted = [k for section in sections for k in section]
     needed = graph.needed(wanted)
-    strata = node_strata(graph, needed, {**dict.fromkeys(fixed, BY_DESIGN), **dict.fromkeys(along, BY_POSE)})
+    given = {**dict.fromkeys((*fixed, *known), BY_DESIGN), **dict.fromkeys(along, BY_POSE)}
+    strata = node_strata(graph, needed, given)
     work = [k for k in needed if graph.nodes[k].operation not in (CONSTANT, INPUT)]
     rows, ends = _in_sections(graph, sections, {k for k in work if strata[k] & BY_POSE})
-    kept = [Instruction(graph.nodes[k].operation, graph.nodes[k].operands, k) for k in rows]
-    allocation = allocated(kept, {*wanted})
-    constants = [k for k in needed if graph.nodes[k].operation == CONSTANT]
-    given = [graph.input(one) for one in fixed]
     before = [k for k in work if not strata[k] & BY_POSE]
-    places = {k: -1 - place for place, k in enumerate((*constants, *given, *before))}
-    places |= {graph.input(one): place for place, one in enumerate(along)}
-    places |= {k: len(along) + row for k, (_, row) in allocation.rows.items()}
+    constants = {k: graph.nodes[k].value for k in needed if graph.nodes[k].operation == CONSTANT}
+    constants |= {graph.input(one): value for one, value in known.items()}
+    numbers = (*constants, *map(graph.input, fixed), *before)
+    held = _held(graph, rows, wanted, along)
+    places = {k: -1 - place for place, k in enumerate(numbers)} | held
+    entries = (_entries(graph, nodes, places) for nodes in (before, rows))
     return OperationTable(
-        tuple(graph.nodes[k].value for k in constants),
-        len(constants) + len(given) + len(before),
-        len(along) + allocation.counts[False],
-        _entries(graph, before, places),
-        _entries(graph, rows, places),
-        ends,
-        places,
+        tuple(constants.values()), len(numbers), 1 + max(held.values(), default=-1), *entries, ends, places
     )
+
+
+def _held(
+    graph: OperationGraph, nodes: Sequence[int], wanted: Sequence[int], along: Sequence[InputNumber]
+) -> dict[int, int]:
+    """Return the rows that hold inputs and nodes; rows of what is not wanted are taken again."""
+    steps = [Instruction(graph.nodes[k].operation, graph.nodes[k].operands, k) for k in nodes]
+    held = {graph.input(one): row for row, one in enumerate(along)}
+    return held | {k: len(along) + row for k, (_, row) in allocated(steps, {*wanted}).rows.items()}
 
 
 def _in_sections(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,15 +13,18 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.groups.reasons import Reason
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import OF_LINKS
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.input_kinds import DRIVE, SEED
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.solved_designs import ProgramConfiguration
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
-from compoundkin.programs.recording.recorded_motion import RecordedMotion
+from compoundkin.programs.recording.recorded_motion import RecordedLink, RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_outputs
 from compoundkin.programs.sources.carried_states import CarriedState, carried_states
+from compoundkin.programs.sources.changeable_dimensions import buildable_dimensions, consistent_dimensions
 from compoundkin.programs.sources.operation_table import OperationTable, operation_table
 from compoundkin.programs.sources.told_configuration import changed_modes
 
@@ -43,21 +46,18 @@ class RecordedReason(NamedTuple):
 class PageProgram(PrintsShort):
     """A mechanism as operations on its dimensions and drivers.
 
-    It is in the configuration of a motion. `dimensions` are single numbers, results nodes of the graph of the
-    `mechanism`.
+    It is in the configuration of a motion of one design. Results are nodes of the graph of the `mechanism`.
     """
 
     motion: Motion
+    stated: StatedDimensions
     mechanism: RecordedMechanism
-    dimensions: tuple[FreeDimension, ...]
     outputs: tuple[ProgramOutput, ...]
     recorded: tuple[RecordedNumber, ...]
 
     @classmethod
-    def of(
-        cls, motion: Motion, dimensions: Sequence[FreeDimension], outputs: Sequence[ProgramOutput] = ()
-    ) -> PageProgram:
-        """Record a motion of one design; outputs that no program tells are left out.
+    def of(cls, motion: Motion, outputs: Sequence[ProgramOutput] = ()) -> PageProgram:
+        """Record a motion; outputs that no program tells are left out.
 
         Raises InvalidInput where it passes a change point, or has profiles.
         """
@@ -66,13 +66,27 @@ class PageProgram(PrintsShort):
             raise InvalidInput(Problem(", ".join(links), what, "leave the change point out"))
         order = min(HIGHEST, motion.order)
         signs, still, ends = ProgramConfiguration.of(motion).signs, _still(motion, order), motion.inputs.ends
-        mechanism = recorded(Recording(motion.solving_order, signs, tuple(dimensions), order, still, ends))
+        stated = StatedDimensions(motion.mechanism, ends)
+        # coordinates of points, and numbers of pairs
+        single = [one for one in stated.known.values() if not one.is_of_law and not one.is_vector]
+        free = buildable_dimensions(stated, single)
+        mechanism = recorded(Recording(motion.solving_order, signs, free, order, still, ends))
         found = dict(_told(mechanism, [one for one in outputs if one.attribute.order <= order]))
-        program = cls(motion, mechanism, tuple(dimensions), tuple(found), tuple(found.values()))
+        program = cls(motion, stated, mechanism, tuple(found), tuple(found.values()))
         if contacts := [one.name for one in program.seeds if one.name in mechanism.order.pairs]:
             what = "contacts with a profile are searched for at every pose"
             raise InvalidInput(Problem(contacts[0], what, "solve the mechanism for each dimension"))
         return program
+
+    @cached_property
+    def dimensions(self) -> tuple[FreeDimension, ...]:
+        """Single numbers of which each may be changed alone.
+
+        They are coordinates of points, and numbers of pairs that something depends on.
+        """
+        free = self.mechanism.recording.free
+        read = [one for one in free if one.is_of_link or not self._inputs.isdisjoint(one.inputs)]
+        return consistent_dimensions(self.motion, self.mechanism, self.carried[0], self.stated, read)
 
     @property
     def order(self) -> int:
@@ -90,12 +104,15 @@ class PageProgram(PrintsShort):
         """The truths on which its groups and ends of guides hang, in order."""
         return tuple((index, self.mechanism.number(good).x) for index, good in self.mechanism.block.goods)
 
-    def link(self, name: str, k: int) -> tuple[int, int, int]:
-        """Return the nodes of a link's origin and angle, or of their k-th derivatives."""
-        found = RecordedMotion(self.mechanism).links[name]
-        turned = (found.angle, found.angular_velocity, found.angular_acceleration)[k] if k else found.angle
-        z = self.mechanism.number(found.origin.derivative(k))
-        return z.real.x, z.imag.x, self.mechanism.number(turned).x
+    @cached_property
+    def links(self) -> Mapping[str, tuple[tuple[int, int, int], ...]]:
+        """The nodes of each link's origin and angle, and of their derivatives in order."""
+        found = RecordedMotion(self.mechanism).links
+        return {name: tuple(self._moved(found[name], k) for k in range(self.order + 1)) for name in found}
+
+    def _moved(self, link: RecordedLink, k: int) -> tuple[int, int, int]:
+        z = self.mechanism.number(link.origin.derivative(k))
+        return z.real.x, z.imag.x, self.mechanism.number(getattr(link, OF_LINKS[k])).x
 
     @cached_property
     def reasons(self) -> tuple[tuple[RecordedReason, ...], ...]:
@@ -113,9 +130,8 @@ class PageProgram(PrintsShort):
     @cached_property
     def _results(self) -> tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]:
         """The nodes of what groups hang on, of all positions, of rates and outputs."""
-        world, orders = self.mechanism.block.world, range(1, self.order + 1)
-        places = (node for name in world for node in self.link(name, 0))
-        rates = (node for name in world for k in orders for node in self.link(name, k))
+        places = (node for moved in self.links.values() for node in moved[0])
+        rates = (node for moved in self.links.values() for nodes in moved[1:] for node in nodes)
         told = (node for one in self.recorded for node in (one.x, one.y) if node is not None)
         return tuple(node for _, node in self.goods), _once(places), _once((*rates, *told))
 
@@ -124,15 +140,12 @@ class PageProgram(PrintsShort):
         """What is found outside of it: states of groups, counted turns."""
         return tuple(one for one in self._inputs if one.kind == SEED)
 
-    def reads(self, one: FreeDimension) -> bool:
-        """Tell whether anything depends on a dimension."""
-        return not set(one.inputs).isdisjoint(self._inputs)
-
     @cached_property
-    def _inputs(self) -> tuple[InputNumber, ...]:
+    def _inputs(self) -> Set[InputNumber]:
+        """What anything depends on, in order."""
         graph = self.mechanism.graph
         inputs = (graph.nodes[k].given for k in graph.inputs(_once(k for part in self._results for k in part)))
-        return tuple(one for one in inputs if one is not None)
+        return {one: None for one in inputs if one is not None}.keys()
 
     @cached_property
     def carried(self) -> tuple[tuple[CarriedState, ...], tuple[CarriedState, ...]]:
@@ -147,9 +160,11 @@ class PageProgram(PrintsShort):
         carried = (one.now.x for part in self.carried for one in part)
         reasons = (node for each in self.reasons for one in each for node in (one.holds, *one.words))
         told = _once(node for node in reasons if isinstance(node, int))
-        fixed = [given for one in self.dimensions for given in one.inputs]
+        shown = {one.inputs[0]: None for one in self.dimensions}
+        free = self.mechanism.recording.free
+        known = {one.inputs[0]: float(np.ravel(self.stated.own(one))[0]) for one in free if one.inputs[0] not in shown}
         sections = _once((*closing, *carried)), places, rates, told
-        return operation_table(self.mechanism.graph, sections, fixed, (*self.drives, *self.seeds))
+        return operation_table(self.mechanism.graph, sections, tuple(shown), (*self.drives, *self.seeds), known)
 
 
 def _once(nodes: Iterable[int]) -> tuple[int, ...]:

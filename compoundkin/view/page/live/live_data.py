@@ -16,9 +16,7 @@ from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.model.attributes import RADIANS, coordinate_dimension, unit_of
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
-from compoundkin.programs.sources.changeable_dimensions import changeable_dimensions
 from compoundkin.programs.sources.operation_table import CODES
 from compoundkin.programs.sources.page_program import PageProgram, RecordedReason
 from compoundkin.view.page.live.followed_quantities import followed_quantities
@@ -53,32 +51,9 @@ class LiveData:
     names: Sequence[str]
 
     @cached_property
-    def stated(self) -> StatedDimensions:
-        """All dimensions of its mechanism."""
-        return StatedDimensions(self.motion.mechanism, self.motion.inputs.ends)
-
-    @cached_property
-    def dimensions(self) -> tuple[FreeDimension, ...]:
-        """Those that may be changed.
-
-        They are points' coordinates, and numbers of pairs that the motion depends on.
-        """
-        wanted = [one for one in self._all.dimensions if one.is_of_link or self._all.reads(one)]
-        return changeable_dimensions(self._all, self.stated, wanted)
-
-    @cached_property
-    def _all(self) -> PageProgram:
-        """The program of all single numbers but those of laws."""
-        single = [one for one in self.stated.known.values() if not one.is_of_law and not one.is_vector]
-        return PageProgram.of(self.motion, single, [*self._told()])
-
-    @cached_property
     def program(self) -> PageProgram:
         """What computes it."""
-        every = self._all
-        if self.dimensions == every.dimensions:
-            return every
-        return PageProgram.of(self.motion, self.dimensions, every.outputs)
+        return PageProgram.of(self.motion, [*self._told()])
 
     def _told(self) -> Iterator[ProgramOutput]:
         """Yield the page's outputs, and what its figures are made of."""
@@ -99,12 +74,12 @@ class LiveData:
     def data(self) -> dict[str, Any]:
         """All of it for a script: lengths in the user's unit, angles in radians."""
         program, table = self.program, self.program.table
-        if not self.dimensions:
+        if not self.program.dimensions:
             what = "it is overconstrained, and moves by its special dimensions only"
             raise InvalidInput(Problem(self.motion.mechanism.title, what, "take out what is redundant"))
         names = [one.name for one in self.dimensions]
         return {
-            "dimensions": [self._dimension(one) for one in self.dimensions],
+            "dimensions": [self._dimension(one) for one in self.program.dimensions],
             "drives": [self._drive(name) for name in program.mechanism.drives],
             "size": self.motion.size,
             "states": list(self._states()),
@@ -150,9 +125,9 @@ class LiveData:
             yield {"row": row, "now": self.places[state.now.x], "own": values, **kinds}
 
     def _dimension(self, one: FreeDimension) -> dict[str, Any]:
-        unit = self.stated.unit(one)
+        unit = self.program.stated.unit(one)
         kind = "point" if one.is_of_link else "angle" if unit == RADIANS else "length" if unit else "ratio"
-        value = float(np.ravel(self.stated.own(one))[0])
+        value = float(np.ravel(self.program.stated.own(one))[0])
         return {
             "name": one.name,
             "owner": one.owner,
@@ -172,8 +147,7 @@ class LiveData:
         return {"name": name, "unit": unit, "value": exact(values[0]), "rates": [exact(v) for v in values[1:]]}
 
     def _link(self, name: str) -> dict[str, Any]:
-        orders = range(self.program.order + 1)
-        at = [[self.places[node] for node in self.program.link(name, k)] for k in orders]
+        at = [[self.places[node] for node in nodes] for nodes in self.program.links[name]]
         return {"at": at, "wrapped": self.program.mechanism.block.world[name].theta is None}
 
     def _outputs(self) -> Iterator[dict[str, Any]]:
