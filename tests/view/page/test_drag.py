@@ -13,6 +13,8 @@ from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.view.page import player
 from tests import catalog
 
+pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
+
 PLAYER = "compoundkin.players[0]"
 VALUES = f"Object.fromEntries({PLAYER}.design.names.map((name, k) => [name, {PLAYER}.design.numbers[k]]))"
 LINKS = f"{PLAYER}.links.map((link) => [link.name, [...link.x], [...link.y], [...link.angle]])"
@@ -65,7 +67,6 @@ def is_changed(view: Any) -> bool:
     return bool(view.value(f"{PLAYER}.design.isChanged"))
 
 
-@pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 @pytest.mark.parametrize("name", ["six-bar", "geared-five-bar", "class-iii-six-bar"])
 def test_after_a_hundred_drags_all_links_are_where_the_solver_has_them(name: str, opened: Any, tmp_path: Path) -> None:
     motion = catalog.motion(name)
