@@ -68,10 +68,9 @@ def operation_table(
     numbers = (*constants, *map(graph.input, fixed), *before)
     held = _held(graph, rows, wanted, along)
     places = {k: -1 - place for place, k in enumerate(numbers)} | held
-    entries = (_entries(graph, nodes, places) for nodes in (before, rows))
-    return OperationTable(
-        tuple(constants.values()), len(numbers), 1 + max(held.values(), default=-1), *entries, ends, places
-    )
+    rows_held = 1 + max(held.values(), default=-1)
+    first, along_poses = _entries(graph, before, places), _entries(graph, rows, places)
+    return OperationTable(tuple(constants.values()), len(numbers), rows_held, first, along_poses, ends, places)
 
 
 def _held(

@@ -77,7 +77,7 @@ class LiveData:
         if not self.program.dimensions:
             what = "it is overconstrained, and moves by its special dimensions only"
             raise InvalidInput(Problem(self.motion.mechanism.title, what, "take out what is redundant"))
-        names = [one.name for one in self.dimensions]
+        names = [one.name for one in self.program.dimensions]
         return {
             "dimensions": [self._dimension(one) for one in self.program.dimensions],
             "drives": [self._drive(name) for name in program.mechanism.drives],
@@ -85,8 +85,8 @@ class LiveData:
             "states": list(self._states()),
             "sides": [self.places[one.now.x] for one in program.carried[1]],
             "groups": list(self._groups()),
-            "panel": panel_data(self.stated, names),
-            "toml": template_data(self.stated, names),
+            "panel": panel_data(self.program.stated, names),
+            "toml": template_data(self.program.stated, names),
             "program": {
                 "codes": list(CODES),
                 "constants": list(map(_number, table.constants)),
