@@ -167,7 +167,7 @@ class NotedLength(_Scalar):
         return format(self.value, form)
 
 
-class NotedCourse(Noted, np.ndarray):
+class NotedCourse(Noted, np.ndarray):  # type: ignore[misc, override]
     """An array along the poses of a motion. Its note is that of one pose."""
 
     def __array_finalize__(self, of: Any) -> None:
