@@ -16,6 +16,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
 from compoundkin.model.elements import FRAME
 from compoundkin.view.sketch.label_places import ROOM, placed, text_half
+from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, leaves, moved, sheet
@@ -144,8 +145,8 @@ def moving_sketch(
     window = window_on(scene, _sample(scene), tuple(scene.carried))
     painter = Painter(scene, window)
     lines = [line for letter in paths for line in path(scene, window, letter)]
-    laid = [one for one in in_layers(painter) if one.link not in scene.mechanism.led_links]
-    parts = [*_carried(painter, laid), *_labelled(painter, laid, labels)]
+    laid = carried_shapes(painter)
+    parts = [*carried_parts(painter, laid), *_labelled(painter, laid, labels)]
     sketch = MovingSketch(motion, design, scene, window, (sheet(window.width, window.height), *lines), tuple(parts))
     return sketch.holding(_reach_of_labels(sketch), ROOM)
 
@@ -179,13 +180,18 @@ def _sample(scene: Scene) -> list[Scene]:
     return [scene.ghost(int(k)) for k in dict.fromkeys(places)]
 
 
-def _carried(painter: Painter, laid: Sequence[Laid]) -> Iterator[MovingPart]:
-    """The shapes of the mechanism; those that one link carries and that follow each other are one part."""
+def carried_shapes(painter: Painter) -> list[Laid]:
+    """Return all shapes of the mechanism from back to front."""
+    return [one for one in in_layers(painter) if one.link not in painter.scene.mechanism.led_links]
+
+
+def carried_parts(painter: Painter, laid: Sequence[Laid]) -> Iterator[MovingPart]:
+    """Return the parts of shapes. Those that one link carries and that follow each other are one part."""
     scene = painter.scene
     for (link, letter), run in groupby(laid, key=lambda one: (one.link, one.letter)):
         at = scene.points[link][letter] if letter else 0j
         shapes = moved((one.shape for one in run), -painter.place(link, at))
-        yield MovingPart(link, complex(at), tuple(shapes), not letter, letter)
+        yield MovingPart(link, as_place(at), tuple(shapes), not letter, letter)
 
 
 def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[MovingPart]:

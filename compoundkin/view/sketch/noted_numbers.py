@@ -15,6 +15,8 @@ import numpy as np
 
 from compoundkin.base.series import Number
 
+# The kind of inputs that are the least of a course.
+LEAST = "least"
 # Functions that give an array along the poses as it is.
 SAME = (np.ravel, np.atleast_1d)
 
@@ -175,12 +177,18 @@ class NotedCourse(Noted, np.ndarray):  # type: ignore[misc, override]
 
     def min(self, *args: Any, **options: Any) -> Any:
         """Return the least of real numbers, over the poses."""
-        return noted(plain(self).min(*args, **options), self.note.of("least", self.note.x))
+        return noted(plain(self).min(*args, **options), _least(self.note))
 
     def max(self, *args: Any, **options: Any) -> Any:
         """Return the greatest of real numbers, over the poses."""
-        opposite = -self.note
-        return noted(plain(self).max(*args, **options), -opposite.of("least", opposite.x))
+        return noted(plain(self).max(*args, **options), -_least(-self.note))
+
+
+def _least(note: RecordedNumber) -> RecordedNumber:
+    """The least of a number over the poses: an input, found by the node of that number."""
+    from compoundkin.programs.graph.operation_graph import InputNumber
+
+    return type(note).given(note.graph, InputNumber(LEAST, str(note.x)))
 
 
 def noted(value: Number, note: RecordedNumber) -> Any:

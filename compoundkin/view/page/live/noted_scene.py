@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from compoundkin.base.poses import End, Pose
+from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.programs.dimensions.named_dimensions import free_dimensions
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.recording.recorded_dimensions import recorded_ends, recorded_geometry
 from compoundkin.programs.recording.recorded_number import RecordedNumber
@@ -26,13 +25,12 @@ POSE = "pose"
 PLACE, TURN = ("x", "y"), ("cos", "sin")
 
 
-def noted_scene(scene: Scene, motion: Motion, names: Iterable[str]) -> tuple[Scene, OperationGraph]:
+def noted_scene(scene: Scene, motion: Motion, free: Sequence[FreeDimension]) -> tuple[Scene, OperationGraph]:
     """Return a scene in numbers with notes, and the graph of these.
 
-    Inputs are the dimensions of these names, which may change, and the poses of the links along the motion.
+    Inputs are the dimensions that are free, and the poses of the links along the motion, which is of one design.
     """
-    graph, stated = OperationGraph(), StatedDimensions(motion.mechanism, motion.inputs.ends)
-    free = free_dimensions(stated, tuple(names))
+    graph = OperationGraph()
     geometry = recorded_geometry(graph, motion.mechanism.geometry, free)
     ends = recorded_ends(graph, motion.solving_order, geometry, free, motion.inputs.ends)
     points = {
@@ -62,14 +60,9 @@ def _sides(graph: OperationGraph, own: Ends, recorded: Ends) -> Ends:
 def _along(graph: OperationGraph, link: str, pose: Pose) -> Pose:
     """The poses of a link along the motion. Those of the frame are no inputs, nor are counted turns."""
     if link == FRAME:
-        return pose
+        return FIXED
     z, u = (
         constant(noted(one.c[0], RecordedNumber.given(graph, *(InputNumber(POSE, link, part) for part in parts))))
         for one, parts in ((pose.z, PLACE), (pose.u, TURN))
     )
     return Pose(z, u, pose.theta)
-
-
-def inputs_of(graph: OperationGraph, nodes: Iterable[int]) -> Mapping[int, InputNumber]:
-    """Return the inputs that some nodes are computed from."""
-    return {k: given for k in graph.inputs(nodes) if (given := graph.nodes[k].given) is not None}

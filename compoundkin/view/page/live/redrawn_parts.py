@@ -1,0 +1,131 @@
+"""What a page needs to draw its sketch anew: where each vertex is, by the dimensions and by how far slides go."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import CONSTANT
+from compoundkin.programs.sources.operation_table import CODES, OperationTable, operation_table
+from compoundkin.view.page.live.live_data import packed_number, whole
+from compoundkin.view.page.live.noted_scene import POSE, noted_scene
+from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
+from compoundkin.view.sketch.noted_numbers import LEAST, Noted, plain
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, Strokes, leaves
+from compoundkin.view.sketch.slide_shapes import Painter
+
+# What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
+LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
+
+
+def redrawn_parts(sketch: MovingSketch, motion: Motion, free: Sequence[FreeDimension]) -> dict[str, Any]:
+    """Return what draws the parts of a sketch anew, of a motion of one design. `free` are the dimensions of the page."""
+    scene, graph = noted_scene(sketch.scene, motion, free)
+    painter = Painter(scene, sketch.window)
+    parts = [*carried_parts(painter, carried_shapes(painter))]
+    labels = [_label(painter, part) for part in sketch.parts if part.is_label]
+    return RedrawnParts(graph, (*parts, *labels), tuple(given for one in free for given in one.inputs)).data
+
+
+def _label(painter: Painter, part: MovingPart) -> MovingPart:
+    """A label at the point that it is seen from; a number keeps its place on the longest line of its link."""
+    own = painter.scene.points[part.link]
+    if part.letter or not own:
+        return MovingPart(part.link, own[part.letter] if part.letter else part.at, (), False)
+    one, other = max(((p, q) for p in own.values() for q in own.values()), key=lambda ends: abs(plain(ends[1] - ends[0])))
+    at: Any = one + (part.at - plain(one))
+    if abs(plain(other - one)) > 0:
+        at = one + (other - one) * ((part.at - plain(one)) / plain(other - one))
+    return MovingPart(part.link, at, (), False)
+
+
+@dataclass(frozen=True, eq=False)
+class RedrawnParts:
+    """Parts in numbers with notes, the graph of these, and the dimensions that are its inputs."""
+
+    graph: OperationGraph
+    parts: tuple[MovingPart, ...]
+    fixed: tuple[InputNumber, ...]
+
+    def nodes(self, value: Number) -> tuple[int, int]:
+        """Return the nodes of both coordinates of a place."""
+        if isinstance(value, Noted):
+            return value.note.part(0), value.note.part(1)
+        return self.graph.constant(float(value.real)), self.graph.constant(float(value.imag))
+
+    @cached_property
+    def drawn(self) -> tuple[tuple[tuple[int, int], tuple[tuple[int, str, Any], ...]], ...]:
+        """Of each part the nodes of its point, and those of its shapes that change. They have their index and kind."""
+        return tuple((self.nodes(part.at), tuple(self._shapes(part))) for part in self.parts)
+
+    def _shapes(self, part: MovingPart) -> Iterator[tuple[int, str, Any]]:
+        for index, shape in enumerate(leaves(part.shapes)):
+            kind, numbers = _kind(shape)
+            nodes = [[node for value in line for node in self.nodes(value)] for line in numbers]
+            if not all(self.graph.nodes[node].operation == CONSTANT for line in nodes for node in line):
+                yield index, kind, nodes
+
+    @cached_property
+    def wanted(self) -> tuple[int, ...]:
+        """All nodes that are asked for."""
+        shapes = [node for _, found in self.drawn for *_, lines in found for line in lines for node in line]
+        return (*dict.fromkeys([*(node for at, _ in self.drawn for node in at), *shapes]),)
+
+    @cached_property
+    def least(self) -> tuple[InputNumber, ...]:
+        """The least numbers over the poses that are needed."""
+        inputs = (self.graph.nodes[k].given for k in self.graph.inputs(self.wanted))
+        return tuple(one for one in inputs if one is not None and one.kind == LEAST)
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """All of it for a script."""
+        courses = [int(one.name) for one in self.least]
+        poses = [one for k in self.graph.inputs(courses) if (one := self.graph.nodes[k].given) and one.kind == POSE]
+        along = operation_table(self.graph, courses, [], self.fixed, poses)
+        table = operation_table(self.graph, self.wanted, [], (*self.fixed, *self.least), [])
+        places = {node: -1 - place for node, place in table.places.items()}
+        parts = [
+            [[places[node] for node in at], [[k, kind, [[places[node] for node in line] for line in lines]] for k, kind, lines in shapes]]
+            for at, shapes in self.drawn
+        ]
+        return {
+            "courses": _program(along),
+            "poses": [[one.name, one.part] for one in poses],
+            "least": [along.places[node] for node in courses],
+            "program": _program(table),
+            "parts": parts,
+        }
+
+
+def _program(table: OperationTable) -> dict[str, Any]:
+    """A table as the page's machine takes it."""
+    return {
+        "codes": list(CODES),
+        "constants": list(map(packed_number, table.constants)),
+        "numbers": table.numbers,
+        "rows": table.rows,
+        "before": whole(table.before),
+        "along": whole(table.along),
+    }
+
+
+def _kind(shape: Shape) -> tuple[str, Sequence[Sequence[Number]]]:
+    """What a shape is drawn anew as, and its numbers line by line."""
+    if isinstance(shape, CircleShape):
+        return ROUND, [[shape.centre, shape.radius]]
+    if isinstance(shape, ArcShape):
+        return BOW, [[shape.start, shape.stop, shape.radius]]
+    if isinstance(shape, Strokes) and shape.row is not None:
+        return ROW, [[shape.row.first, shape.row.step, shape.row.stroke, shape.row.number]]
+    if isinstance(shape, Strokes):
+        return LINES, shape.lines
+    if isinstance(shape, Polyline | Polygon):
+        return (OUTLINE, [shape.among]) if shape.among else (LINES, [shape.points])
+    return LINES, []
