@@ -19,6 +19,7 @@ from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY,
 from compoundkin.view.page.force_data import force_data
 from compoundkin.view.page.live.handle_data import handled
 from compoundkin.view.page.live.live_data import live_data
+from compoundkin.view.page.live.redrawn_parts import with_redraw
 from compoundkin.view.page.markup import brief, exact, shown_parts
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.centre_pictures import centre_name
@@ -116,7 +117,7 @@ class MotionData:
 
     @property
     def _live(self) -> dict[str, Any] | None:
-        live = live_data(self.sample, self.chosen, self.links, self.outputs)
+        live = with_redraw(live_data(self.sample, self.chosen, self.links, self.outputs), self.sketch)
         return handled(live, self.sketch.scene, self.links)
 
     @cached_property

@@ -315,7 +315,9 @@
     // vectors get the room that their tips take at any pose, and their scales a place below
     makeRoom() {
       const { width, height } = this.data.window;
-      let [left, top, right, bottom] = [0, 0, width, height];
+      // at other dimensions points may go beyond the picture as it was made
+      const extent = this.extent || [0, 0, width, height];
+      let [left, top, right, bottom] = [Math.min(0, extent[0]), Math.min(0, extent[1]), Math.max(width, extent[2]), Math.max(height, extent[3])];
       const kinds = VECTORS.filter(([kind]) => this.shown.has(kind) && this.data.vectors[kind]);
       for (const [kind, order] of kinds) {
         for (const letter in this.points) {

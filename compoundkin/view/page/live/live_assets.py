@@ -12,6 +12,7 @@ SCRIPTS = (
     "live/states.js",
     "live/path.js",
     "live/design.js",
+    "live/redraw.js",
     "live/poles.js",
     "live/snapping.js",
     "live/handles.js",

@@ -89,7 +89,7 @@ class LiveData:
             "toml": template_data(self.program.stated, names),
             "program": {
                 "codes": list(CODES),
-                "constants": list(map(packed_number, table.constants)),
+                "constants": list(map(_number, table.constants)),
                 "numbers": table.numbers,
                 "rows": table.rows,
                 "before": whole(table.before),
@@ -157,7 +157,7 @@ class LiveData:
             yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped}
 
 
-def packed_number(value: float) -> float | str:
+def _number(value: float) -> float | str:
     """Return a number as JSON has it; what is not finite as a text that a script reads."""
     return value if np.isfinite(value) else str(value).replace("inf", "Infinity").replace("nan", "NaN")
 

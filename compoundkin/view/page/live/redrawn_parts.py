@@ -8,24 +8,35 @@ from functools import cached_property
 from typing import Any
 
 from compoundkin.base.series import Number
-from compoundkin.kinematics.motion import Motion
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.kinematics.one_design import motion_of_design
+from compoundkin.programs.dimensions.named_dimensions import free_dimensions
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT
 from compoundkin.programs.sources.operation_table import CODES, OperationTable, operation_table
-from compoundkin.view.page.live.live_data import packed_number, whole
+from compoundkin.view.page.live.live_data import whole
 from compoundkin.view.page.live.noted_scene import POSE, noted_scene
+from compoundkin.view.sketch.link_shapes import ON_LINE, SAME
 from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
 from compoundkin.view.sketch.noted_numbers import LEAST, Noted, plain
-from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, Strokes, leaves
+from compoundkin.view.sketch.shapes import ArcShape, Band, CircleShape, Polygon, Polyline, Shape, Strokes, leaves
 from compoundkin.view.sketch.slide_shapes import Painter
 
 # What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
 LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
 
 
-def redrawn_parts(sketch: MovingSketch, motion: Motion, free: Sequence[FreeDimension]) -> dict[str, Any]:
-    """Return what draws the parts of a sketch anew, of a motion of one design. `free` are the dimensions of the page."""
+def with_redraw(live: dict[str, Any] | None, sketch: MovingSketch) -> dict[str, Any] | None:
+    """Return the data of a live page with those that draw its sketch anew. What is not live stays as it is."""
+    if live is None or "why" in live:
+        return live
+    return {**live, "redraw": redrawn_parts(sketch, [one["name"] for one in live["dimensions"]])}
+
+
+def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
+    """Return what draws the parts of a sketch anew when dimensions of some names change."""
+    motion = motion_of_design(sketch.motion, sketch.design)
+    free = free_dimensions(StatedDimensions(motion.mechanism, motion.inputs.ends), names)
     scene, graph = noted_scene(sketch.scene, motion, free)
     painter = Painter(scene, sketch.window)
     parts = [*carried_parts(painter, carried_shapes(painter))]
@@ -98,6 +109,7 @@ class RedrawnParts:
         return {
             "courses": _program(along),
             "poses": [[one.name, one.part] for one in poses],
+            "outline": {"same": SAME, "line": ON_LINE},
             "least": [along.places[node] for node in courses],
             "program": _program(table),
             "parts": parts,
@@ -108,7 +120,7 @@ def _program(table: OperationTable) -> dict[str, Any]:
     """A table as the page's machine takes it."""
     return {
         "codes": list(CODES),
-        "constants": list(map(packed_number, table.constants)),
+        "constants": list(table.constants),
         "numbers": table.numbers,
         "rows": table.rows,
         "before": whole(table.before),
@@ -126,6 +138,8 @@ def _kind(shape: Shape) -> tuple[str, Sequence[Sequence[Number]]]:
         return ROW, [[shape.row.first, shape.row.step, shape.row.stroke, shape.row.number]]
     if isinstance(shape, Strokes):
         return LINES, shape.lines
-    if isinstance(shape, Polyline | Polygon):
-        return (OUTLINE, [shape.among]) if shape.among else (LINES, [shape.points])
+    if isinstance(shape, Polyline | Polygon) and shape.among:
+        return OUTLINE, [shape.among]
+    if isinstance(shape, Polyline | Polygon | Band):
+        return LINES, [shape.points]
     return LINES, []

@@ -15,7 +15,7 @@
     neg: (a) => -a,
     inv: (a) => 1 / a,
     sqrt: Math.sqrt, abs: Math.abs, sin: Math.sin, cos: Math.cos, atan2: Math.atan2,
-    exp: Math.exp, log: Math.log, max: Math.max, min: Math.min, floor: Math.floor, ceil: Math.ceil, rint,
+    exp: Math.exp, log: Math.log, max: (a, b) => Math.max(a, b), min: (a, b) => Math.min(a, b), floor: Math.floor, ceil: Math.ceil, rint,
     fmax: (a, b) => (a >= b || b !== b ? a : b),
     fmin: (a, b) => (a <= b || b !== b ? a : b),
     ge: (a, b) => (a >= b ? 1 : 0),
