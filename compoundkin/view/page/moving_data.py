@@ -17,9 +17,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
 from compoundkin.view.page.force_data import force_data
-from compoundkin.view.page.live.handle_data import handled
-from compoundkin.view.page.live.live_data import live_data
-from compoundkin.view.page.live.redrawn_parts import with_redraw
+from compoundkin.view.page.live.live_sketch import live_sketch
 from compoundkin.view.page.markup import brief, exact, shown_parts
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.centre_pictures import centre_name
@@ -112,13 +110,8 @@ class MotionData:
             "parts": self._parts,
             **self._overlays(),
             "outputs": [self._quantity(self.sample.quantity(name), brief) for name in self.outputs],
-            "live": self._live,
+            "live": live_sketch(self.sample, self.chosen, self.links, self.outputs, self.sketch),
         }
-
-    @property
-    def _live(self) -> dict[str, Any] | None:
-        live = with_redraw(live_data(self.sample, self.chosen, self.links, self.outputs), self.sketch)
-        return handled(live, self.sketch.scene, self.links)
 
     @cached_property
     def forces(self) -> Forces | None:

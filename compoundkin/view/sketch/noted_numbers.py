@@ -94,6 +94,10 @@ def _compared(name: str) -> Callable[[Any, Any], bool]:
     return lambda self, other: bool(operation(plain(self), plain(other)))
 
 
+def _of_value(function: Callable[[float], Any]) -> Callable[[Any], Any]:
+    return lambda self: function(self.value)
+
+
 def _is_array(value: Any) -> bool:
     return isinstance(value, np.ndarray) and value.ndim > 0
 
@@ -122,7 +126,7 @@ class _Scalar(Noted):
         return noted(plain(self) ** exponent, self.note**exponent)
 
     def item(self) -> Any:
-        """Return itself: it is a single number."""
+        """Return itself."""
         return self
 
 
@@ -142,25 +146,15 @@ class NotedLength(_Scalar):
     def __init__(self, value: float) -> None:
         self.value = float(value)
 
-    def __float__(self) -> float:
-        return self.value
-
     def __array__(self, *args: Any, **options: Any) -> Number:
         return np.array(self.value)
-
-    def __int__(self) -> int:
-        return int(self.value)
 
     def __eq__(self, other: object) -> bool:
         return bool(self.value == plain(other))
 
-    def __hash__(self) -> int:
-        return hash(self.value)
-
     __lt__, __le__, __gt__, __ge__ = (_compared(name) for name in ("lt", "le", "gt", "ge"))
 
-    def __bool__(self) -> bool:
-        return bool(self.value)
+    __float__, __int__, __bool__, __hash__ = (_of_value(function) for function in (float, int, bool, hash))
 
     def __round__(self, digits: int | None = None) -> Any:
         return round(self.value, digits)
@@ -169,7 +163,7 @@ class NotedLength(_Scalar):
         return format(self.value, form)
 
 
-class NotedCourse(Noted, np.ndarray):  # type: ignore[misc, override]
+class NotedCourse(Noted, np.ndarray):  # type: ignore[override]
     """An array along the poses of a motion. Its note is that of one pose."""
 
     def __array_finalize__(self, of: Any) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,13 +10,6 @@ import numpy as np
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.optional_answers import guided_point
 from compoundkin.view.sketch.scene import Scene
-
-
-def handled(live: dict[str, Any] | None, scene: Scene, links: Sequence[str]) -> dict[str, Any] | None:
-    """Return the data of a live page with its handles. Other data are returned as they are."""
-    if live is None or "why" in live:
-        return live
-    return {**live, "handles": handle_data(scene, {name: k for k, name in enumerate(links)})}
 
 
 def handle_data(scene: Scene, numbers: Mapping[str, int]) -> dict[str, Any]:

@@ -26,15 +26,8 @@ from compoundkin.view.sketch.slide_shapes import Painter
 LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
 
 
-def with_redraw(live: dict[str, Any] | None, sketch: MovingSketch) -> dict[str, Any] | None:
-    """Return the data of a live page with those that draw its sketch anew. What is not live stays as it is."""
-    if live is None or "why" in live:
-        return live
-    return {**live, "redraw": redrawn_parts(sketch, [one["name"] for one in live["dimensions"]])}
-
-
 def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
-    """Return what draws the parts of a sketch anew when dimensions of some names change."""
+    """Return what draws the parts of a sketch anew. `names` are those of the dimensions that change."""
     motion = motion_of_design(sketch.motion, sketch.design)
     free = free_dimensions(StatedDimensions(motion.mechanism, motion.inputs.ends), names)
     scene, graph = noted_scene(sketch.scene, motion, free)
@@ -49,7 +42,9 @@ def _label(painter: Painter, part: MovingPart) -> MovingPart:
     own = painter.scene.points[part.link]
     if part.letter or not own:
         return MovingPart(part.link, own[part.letter] if part.letter else part.at, (), False)
-    one, other = max(((p, q) for p in own.values() for q in own.values()), key=lambda ends: abs(plain(ends[1] - ends[0])))
+    one, other = max(
+        ((p, q) for p in own.values() for q in own.values()), key=lambda ends: abs(plain(ends[1] - ends[0]))
+    )
     at: Any = one + (part.at - plain(one))
     if abs(plain(other - one)) > 0:
         at = one + (other - one) * ((part.at - plain(one)) / plain(other - one))
@@ -58,7 +53,7 @@ def _label(painter: Painter, part: MovingPart) -> MovingPart:
 
 @dataclass(frozen=True, eq=False)
 class RedrawnParts:
-    """Parts in numbers with notes, the graph of these, and the dimensions that are its inputs."""
+    """Parts in numbers with notes. `graph` is that of the notes, `fixed` the dimensions among its inputs."""
 
     graph: OperationGraph
     parts: tuple[MovingPart, ...]
@@ -72,7 +67,7 @@ class RedrawnParts:
 
     @cached_property
     def drawn(self) -> tuple[tuple[tuple[int, int], tuple[tuple[int, str, Any], ...]], ...]:
-        """Of each part the nodes of its point, and those of its shapes that change. They have their index and kind."""
+        """The nodes of each part: of its point, and of its shapes that change. These have an index and a kind."""
         return tuple((self.nodes(part.at), tuple(self._shapes(part))) for part in self.parts)
 
     def _shapes(self, part: MovingPart) -> Iterator[tuple[int, str, Any]]:
@@ -99,11 +94,14 @@ class RedrawnParts:
         """All of it for a script."""
         courses = [int(one.name) for one in self.least]
         poses = [one for k in self.graph.inputs(courses) if (one := self.graph.nodes[k].given) and one.kind == POSE]
-        along = operation_table(self.graph, courses, [], self.fixed, poses)
-        table = operation_table(self.graph, self.wanted, [], (*self.fixed, *self.least), [])
+        along = operation_table(self.graph, [courses], self.fixed, poses)
+        table = operation_table(self.graph, [self.wanted], (*self.fixed, *self.least), [])
         places = {node: -1 - place for node, place in table.places.items()}
         parts = [
-            [[places[node] for node in at], [[k, kind, [[places[node] for node in line] for line in lines]] for k, kind, lines in shapes]]
+            [
+                [places[node] for node in at],
+                [[k, kind, [[places[node] for node in line] for line in lines]] for k, kind, lines in shapes],
+            ]
             for at, shapes in self.drawn
         ]
         return {
