@@ -153,7 +153,6 @@ class NotedLength(_Scalar):
         return bool(self.value == plain(other))
 
     __lt__, __le__, __gt__, __ge__ = (_compared(name) for name in ("lt", "le", "gt", "ge"))
-
     __float__, __int__, __bool__, __hash__ = (_of_value(function) for function in (float, int, bool, hash))
 
     def __round__(self, digits: int | None = None) -> Any:

@@ -113,7 +113,8 @@ def test_what_is_drawn_anew_is_what_painters_draw(name: str, made: Any, opened: 
         values = _changes(motion, names, seed)
         drawn = view.value(CHANGED, values)
         mechanism = designed(stated, {one: values[one.name] for one in free_dimensions(stated, list(values))})
-        wanted = _painted(ck.solve(mechanism), pose, window)
+        signs = {mode.links[0]: int(mode.sign) for mode in motion.modes.values() if mode.sign is not None}
+        wanted = _painted(ck.solve(mechanism, modes=signs), pose, window)
         assert len(drawn) == len(wanted)
         for found, own in zip(drawn, wanted, strict=True):
             assert _apart(np.array([complex(*p) for p in found]), np.array(own)) < WRITTEN
