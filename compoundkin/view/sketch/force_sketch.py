@@ -25,9 +25,9 @@ from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_siz
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, Text, arrow, sheet
 from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
-from compoundkin.view.sketch.sketch_labels import NARROW, SIDE, below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.view.sketch.sketch_labels import NARROW, SIDE, below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import INERTIA, LINE, LOAD, REACTION, SMALL
-from compoundkin.view.sketch.sketches import asked_labels, layered, window_on
+from compoundkin.view.sketch.sketches import asked_labels, in_layers, window_on
 from compoundkin.view.sketch.slide_shapes import Painter
 from compoundkin.view.sketch.vectors import VectorScale
 
@@ -85,9 +85,10 @@ def force_sketch(forces: Forces, wishes: Wishes) -> Picture:
     window = _with_room(known, window, shown, scale)
     painter = Painter(scene, window)
     shapes, names = _acting(known, painter, shown, scale)
-    own = [*(numbered(painter) if "links" in asked else []), *(letters(painter) if "points" in asked else [])]
+    laid = in_layers(painter)
+    own = labels_of(painter, laid, asked)
     labels = [label for label, _, _ in names] if asked else []
-    behind = layered(painter)
+    behind = [one.shape for one in laid]
     found = placed([*own, *labels], [*behind, *shapes], window.width, window.height)
     texts = [*label_shapes(scene, {label.key: found[label.key] for label in own})]
     texts += [part for label, text, kind in names if asked for part in named(label.key, text, found[label.key], kind)]

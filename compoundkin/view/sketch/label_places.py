@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes
+from compoundkin.view.sketch.label_obstacles import obstacles
+from compoundkin.view.sketch.shapes import Shape
 
 # Width of a letter in parts of its height, a little more than in the usual fonts.
 WIDE = 0.62
@@ -18,6 +18,7 @@ LABEL, EDGE, LINE, ROUND = 1000.0, 4000.0, 12.0, 30.0
 # Places are tried at so many directions and distances around a point.
 DIRECTIONS = 16
 RINGS = (0.0, 5.0, 11.0, 18.0, 27.0, 38.0, 52.0, 70.0)
+AROUND = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
 # What it costs to be a picture unit farther away.
 FAR = 1.1
 # Labels keep this distance.
@@ -41,6 +42,11 @@ class Label:
     costs: tuple[float, ...]
     own: tuple[tuple[complex, complex], ...] = ()
 
+    def with_costs(self, more: Number) -> Label:
+        """Return the same label, its places the dearer by some costs."""
+        costs = tuple((np.array(self.costs) + more).tolist())
+        return Label(self.key, self.half, self.places, costs, self.own)
+
 
 def text_half(text: str, size: float) -> complex:
     """Return half the width and height of a line of text."""
@@ -49,50 +55,76 @@ def text_half(text: str, size: float) -> complex:
 
 def around(key: str, at: complex, half: complex, clear: float, prefer: complex = 1 - 1j) -> Label:
     """Return a label beside a point, from `clear` away on. Rather to the side `prefer`."""
-    places, costs = [], []
     better = prefer / abs(prefer)
-    for ring in RINGS:
-        for k in range(DIRECTIONS):
-            e = complex(np.exp(2j * np.pi * k / DIRECTIONS))
-            reach = abs(e.real) * half.real + abs(e.imag) * half.imag
-            places.append(at + e * (clear + reach + ring))
-            costs.append(FAR * ring + 2.5 * (1.0 - (np.conjugate(better) * e).real))
-    return Label(key, half, tuple(places), tuple(costs))
+    reach = np.abs(AROUND.real) * half.real + np.abs(AROUND.imag) * half.imag
+    rings = np.array(RINGS)[:, None]
+    places = (at + AROUND * (clear + reach + rings)).ravel()
+    costs = (FAR * rings + 2.5 * (1.0 - (np.conjugate(better) * AROUND).real)).ravel()
+    return Label(key, half, tuple(places.tolist()), tuple(costs.tolist()))
 
 
 def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:
     """Return a place for each label, in the order of the labels. All are placed again twice."""
     lines, rounds = obstacles(shapes)
-    fixed = {label.key: _fixed_costs(label, lines, rounds, width, height) for label in labels}
+    fixed = {}
+    for label in labels:
+        at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
+        covered = on_shapes(at, half, lines, rounds) + beyond(at, half, width, height)
+        fixed[label.key] = np.array(label.costs) + covered - on_own(label, at, half)
+    return settled(labels, fixed, _crowding)
+
+
+def settled(
+    labels: Sequence[Label],
+    fixed: Mapping[str, Number],
+    crowding: Callable[[Label, Sequence[Label], Mapping[str, complex]], Number],
+) -> dict[str, complex]:
+    """Return a place for each label, of fixed costs and those of being on others. All are placed again twice."""
     found: dict[str, complex] = {}
     for _ in range(1 + ROUNDS):
         for label in labels:
-            others = [(found[o.key], o.half) for o in labels if o.key != label.key and o.key in found]
-            costs = fixed[label.key] + _crowding(label, others)
+            others = [other for other in labels if other.key != label.key and other.key in found]
+            costs = fixed[label.key] + (crowding(label, others, found) if others else 0.0)
             found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
     return found
 
 
-def _fixed_costs(label: Label, lines: Number, rounds: Number, width: float, height: float) -> Number:
-    at = np.array(label.places)
-    costs = np.array(label.costs)
-    half = label.half + ROOM * (1 + 1j)
+def beyond(at: Number, half: complex, width: float, height: float) -> Number:
+    """Return what it costs places to be outside the picture."""
     outside = np.maximum(0.0, half.real - at.real) + np.maximum(0.0, at.real + half.real - width)
-    outside += np.maximum(0.0, half.imag - at.imag) + np.maximum(0.0, at.imag + half.imag - height)
-    costs = costs + EDGE * outside
-    if lines.size:
-        costs = costs + LINE * _inside(at, half, lines).sum(axis=1)
-    if label.own:
-        costs = costs - LINE * _inside(at, half, np.array(label.own)).sum(axis=1)
-    if rounds.size:
+    return EDGE * (outside + np.maximum(0.0, half.imag - at.imag) + np.maximum(0.0, at.imag + half.imag - height))
+
+
+def on_own(label: Label, at: Number, half: complex) -> Number:
+    """Return what `on_shapes` counts of lines that a label may be on."""
+    return LINE * inside(at, half, np.array(label.own)).sum(axis=1) if label.own else 0.0
+
+
+def on_shapes(at: Number, half: complex, lines: Number, rounds: Number) -> Number:
+    """Return what it costs places to be on lines and circles."""
+    costs: Number = np.zeros(len(at))
+    lines = lines[_within(at, half, lines.real.min(axis=1), lines.real.max(axis=1), 1)] if len(lines) else lines
+    lines = lines[_within(at, half, lines.imag.min(axis=1), lines.imag.max(axis=1), 1j)] if len(lines) else lines
+    if len(lines):
+        costs = costs + LINE * inside(at, half, lines).sum(axis=1)
+    if len(rounds):
         gap = np.abs((at[:, None] - rounds[None, :, 0]).real) - half.real - rounds[None, :, 1].real
         high = np.abs((at[:, None] - rounds[None, :, 0]).imag) - half.imag - rounds[None, :, 1].real
         costs = costs + ROUND * ((gap < 0) & (high < 0)).sum(axis=1)
     return costs
 
 
-def _inside(at: Number, half: complex, lines: Number) -> Number:
-    """The length of each line in the box around each place, in parts of the box's half diagonal; at least one."""
+def _within(at: Number, half: complex, low: Number, high: Number, axis: complex) -> Number:
+    """Tell which of some ranges along an axis can be met by any of the places: the others cost nothing."""
+    along, reach = (np.conjugate(axis) * at).real, half.real if axis == 1 else half.imag
+    return (low <= along.max() + reach) & (high >= along.min() - reach)
+
+
+def inside(at: Number, half: complex, lines: Number) -> Number:
+    """Return the length of each line in the box around each place.
+
+    It is in parts of the box's half diagonal, at least one.
+    """
     a, d = lines[None, :, 0] - at[:, None], (lines[:, 1] - lines[:, 0])[None]
     low: Number = np.zeros(np.broadcast_shapes(a.shape, d.shape))
     high = np.ones_like(low)
@@ -107,50 +139,13 @@ def _inside(at: Number, half: complex, lines: Number) -> Number:
     return np.where(high > low, 1.0 + length / abs(half), 0.0)
 
 
-def _crowding(label: Label, others: Sequence[tuple[complex, complex]]) -> Number:
-    """What it costs each place that other labels are there."""
-    at = np.array(label.places)
-    if not others:
-        return np.zeros(len(at))
-    middle, half = np.array([o[0] for o in others]), np.array([o[1] for o in others])
-    wide = label.half.real + half.real + ROOM - np.abs((at[:, None] - middle).real)
-    high = label.half.imag + half.imag + ROOM - np.abs((at[:, None] - middle).imag)
-    return LABEL * np.where((wide > 0) & (high > 0), 1.0 + np.minimum(wide, high), 0.0).sum(axis=1)
+def _crowding(label: Label, others: Sequence[Label], found: Mapping[str, complex]) -> Number:
+    middle, half = np.array([found[o.key] for o in others]), np.array([o.half for o in others])
+    return crowded(np.array(label.places)[:, None] - middle, label.half, half).sum(axis=1)
 
 
-def obstacles(shapes: Iterable[Shape]) -> tuple[Number, Number]:
-    """Return lines and circles that labels should not be on.
-
-    They are (start, stop) and (middle, radius), complex (count, 2).
-    """
-    lines, rounds = list(_lines(shapes)), list(_rounds(shapes))
-    return np.array(lines, dtype=complex).reshape(-1, 2), np.array(rounds, dtype=complex).reshape(-1, 2)
-
-
-def _lines(shapes: Iterable[Shape]) -> Iterator[tuple[complex, complex]]:
-    for shape in shapes:
-        if isinstance(shape, ShapeGroup):
-            yield from _lines(shape.shapes)
-        elif isinstance(shape, Polyline):
-            yield from pairwise(shape.points)
-        elif isinstance(shape, Polygon):
-            yield from pairwise((*shape.points, shape.points[0]))
-        elif isinstance(shape, Strokes):
-            yield from (line for whole in shape.lines for line in pairwise(whole))
-        elif isinstance(shape, ArcShape):
-            yield shape.start, shape.stop
-        elif isinstance(shape, CircleShape) and shape.radius > BIG:
-            rim = shape.centre + shape.radius * np.exp(2j * np.pi * np.arange(25) / 24)
-            yield from pairwise(complex(p) for p in rim)
-
-
-# A larger circle is in the way with its line only.
-BIG = 12.0
-
-
-def _rounds(shapes: Iterable[Shape]) -> Iterator[tuple[complex, float]]:
-    for shape in shapes:
-        if isinstance(shape, ShapeGroup):
-            yield from _rounds(shape.shapes)
-        elif isinstance(shape, CircleShape) and shape.radius <= BIG:
-            yield shape.centre, shape.radius
+def crowded(gap: Number, half: complex, others: Number) -> Number:
+    """Return what it costs labels to be on others, by how far their middles are from each other."""
+    wide = half.real + others.real + ROOM - np.abs(gap.real)
+    high = half.imag + others.imag + ROOM - np.abs(gap.imag)
+    return LABEL * np.where((wide > 0) & (high > 0), 1.0 + np.minimum(wide, high), 0.0)

@@ -10,11 +10,12 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding, Wheel
 from compoundkin.view.sketch.guide_points import shown_points
 from compoundkin.view.sketch.label_places import Label, around, text_half
+from compoundkin.view.sketch.link_nearness import beside_their_links
 from compoundkin.view.sketch.link_shapes import edges, joints, skeleton
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Shape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, NUMBER, PIN, SMALL, style_of
-from compoundkin.view.sketch.slide_shapes import Painter, guide_line, rod_line
+from compoundkin.view.sketch.slide_shapes import Laid, Painter, guide_line, rod_line
 
 # Places along a bar for its number, the middle first; and how far beside it, in picture units.
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
@@ -33,6 +34,12 @@ OFF_BAR = 6.0
 OUTSIDE = 30.0
 # On the edge of a plate is worse than inside it by this.
 ON_EDGE = 8.0
+
+
+def labels_of(painter: Painter, laid: Sequence[Laid], asked: Sequence[str]) -> list[Label]:
+    """Return the labels that are asked for: of "links", each nearer to its own than to any other, of "points"."""
+    numbers = beside_their_links(numbered(painter), laid) if "links" in asked else []
+    return [*numbers, *(letters(painter) if "points" in asked else [])]
 
 
 def letters(painter: Painter) -> list[Label]:

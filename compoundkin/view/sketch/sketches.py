@@ -23,7 +23,7 @@ from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.scene_extent import extent
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, ShapeGroup, corners, sheet
 from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
-from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.view.sketch.sketch_labels import below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import LINE
 from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter
 from compoundkin.view.sketch.symbol_shapes import marks
@@ -117,8 +117,9 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
     places = centre_places(scene) if wishes.centres else []
     window, scales = _scaled(scene, window_on(scene, others, traced, places), wanted_vectors)
     painter = Painter(scene, window)
-    sketch = [*(line for letter in traced for line in path(scene, window, letter)), *layered(painter)]
-    named = [*(numbered(painter) if "links" in asked else []), *(letters(painter) if "points" in asked else [])]
+    laid = in_layers(painter)
+    sketch = [*(line for letter in traced for line in path(scene, window, letter)), *(one.shape for one in laid)]
+    named = labels_of(painter, laid, asked)
     notes = pose_notes(scene) if asked else []
     notes += [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
     if wishes.centres:

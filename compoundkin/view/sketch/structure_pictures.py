@@ -18,9 +18,9 @@ from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, PicturePart, 
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
 from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes, Text, corners, moved, sheet
-from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.view.sketch.sketch_labels import below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import LETTER, LINE
-from compoundkin.view.sketch.sketches import by_links, ghost, in_layers, layered, window_on
+from compoundkin.view.sketch.sketches import LABELS, by_links, ghost, in_layers, layered, window_on
 from compoundkin.view.sketch.slide_shapes import Painter
 
 # Parts are drawn in this part of the size of a sketch.
@@ -72,15 +72,15 @@ def _part(
 ) -> PicturePart:
     """The links of a part as they are in the mechanism, with their letters and numbers."""
     painter = Painter(scene, whole, links, outer)
-    shapes = by_links(in_layers(painter))
+    laid = in_layers(painter)
+    shapes = by_links(laid)
     points = np.array(corners(shapes) or [0j])
     low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
     high = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j)
     wide = max((high - low).real, len(title) * LETTER * WIDE)
     low -= (wide - (high - low).real) / 2.0
     shapes = moved(shapes, -low)
-    named: list[Label] = [*numbered(painter), *letters(painter)]
-    own = [_shifted(label, -low) for label in named]
+    own = [_shifted(label, -low) for label in labels_of(painter, laid, LABELS)]
     tall = (high - low).imag
     shapes += label_shapes(scene, placed(own, shapes, wide, tall))
     named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")

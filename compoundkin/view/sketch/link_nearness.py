@@ -1,0 +1,76 @@
+"""Numbers of links stand nearer to their own link than to any other: what it costs places where they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.model.elements import FRAME
+from compoundkin.view.sketch.label_obstacles import lines_of
+from compoundkin.view.sketch.label_places import Label
+from compoundkin.view.sketch.shapes import CircleShape, Polygon
+from compoundkin.view.sketch.slide_shapes import Laid, Layer
+
+# What it costs to be nearer to another link, and so much more for each picture unit; distances that differ by less are
+# equal: links that lie on each other.
+WRONG, WORSE, EQUAL = 400.0, 3.0, 0.5
+# So much nearer than any other link it had better be, and what a picture unit less costs.
+CLEARLY, UNCLEAR = 7.0, 1.5
+
+
+def is_of_link(one: Laid) -> bool:
+    """Tell whether a shape shows which link it is of. Pins are of several, arrows and the frame of none."""
+    return Layer.FRAME < one.layer < Layer.PIN and one.link != FRAME
+
+
+def distances(at: Number, lines: Number) -> Number:
+    """Return how far places are from lines, (places, lines)."""
+    start, way = lines[None, :, 0], (lines[:, 1] - lines[:, 0])[None]
+    off = at[:, None] - start
+    length = np.abs(way) ** 2
+    share = np.clip((np.conjugate(way) * off).real / np.where(length > 0, length, 1.0), 0.0, 1.0)
+    return np.abs(off - share * way)
+
+
+def own_distances(at: Number, shapes: Iterable[Laid]) -> Number:
+    """Return how far places are from what is drawn of a link. Inside a plate or wheel it is nothing."""
+    shapes = list(shapes)
+    lines = np.array(list(lines_of(one.shape for one in shapes)), dtype=complex).reshape(-1, 2)
+    found = distances(at, lines).min(axis=1) if len(lines) else np.full(len(at), np.inf)
+    for shape in (one.shape for one in shapes):
+        if isinstance(shape, CircleShape):
+            found = np.minimum(found, np.maximum(0.0, np.abs(at - shape.centre) - shape.radius))
+        elif isinstance(shape, Polygon):
+            corners = np.array(shape.points, dtype=complex)[:, None] - at
+            winding = np.angle(np.roll(corners, -1, axis=0) * np.conjugate(corners)).sum(axis=0)
+            found = np.where(np.abs(winding) > np.pi, 0.0, found)
+    return found
+
+
+def costs_of(own: Number, other: Number) -> Number:
+    """Return what places cost whose distances are these, to their own link and to the nearest other one."""
+    wrong = own - other > EQUAL
+    unclear = np.maximum(0.0, np.minimum(own, CLEARLY) - np.maximum(0.0, other - own)) * UNCLEAR
+    return np.where(wrong, WRONG + WORSE * np.minimum(own - other, own), 0.0) + np.where(own > EQUAL, unclear, 0.0)
+
+
+def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid]) -> list[Label]:
+    """Return labels, those of links with the costs of being nearer to another link."""
+    shown = [one for one in laid if is_of_link(one)]
+    links = list(dict.fromkeys(one.link for one in shown))
+    rows = [(line, links.index(one.link)) for one in shown for line in lines_of([one.shape])]
+    lines = np.array([line for line, _ in rows], dtype=complex).reshape(-1, 2)
+    owner = np.array([k for _, k in rows], dtype=int)
+    found = []
+    for label in labels:
+        kind, _, name = label.key.partition(" ")
+        if kind == "link" and name in links and len(links) > 1:
+            at = np.array(label.places)
+            own = own_distances(at, (one for one in shown if one.link == name))
+            others = lines[owner != links.index(name)]
+            other = distances(at, others).min(axis=1) if len(others) else np.full(len(at), np.inf)
+            label = label.with_costs(costs_of(own, other))
+        found.append(label)
+    return found
