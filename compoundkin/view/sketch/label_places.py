@@ -79,7 +79,7 @@ def settled(
     fixed: Mapping[str, Number],
     crowding: Callable[[Label, Sequence[Label], Mapping[str, complex]], Number],
 ) -> dict[str, complex]:
-    """Return a place for each label, of fixed costs and those of being on others. All are placed again twice."""
+    """Return a place for each label. All are placed again twice, by fixed costs and those of being on others."""
     found: dict[str, complex] = {}
     for _ in range(1 + ROUNDS):
         for label in labels:
@@ -145,7 +145,7 @@ def _crowding(label: Label, others: Sequence[Label], found: Mapping[str, complex
 
 
 def crowded(gap: Number, half: complex, others: Number) -> Number:
-    """Return what it costs labels to be on others, by how far their middles are from each other."""
+    """Return what it costs labels to be on others. `gap` is from middle to middle."""
     wide = half.real + others.real + ROOM - np.abs(gap.real)
     high = half.imag + others.imag + ROOM - np.abs(gap.imag)
     return LABEL * np.where((wide > 0) & (high > 0), 1.0 + np.minimum(wide, high), 0.0)

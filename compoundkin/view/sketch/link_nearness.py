@@ -50,7 +50,7 @@ def own_distances(at: Number, shapes: Iterable[Laid]) -> Number:
 
 
 def costs_of(own: Number, other: Number) -> Number:
-    """Return what places cost whose distances are these, to their own link and to the nearest other one."""
+    """Return what places cost by their distances to their own link and the nearest other."""
     wrong = own - other > EQUAL
     unclear = np.maximum(0.0, np.minimum(own, CLEARLY) - np.maximum(0.0, other - own)) * UNCLEAR
     return np.where(wrong, WRONG + WORSE * np.minimum(own - other, own), 0.0) + np.where(own > EQUAL, unclear, 0.0)

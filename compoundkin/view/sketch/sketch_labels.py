@@ -37,7 +37,7 @@ ON_EDGE = 8.0
 
 
 def labels_of(painter: Painter, laid: Sequence[Laid], asked: Sequence[str]) -> list[Label]:
-    """Return the labels that are asked for: of "links", each nearer to its own than to any other, of "points"."""
+    """Return the labels that are asked for. A number of a link is nearer to it than to any other."""
     numbers = beside_their_links(numbered(painter), laid) if "links" in asked else []
     return [*numbers, *(letters(painter) if "points" in asked else [])]
 
