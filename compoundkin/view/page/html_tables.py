@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import isfinite
 
 from compoundkin.model.attributes import readable
 from compoundkin.structure import Structure, roman
+from compoundkin.view.page.html_cells import cell_html, of_kind
 from compoundkin.view.page.markup import broken, element, hidden, lines, safe
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
 from compoundkin.view.report.wording import listed, written
@@ -18,11 +19,6 @@ from compoundkin.view.sketch.sketch_style import COLOURS
 from compoundkin.view.sketch.svg import link_names
 
 Links = tuple[str, ...]
-RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
-# Cells with more letters than this are broken into lines, and get room for them.
-LONG = 24
-# The column that tells the units of others.
-UNIT = "unit"
 
 
 @dataclass(frozen=True)
@@ -132,15 +128,16 @@ def _button(kind: str, text: str, shown: ShownTable, **more: str) -> str:
 
 
 def _head(shown: ShownTable) -> str:
-    return element("thead", element("tr", lines(_heading(column, shown.names) for column in shown.table.columns)))
+    return element("thead", element("tr", lines(_heading(column, shown) for column in shown.table.columns)))
 
 
-def _heading(column: Column, names: Names) -> str:
+def _heading(column: Column, shown: ShownTable) -> str:
     name = broken(column.name) if column.name else hidden("result")
     unit = f' <span class="unit">[{safe(readable(column.unit))}]</span>' if column.unit else ""
     button = element("button", f"{name}{unit}", type="button", class_="sort")
     kind = "number" if column.is_number else None
-    return f'<th scope="col"{_of(kind)}{_links(names.about(column.name))}>{button}</th>'
+    quantity = f' data-quantity="{safe(column.name)}"' if shown.poses else ""
+    return f'<th scope="col"{of_kind(kind)}{_links(shown.names.about(column.name))}{quantity}>{button}</th>'
 
 
 def _body(shown: ShownTable) -> str:
@@ -156,9 +153,10 @@ def _row(shown: ShownTable, k: int, texts: Sequence[str], needed: set[int] | Non
     links = _of_row(shown, row)
     kind = "more" if needed is not None and k not in needed else None
     pose = f' data-pose="{shown.poses[k]}"' if shown.poses else ""
-    cells = [_cell(column, cell, text) for column, cell, text in zip(table.columns, row, texts, strict=True)]
+    figure = f' data-figure="{safe(json.dumps(table.figures[k]))}"' if k < len(table.figures) else ""
+    cells = [cell_html(column, cell, text) for column, cell, text in zip(table.columns, row, texts, strict=True)]
     cells[0] = _first(shown, row[0], texts[0], links) or cells[0]
-    return f"<tr{_of(kind)}{_links(links)}{pose}>{''.join(cells)}</tr>"
+    return f"<tr{of_kind(kind)}{_links(links)}{pose}{figure}>{''.join(cells)}</tr>"
 
 
 def _of_row(shown: ShownTable, row: Sequence[Cell]) -> tuple[str, ...]:
@@ -181,39 +179,6 @@ def _first(shown: ShownTable, cell: Cell, text: str, links: tuple[str, ...]) -> 
         swatch = f'<i class="swatch g{number}"></i>' if number is not None else ""
         inside = element("button", f"{swatch}<span>{inside}</span>", type="button", class_="who", aria_pressed="false")
     return f'<th scope="row">{inside}</th>'
-
-
-def _cell(column: Column, cell: Cell, text: str) -> str:
-    if isinstance(cell, bool):
-        result, mark, word = RESULTS[cell]
-        inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
-        return f'<td data-sort="{int(cell)}" data-copy="{word}">{inside}</td>'
-    kind = "number" if column.is_number else "long" if len(text) > LONG else None
-    inside = "<br>".join(map(safe, (readable(text) if column.name == UNIT else text).split("\n")))
-    return f"<td{_of(kind)}{''.join(_exact(column, cell, text))}>{inside}</td>"
-
-
-def _exact(column: Column, cell: Cell, text: str) -> Iterator[str]:
-    """What a number is sorted by and copied as, where that is not what is shown: every digit of it."""
-    if not column.is_number and not isinstance(cell, tuple):
-        return
-    digits = [_digits(column, value) for value in (cell if isinstance(cell, tuple) else (cell,))]
-    if digits[0] != text:
-        yield f' data-sort="{digits[0]}"'
-    if len(digits) > 1:
-        yield f' data-copy="{", ".join(digits)}"'
-
-
-def _digits(column: Column, value: Cell) -> str:
-    if isinstance(value, str):
-        return safe(value)
-    if value is None or isinstance(value, tuple) or not isfinite(value):
-        return ""
-    return repr(value) if abs(value) > column.floor else "0"
-
-
-def _of(kind: str | None) -> str:
-    return f' class="{kind}"' if kind else ""
 
 
 def _links(names: tuple[str, ...]) -> str:

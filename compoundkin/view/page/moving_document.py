@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from compoundkin.view.page.html_document import Document, asset, vendored
-from compoundkin.view.page.live.live_assets import PANEL_SCRIPTS, PANEL_STYLES, is_live, scripts_of, styles_of
+from compoundkin.view.page.live.live_assets import FIGURES, PANEL_SCRIPTS, PANEL_STYLES, is_live, scripts_of, styles_of
 from compoundkin.view.page.live.panel_section import KEY, TITLE, panel_section
 from compoundkin.view.page.markup import data_script
 from compoundkin.view.page.viewer import Viewer
@@ -24,7 +24,7 @@ def with_viewer(document: Document, moving: Viewer) -> Document:
     first = (*first, ("motion", "Motion", moving.section)) if moving.plots else first
     data = (*document.data, data_script("ck-motion", moving.data))
     library = vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
-    last, style = (PANEL_SCRIPTS, PANEL_STYLES) if live else ((), ())
+    last, style = ((*FIGURES, *PANEL_SCRIPTS), PANEL_STYLES) if live else ((), ())
     scripts = *map(asset, scripts_of(moving.data)), library, *map(asset, (*PLOTS, *last))
     styles = asset("vendor/uPlot.min.css"), *map(asset, (*styles_of(moving.data), *style))
     sections = (*(text for _, _, text in first), *document.sections)

@@ -22,7 +22,8 @@ ORDERS = range(3)
 def plot_data(moving: MotionData) -> dict[str, Any]:
     """Return the pace of the axis, the jumps, and what is rounding.
 
-    The pace is at the page's poses, rounding of lengths and angles by the orders of their rates. A jump has its place, counted in the page's poses, whether it is the end or the beginning of a smooth stretch, and
+    The pace is at the page's poses, rounding of lengths and angles by the orders of their rates. A jump has its place,
+    counted in the page's poses, whether it is the end or the beginning of a smooth stretch, and
     the outputs' values there.
     """
     return {"rate": _pace(moving), "jumps": _jumps(moving), "rounding": _rounding(moving)}

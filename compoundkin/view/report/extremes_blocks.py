@@ -22,6 +22,8 @@ from compoundkin.view.report.wording import number
 
 WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "has no guide of its own"}
 ALWAYS, WITHOUT_LIMIT = "always", "without limit"
+# What rows of extremes are, as figures of the motion.
+RANGE = "range"
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +76,7 @@ def extremes_blocks(known: SampleExtremes) -> Iterator[Block]:
 
     They are found by solving again between the poses.
     """
-    sample, rows = known.sample, []
+    sample, rows, figures = known.sample, [], []
     found, _ = known.found
     for one, part in zip(found, known.parts.values(), strict=bool(found)):
         floor = sample.floor(part)
@@ -82,9 +84,11 @@ def extremes_blocks(known: SampleExtremes) -> Iterator[Block]:
             title = f"|{part.name.removesuffix(f'.{LENGTH}')}|" if part.name.endswith(f".{LENGTH}") else part.name
             where = (_piece(sample, int(k)),) if known.several else ()
             rows.append((title, part.unit, *where, *extremes_row(sample, one, int(k), floor)))
+            figures.append((RANGE, one.name))
     if rows:
         yield Paragraph("Extremes, between the poses too; where a derivative jumps, of both sides:")
-        yield TableBlock(_columns(sample, "output", ("between",) if known.several else ()), tuple(rows))
+        columns = _columns(sample, "output", ("between",) if known.several else ())
+        yield TableBlock(columns, tuple(rows), figures=() if known.several else tuple(figures))
 
 
 def _parts(found: Quantity) -> Iterator[tuple[str, Quantity]]:

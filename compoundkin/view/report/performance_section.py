@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
 from compoundkin.analysis.characteristics.curve_features import PathFeatures, simple_shape
-from compoundkin.analysis.characteristics.figure import PlacedFigure, Range
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.model.attributes import ADVANTAGE, DEGREES, LENGTH, RADIANS, TIME, VELOCITY_RATIO
-from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.model.attributes import DEGREES, STROKE
+from compoundkin.view.report.range_rows import (
+    at_of,
+    first,
+    number_of,
+    place_column,
+    ranges_blocks,
+    shown,
+    unit,
+)
+from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed
 from compoundkin.view.report.wording import number as written
@@ -23,14 +30,10 @@ LONG = 0.125
 STRETCH = 0.25
 # An arc of a greater radius, by the path's extent, is told as straight.
 FLAT = 10.0
+# What rows of dead points are, as figures of the motion.
+DEAD = "dead"
 # So many loops of four links are told one by one.
 MOST_LOOPS = 12
-NO_LIMIT = "no limit"
-# Places are found to about this part of the greatest: nearer to zero they are shown as zero.
-NEARLY = 1e-8
-# What is below this part of the other end is zero, and ends nearer than this are one: lengths of vectors that pass
-# zero are known to so much, as their places are.
-FLOOR = 1e-8
 
 
 def performance_section(
@@ -49,7 +52,7 @@ def _blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: 
     yield from _strokes(found)
     yield from _pieces(found)
     yield from _dead_points(sample, found)
-    yield from _ranges(sample, found, told)
+    yield from ranges_blocks(sample, found, told)
     yield from _dwells(found)
     yield from _paths(found)
     yield from _types(found)
@@ -58,18 +61,19 @@ def _blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: 
 
 def _strokes(found: Characteristics) -> Iterator[Block]:
     """How far each output goes, and how much longer one way takes than the other."""
-    rows = []
+    rows, figures = [], []
     for one in found.outputs:
         if not one.output.is_point and one.stroke is not None:
             back = one.quick_return
             ways = (back.forth, back.back, back.time_ratio, back.imbalance) if back else (None,) * 4
-            rows.append((one.name, _unit(one.stroke), *map(_number, (one.stroke, *ways))))
+            rows.append((one.name, unit(one.stroke), *map(number_of, (one.stroke, *ways))))
+            figures.append((STROKE, *one.output.names[:2]))
     if not rows:
         return
-    way = next((_unit(one.quick_return.forth) for one in found.outputs if one.quick_return), "")
+    way = next((unit(one.quick_return.forth) for one in found.outputs if one.quick_return), "")
     columns = Column("output"), Column("unit"), *(Column(name, unit, "each") for name, unit in
                (("stroke", ""), ("forth", way), ("back", way), ("time ratio", ""), ("imbalance", DEGREES)))  # fmt: skip
-    yield TableBlock(columns, tuple(rows))
+    yield TableBlock(columns, tuple(rows), figures=tuple(figures))
 
 
 def _pieces(found: Characteristics) -> Iterator[Block]:
@@ -77,61 +81,25 @@ def _pieces(found: Characteristics) -> Iterator[Block]:
     for one in found.outputs:
         for piece in one.pieces if len(one.pieces) > 1 else ():
             (name, begin), end = next(iter(piece.begin.items())), next(iter(piece.end.values()))
-            way = f"from {name} {written(_shown(begin))} to {written(_shown(end))} {_unit(end)}".rstrip()
-            ends = f"{written(_shown(piece.least))} to {written(_shown(piece.greatest))} {_unit(piece.least)}".rstrip()
-            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {written(_shown(piece.stroke))}.")
+            way = f"from {name} {written(shown(begin))} to {written(shown(end))} {unit(end)}".rstrip()
+            ends = f"{written(shown(piece.least))} to {written(shown(piece.greatest))} {unit(piece.least)}".rstrip()
+            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {written(shown(piece.stroke))}.")
 
 
 def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
     """Where outputs turn back, and where the driver cannot go on."""
     place = sample.places[0]
-    rows = [(one.name, _unit(point.value), _number(point.value), _at(point)) for one in found.outputs
-            for point in one.dead_points]  # fmt: skip
+    points = [(one, point) for one in found.outputs for point in one.dead_points]
+    rows = [(one.name, unit(point.value), number_of(point.value), at_of(point)) for one, point in points]
     if rows:
-        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), _place(sample, "at")
-        yield TableBlock(columns, tuple(rows))
+        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), place_column(sample, "at")
+        figures = tuple((DEAD, *one.output.names[:2]) for one, _ in points)
+        yield TableBlock(columns, tuple(rows), figures=figures)
     for limit in found.dead_points:
-        told = f"{place.name} {written(_first(limit.at))} {place.unit}".rstrip()
-        values = [f"{name} {written(_shown(value))} {_unit(value)}".rstrip() for name, value in limit.values.items()]
+        told = f"{place.name} {written(first(limit.at))} {place.unit}".rstrip()
+        values = [f"{name} {written(shown(value))} {unit(value)}".rstrip() for name, value in limit.values.items()]
         reason = f", where {limit.reason}" if limit.reason else ""
         yield Paragraph(f"A dead point of the driver is at {told}{reason}{': ' + listed(values) if values else ''}.")
-
-
-def _ranges(sample: Sample, found: Characteristics, told: Sequence[str]) -> Iterator[Block]:
-    """Rates, transmission, pressure angles, Coriolis accelerations and ratios, from the least to the greatest."""
-    known = {*told, *(f"{name}.{LENGTH}" for name in told)}
-    rows = [_range(name, one) for name, one in _named_ranges(found) if name not in known]
-    for ratio in found.advantages:
-        least, greatest = ratio.least, ratio.greatest
-        most = (NO_LIMIT, None) if greatest is None else (abs(greatest.number), _at(greatest))
-        rows.append((f"|{ratio.owner}.{ADVANTAGE}|", least.value.unit, abs(least.number), _at(least), *most))
-    if not rows:
-        return
-    ends = Column("least", style="each"), _place(sample, "at"), Column("greatest", style="each"), _place(sample, "at")
-    yield TableBlock((Column("quantity"), Column("unit"), *ends), tuple(rows), keys=1)
-
-
-def _named_ranges(found: Characteristics) -> Iterator[tuple[str, Range]]:
-    for one in found.outputs:
-        for name in (one.output.rate, one.output.second):
-            if name in one.ranges:
-                yield name, one.ranges[name]
-    yield from ((one.name, one.range) for one in found.groups)
-    yield from found.pressure_angles.items()
-    yield from found.coriolis.items()
-    yield from ((f"{one.owner}.{VELOCITY_RATIO}", one.ratio) for one in found.advantages)
-
-
-def _range(name: str, one: Range) -> tuple[Cell, ...]:
-    least, greatest = one.least, one.greatest
-    size = max(abs(least.number), abs(greatest.number))
-    floor = FLOOR * size if np.isfinite(size) else 0.0
-    far = greatest.number - least.number
-    if one.is_constant or far <= floor:
-        value = 0.0 if far > floor else _number(least.value)  # what varies by rounding alone is zero
-        return name, _unit(least.value), value, "always", value, "always"
-    low, high = (0.0 if abs(end.number) <= floor else _number(end.value) for end in (least, greatest))
-    return name, _unit(least.value), low, _at(least), high, _at(greatest)
 
 
 def _dwells(found: Characteristics) -> Iterator[Block]:
@@ -141,9 +109,9 @@ def _dwells(found: Characteristics) -> Iterator[Block]:
             far = LONG * (one.motion.inputs.poses - 1)
             for dwell in (dwell for dwell in one.dwells if dwell.poses >= far):
                 (name, begin), (_, end) = next(iter(dwell.begin.items())), next(iter(dwell.end.items()))
-                way = f"from {name} {written(_shown(begin))} to {written(_shown(end))} {_unit(begin)}".rstrip()
-                span = f"{written(_shown(dwell.span))} {_unit(dwell.span)}".rstrip()
-                value = f"{written(_shown(dwell.value))} {_unit(dwell.value)}".rstrip()
+                way = f"from {name} {written(shown(begin))} to {written(shown(end))} {unit(begin)}".rstrip()
+                span = f"{written(shown(dwell.span))} {unit(dwell.span)}".rstrip()
+                value = f"{written(shown(dwell.value))} {unit(dwell.value)}".rstrip()
                 yield Paragraph(f"{one.name} dwells at {value} within {one.dwell:.3g} of its stroke {way}, for {span}.")
 
 
@@ -191,30 +159,3 @@ def _full_turns(found: Characteristics) -> Iterator[Block]:
     if 0 < len(turning) <= MOST_LOOPS:
         others = "" if len(turning) == len(found.full_turns) else "; no other link"
         yield Paragraph(f"Full turns over the cycle: {listed(turning)}{others}.")
-
-
-def _place(sample: Sample, word: str) -> Column:
-    place, values = sample.places
-    floor = NEARLY * float(np.max(np.abs(values), initial=0.0))
-    return Column(f"{word} {place.name}", place.unit, "each", floor, follows=True)
-
-
-def _at(figure: PlacedFigure) -> float:
-    """Where a figure is: the time, the driver's value, or the number of the pose where several drivers move."""
-    return figure.place if len(figure.at) > 1 and TIME not in figure.at else _first(figure.at)
-
-
-def _first(at: Mapping[str, Quantity]) -> float:
-    return _shown(next(iter(at.values())))
-
-
-def _shown(one: Quantity) -> float:
-    return float(one.shown.values)
-
-
-def _number(one: Quantity | None) -> float | None:
-    return None if one is None else _shown(one)
-
-
-def _unit(one: Quantity) -> str:
-    return DEGREES if one.unit == RADIANS else one.unit

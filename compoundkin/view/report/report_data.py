@@ -59,12 +59,14 @@ class TableBlock:
     """Rows of cells. The first `keys` columns are repeated where a table is split for its width.
 
     `shown` are the indices of the rows that a reader needs, where those are not all: the JSON report has all.
+    `figures` tell for each row which figure of the motion it has, where that is known: a live page tells it anew.
     """
 
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
     keys: int = 0
     shown: tuple[int, ...] | None = None
+    figures: tuple[tuple[str, ...], ...] = ()
 
     @property
     def shown_rows(self) -> tuple[tuple[Cell, ...], ...]:

@@ -23,12 +23,15 @@
     return element;
   };
 
-  // --- extremes that the page tells: lasting, found between the poses ---------------------------------------------------
-  const cell = (name) => document.querySelector(`[data-figure="${CSS.escape(name)}"]`);
-  const told = (name) => ["least", "greatest"].flatMap((end) => {
-    const [y, x] = [`${name}.${end}`, `${name}.${end} at`].map(cell).map((one) => one && Number(one.dataset.sort ?? one.textContent));
-    return known && Number.isFinite(x) && Number.isFinite(y) && !cell(`${name}.${end}`).closest(".behind") ? [{ x, y }] : [];
-  });
+  // --- extremes that the page tells, found between the poses: those of the design it was made of -----------------------
+  const extremes = new Map([...document.querySelectorAll("tr[data-figure]")].flatMap((row) => {
+    const [kind, name] = JSON.parse(row.dataset.figure);
+    const [low, , high] = [...row.cells].slice(-4), ends = [low, high].map((cell) => {
+      const [y, x] = [cell, cell.nextElementSibling].map((one) => Number(one.dataset.sort ?? one.textContent));
+      return { x, y };
+    });
+    return kind === "range" ? [[name, ends.filter(({ x, y }) => known && Number.isFinite(x) && Number.isFinite(y))]] : [];
+  }));
 
   // --- one plot -------------------------------------------------------------------------------------------------------
   class Panel {
@@ -62,12 +65,12 @@
       const { parts, slopes, floor } = this.quantity;
       const ordered = (values) => values && order.map((k) => values[k]);
       const isOwn = !player.design?.isChanged;
-      const curve = (part, extremes) => new page.Curve(xs, ordered(parts[part]), {
-        slopes: ordered(slopes[part]), jumps: axis.jumps(this.name, part, isOwn), floor, extremes,
+      const curve = (part, ends) => new page.Curve(xs, ordered(parts[part]), {
+        slopes: ordered(slopes[part]), jumps: axis.jumps(this.name, part, isOwn), floor, extremes: ends,
       });
       this.curves = Object.keys(parts).map((part) => {
-        const extremes = told(part ? `${this.name}.${part}` : this.name);
-        return part === "length" ? page.Curve.ofLength(curve("x", []), curve("y", []), extremes, floor) : curve(part, extremes);
+        const ends = (isOwn && extremes.get(part ? `${this.name}.${part}` : this.name)) || [];
+        return part === "length" ? page.Curve.ofLength(curve("x", []), curve("y", []), ends, floor) : curve(part, ends);
       });
       this.rows = Object.values(parts).map((values) => order.map((k) => (Number.isFinite(values[k]) ? values[k] : null)));
       if (isOwn) this.before = this.curves;
@@ -210,6 +213,7 @@
       for (const { label, called, part } of this.labels) label.textContent = `${called}${page.withUnit(parts[part][k], unit)}`;
     }
     refresh() {
+      this.isBehind = false;
       this.read();
       if (this.log && !this.mayLog) return this.setLog(false);
       this.plot.setData([xs, ...this.rows], false);
@@ -233,11 +237,20 @@
   const panels = [];
   const add = (name, removable) => {
     panels.push(new Panel(name, removable));
+    seen.observe(panels.at(-1).figure);
     return panels.at(-1);
   };
-  for (const output of player.outputs) add(output.name, false);
   const follow = () => panels.forEach((panel) => panel.follow(player.pose));
   player.listeners.push(follow);
+  // a changed design is drawn at once where it is seen, elsewhere when it comes into sight
+  const seen = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => {
+    const panel = panels.find(({ figure }) => figure === target);
+    if (!panel) return;
+    panel.isSeen = isIntersecting;
+    if (isIntersecting && panel.isBehind) panel.refresh();
+  }), { rootMargin: "20%" });
+  player.design?.on("change", () => panels.forEach((panel) => (panel.isSeen ? panel.refresh() : (panel.isBehind = true))));
+  for (const output of player.outputs) add(output.name, false);
   const button = place.querySelector(".add");
   if (button) {
     button.addEventListener("click", () => add(place.querySelector(".quantity").value, true).figure.scrollIntoView({ block: "nearest" }));
@@ -251,7 +264,13 @@
     follow();
   });
   fitted.observe(place);
-  const paint = () => { panels.forEach(({ plot }) => plot.redraw()); follow(); };
+  const paint = () => {
+    for (const panel of panels) {
+      if (panel.isBehind) panel.refresh();
+      panel.plot.redraw();
+    }
+    follow();
+  };
   document.addEventListener("compoundkin:theme", paint);
   matchMedia("print").addEventListener("change", paint);
   addEventListener("beforeprint", paint);

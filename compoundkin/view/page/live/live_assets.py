@@ -22,6 +22,8 @@ SCRIPTS = (
     "live/ghost.js",
     "live/history.js",
 )
+# After those that draw the plots: what makes plots and tables follow.
+FIGURES = ("live/course.js", "live/figures.js")
 STYLES = ("live/live.css",)
 # What a page with a panel of dimensions has after all others, which hear of the dimensions in its address.
 PANEL_SCRIPTS = (

@@ -1,0 +1,259 @@
+// The course of a quantity along a motion, between the poses too: the mechanism's program is asked wherever it takes.
+(() => {
+  "use strict";
+  const page = window.compoundkin;
+  const TURN = 2 * Math.PI;
+  const ROUNDING = 1e-12; // values nearer than this part of what is natural for them are one
+  const ADDED = 0.5; // second differences by which a curve may rise beyond a pose
+  const ASIDE = 1e-9; // from a jump values are taken so far away, of a place
+  const GOLDEN = (3 - Math.sqrt(5)) / 2;
+  const NEAR = 3e-8; // how near a highest place is searched, of a place: nearer, values differ by rounding alone
+  const STEPS = 4, WIDE = 1e-5; // to a zero of a length, and for its slopes
+  const NEAREST = 1e-11; // of a place: rounding
+  const SEARCHES = 60, HALVINGS = 48;
+  const NEAR_LIMIT = [1e-3, 1e-4], GROWTH = 3; // rates that grow so between, by the root of the distance, have no limit
+  const SAME_POSE = 1e-9; // of the size, or radians
+
+  // the least value of a function between two places, by R. P. Brent (1973), chapter 5
+  const least = (f, low, high) => {
+    let [a, b] = [low, high], x = a + GOLDEN * (b - a), w = x, v = x, fx = f(x), fw = fx, fv = fx, step = 0, before = 0;
+    for (let n = 0; n < SEARCHES; n++) {
+      const middle = (a + b) / 2, near = NEAR;
+      if (Math.abs(x - middle) <= 2 * near - (b - a) / 2) break;
+      let golden = true;
+      if (Math.abs(before) > near) {
+        const r = (x - w) * (fx - fv), q = (x - v) * (fx - fw);
+        let p = (x - v) * q - (x - w) * r, d = 2 * (q - r);
+        if (d > 0) p = -p;
+        d = Math.abs(d);
+        if (Math.abs(p) < Math.abs(0.5 * d * before) && p > d * (a - x) && p < d * (b - x)) {
+          [before, step] = [step, p / d];
+          if (x + step - a < 2 * near || b - x - step < 2 * near) step = x < middle ? near : -near;
+          golden = false;
+        }
+      }
+      if (golden) { before = x < middle ? b - x : a - x; step = GOLDEN * before; }
+      const u = x + (Math.abs(step) >= near ? step : Math.sign(step) * near), fu = f(u);
+      if (fu <= fx) {
+        if (u < x) b = x; else a = x;
+        [v, fv, w, fw, x, fx] = [w, fw, x, fx, u, fu];
+      } else {
+        if (u < x) a = u; else b = u;
+        if (fu <= fw || w === x) [v, fv, w, fw] = [w, fw, u, fu];
+        else if (fu <= fv || v === x || v === w) [v, fv] = [u, fu];
+      }
+    }
+    return x;
+  };
+
+  // One design: what its drivers do between the poses, and where it can be assembled.
+  class Courses {
+    constructor(design) {
+      const { path, numbers, solved, player } = design;
+      Object.assign(this, { path, numbers, solved, player, last: player.poses - 1, known: new Map() });
+      this.time = player.along.name === "time" ? player.along.values : null;
+      this.wrapped = Object.fromEntries(path.program.outputs.map(({ name, wrapped }) => [name, wrapped]));
+      this.jumps = [...new Set((player.data.plots?.jumps ?? []).map(({ place }) => Math.round(place / (2 * ASIDE)) * 2 * ASIDE))];
+    }
+    // what is natural for a length or an angle, or a rate of it
+    scale(kind, order) {
+      const known = this.player.data.plots?.rounding[kind];
+      return known ? known[order] / ROUNDING : 1;
+    }
+    // what the drivers do at a place: between poses in proportion; in time by a polynomial with their rates
+    drives(s) {
+      const k = Math.min(Math.max(Math.floor(s), 0), this.last - 1), t = s - k;
+      return this.path.drives.map(([value, rate, second]) => {
+        if (!this.time) return [value, rate, second].map((row) => row[k] + t * (row[k + 1] - row[k]));
+        return quintic(this.time[k + 1] - this.time[k], t, [value, rate, second].map((row) => [row[k], row[k + 1]]));
+      });
+    }
+    at(s) {
+      const k = Math.round(Math.min(Math.max(s, 0), this.last));
+      return this.path.at(this.numbers, this.drives(s), this.solved, k);
+    }
+    isAssembled(s) {
+      return Boolean(this.at(s).assembled);
+    }
+    // where it stops being assembled between a pose and one beside it
+    limit(good, bad) {
+      for (let n = 0; n < HALVINGS; n++) {
+        const middle = (good + bad) / 2;
+        if (this.isAssembled(middle)) good = middle; else bad = middle;
+      }
+      return good;
+    }
+    // stretches on which everything is smooth: [from, to, pose or -1 at both, whether it ends there]
+    get stretches() {
+      if (this.found) return this.found;
+      const { assembled } = this.solved, found = [];
+      for (let k = 0; k <= this.last; k++) {
+        if (!assembled[k]) continue;
+        if (k > 0 && !assembled[k - 1]) found.push({ low: this.limit(k, k - 1), high: k, ends: [true, false] });
+        if (k < this.last && assembled[k + 1]) found.push({ low: k, high: k + 1, ends: [false, false] });
+        if (k < this.last && !assembled[k + 1]) found.push({ low: k, high: this.limit(k, k + 1), ends: [false, true] });
+      }
+      for (const jump of this.jumps) {
+        for (const one of found.filter(({ low, high }) => low <= jump + ASIDE && jump - ASIDE <= high)) {
+          const after = { low: jump + ASIDE, high: one.high, ends: [false, one.ends[1]] };
+          [one.high, one.ends] = [Math.min(one.high, jump - ASIDE), [one.ends[0], one.high < jump && one.ends[1]]];
+          if (after.high - after.low > ASIDE) found.push(after);
+        }
+      }
+      return (this.found = found.filter(({ low, high }) => high > low).sort((a, b) => a.low - b.low));
+    }
+    get closes() {
+      const { links, assembled } = this.solved, { last } = this, size = this.scale("length", 0);
+      const turned = (angle) => Math.abs(Math.sin((angle[last] - angle[0]) / 2));
+      return last > 1 && Boolean(assembled[0] && assembled[last]) && links.every(({ x, y, angle }) =>
+        Math.hypot(x[last] - x[0], y[last] - y[0]) <= 100 * SAME_POSE * size && turned(angle) <= 100 * SAME_POSE);
+    }
+    // a quantity by its name, a part of a vector too; null where the program does not tell it
+    of(name) {
+      if (!this.known.has(name)) this.known.set(name, this.named(name));
+      return this.known.get(name);
+    }
+    named(name) {
+      const { outputs } = this.solved, dot = name.lastIndexOf(".");
+      if (outputs[name] && "" in outputs[name]) return new Course(this, name, "");
+      const [vector, part] = [name.slice(0, dot), name.slice(dot + 1)];
+      return outputs[vector] && ("x" in outputs[vector]) && ["x", "y", "length"].includes(part) ? new Course(this, vector, part) : null;
+    }
+  }
+
+  // value, rate and second at t of an interval in time, from those at both ends
+  const quintic = (h, t, [[a, b], [da, db], [dda, ddb]]) => {
+    const [p, q, r] = [da * h, dda * h * h, b - a], [dp, dq] = [db * h, ddb * h * h];
+    const c3 = 10 * r - 6 * p - 4 * dp - 1.5 * q + 0.5 * dq, c4 = -15 * r + 8 * p + 7 * dp + 1.5 * q - dq, c5 = 6 * r - 3 * (p + dp) - 0.5 * (q - dq);
+    return [
+      a + t * (p + t * (q / 2 + t * (c3 + t * (c4 + t * c5)))),
+      (p + t * (q + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / h,
+      (q + t * (6 * c3 + t * (12 * c4 + t * 20 * c5))) / (h * h),
+    ];
+  };
+
+  class Course {
+    constructor(whole, name, part) {
+      Object.assign(this, { whole, name, part });
+      const parts = whole.solved.outputs[name];
+      this.isLength = part === "length";
+      this.values = this.isLength ? parts.x.map((x, k) => Math.hypot(x, parts.y[k])) : parts[part];
+    }
+    at(s) {
+      const { whole, part } = this, k = Math.round(s);
+      if (k === s) return this.values[k];
+      const told = whole.at(s).outputs[this.name], value = this.isLength ? Math.hypot(told.x, told.y) : told[part];
+      if (!whole.wrapped[this.name]) return value;
+      const near = this.values[k] === this.values[k] ? k : k > s ? Math.floor(s) : Math.ceil(s);
+      return value + TURN * Math.round((this.values[near] - value) / TURN);
+    }
+    // the greatest of the values times a sign, and where it is first taken; `scale` tells what is rounding
+    greatest(sign, scale) {
+      const { stretches } = this.whole, { values } = this, offers = [];
+      const bend = (k) => {
+        const j = Math.min(Math.max(k, 1), this.whole.last - 1);
+        return Math.abs(values[j - 1] - 2 * values[j] + values[j + 1]);
+      };
+      // not known beside a place where it stops being assembled
+      const rise = (low, high) => {
+        const known = [Math.floor(low), Math.ceil(high)].map(bend).filter((one) => one === one);
+        return known.length ? ADDED * Math.max(...known) : Infinity;
+      };
+      const whole = stretches.map(({ low, high, ends }) => {
+        const [a, b] = [low, high].map((s) => sign * this.at(s));
+        return { low, high, values: [a, b], bound: ends[0] || ends[1] ? Infinity : Math.max(a, b) + rise(low, high) };
+      });
+      let best = -Infinity, size = scale;
+      for (const { values: [a, b] } of whole) {
+        best = Math.max(best, a === a ? a : best, b === b ? b : best);
+        for (const one of [a, b]) if (Number.isFinite(one)) size = Math.max(size, Math.abs(one));
+      }
+      const slack = ROUNDING * size;
+      for (const { low, high, values: [a, b], bound } of whole) {
+        offers.push({ at: low, value: a }, { at: high, value: b });
+        if (!(bound >= best) || (a >= best - slack && b >= best - slack)) continue;
+        const parts = [0, 0.25, 0.5, 0.75, 1].map((t) => low + t * (high - low));
+        const samples = parts.map((s, k) => (k === 0 ? a : k === 4 ? b : sign * this.at(s)));
+        const top = samples.reduce((most, value, k) => (value > samples[most] || samples[most] !== samples[most] ? k : most), 0);
+        // highest at an end, from where it falls
+        const inward = top === 0 ? low + WIDE : top === 4 ? high - WIDE : NaN;
+        if (inward === inward && !(sign * this.at(inward) > samples[top])) continue;
+        // squares of lengths are smooth where they pass zero
+        const goal = (s) => { const value = sign * this.at(s); return this.isLength ? -sign * value * value : -value; };
+        const at = least(goal, parts[Math.max(0, top - 1)], parts[Math.min(4, top + 1)]);
+        offers.push(this.isLength && sign < 0 ? this.zero(at, low, high) : { at, value: sign * this.at(at) });
+      }
+      for (const one of offers) if (one.value > best) best = one.value;
+      const first = offers.filter(({ value }) => value >= best - slack).reduce((a, b) => (b.at < a.at ? b : a), { at: Infinity });
+      return { value: sign * best, at: first.at, slack };
+    }
+    // the least length near a place: where it is zero the steps of Gauss and Newton lead there
+    zero(start, low, high) {
+      let at = start, value = this.at(at);
+      for (let n = 0; n < STEPS; n++) {
+        const [before, here, after] = [at - WIDE, at, at + WIDE].map((s) => this.whole.at(s).outputs[this.name]);
+        const [dx, dy] = ["x", "y"].map((part) => (after[part] - before[part]) / (2 * WIDE));
+        const next = Math.min(Math.max(at - (here.x * dx + here.y * dy) / (dx * dx + dy * dy), low), high), found = this.at(next);
+        if (!(found < value)) break;
+        [at, value] = [next, found];
+      }
+      return { at, value: -value };
+    }
+    // both ends of its range; `order` of what is a rate: it may have no limit where the mechanism stops being assembled
+    range(order, scale) {
+      return (this.ranged ??= this.whole.stretches.length ? this.searched(order, scale) : { none: true });
+    }
+    searched(order, scale) {
+      const [low, high] = [-1, 1].map((sign) => this.greatest(sign, scale));
+      const isConstant = high.value - low.value <= Math.max(low.slack, high.slack);
+      if (order > 0) this.withoutLimit(low, high);
+      return { low, high, isConstant, slack: high.slack };
+    }
+    withoutLimit(low, high) {
+      for (const { low: a, high: b, ends } of this.whole.stretches) {
+        ends.forEach((ends, side) => {
+          if (!ends) return;
+          const [first, second] = NEAR_LIMIT.map((t) => this.at(side ? b - t * t * (b - a) : a + t * t * (b - a)));
+          if (!(Math.abs(second) > GROWTH * Math.abs(first) + high.slack)) return;
+          Object.assign(second > 0 ? high : low, { value: second > 0 ? Infinity : -Infinity, at: side ? b : a });
+        });
+      }
+    }
+    // where it changes its sign, in order
+    get crossings() {
+      return (this.crossed ??= this.changed());
+    }
+    changed() {
+      const { values, whole } = this, found = [], { last } = whole;
+      const most = values.reduce((all, value) => Math.max(all, Math.abs(value) || 0), 0), zero = ROUNDING * 1e3 * most;
+      const sign = (value) => (Math.abs(value) <= zero ? 0 : Math.sign(value));
+      for (const { low, high } of whole.stretches) {
+        let [a, b] = [low, high], [fa, fb] = [this.at(a), this.at(b)];
+        if (sign(fa) * sign(fb) >= 0) continue;
+        found.push(root((s) => this.at(s), a, b, fa, fb));
+      }
+      for (let k = 0; k <= last; k++) {
+        if (sign(values[k])) continue;
+        const seam = whole.closes && (k === 0 || k === last);
+        if (seam && k === last) continue;
+        const [before, after] = seam ? [values[last - 1], values[1]] : [values[k - 1], values[k + 1]];
+        if (sign(before) * sign(after) < 0) found.push(k);
+      }
+      return found.sort((a, b) => a - b);
+    }
+  }
+
+  // where a function is zero between two places of different sign, by the Illinois method
+  const root = (f, a, b, fa, fb) => {
+    for (let n = 0; n < SEARCHES; n++) {
+      const c = (a * fb - b * fa) / (fb - fa), fc = f(c);
+      if (fc === 0 || Math.abs(c - b) < NEAREST) return c;
+      if (fc * fb < 0) [a, fa] = [b, fb];
+      else fa /= 2;
+      [b, fb] = [c, fc];
+    }
+    return b;
+  };
+
+  page.Courses = Courses;
+})();
