@@ -79,8 +79,9 @@ class Diagnosis:
 
     @cached_property
     def stress(self) -> Array:
-        """The states of self-stress, at a pose that is not special; none where all rows are independent."""
+        """The states of self-stress, at a pose that is not special."""
         if self.rank == len(self.rows):
+            # independent rows have none
             return np.zeros((self.rank, 0))
         return stresses(self.equations, self.motion.state)
 
