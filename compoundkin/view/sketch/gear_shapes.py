@@ -16,7 +16,7 @@ from compoundkin.view.sketch.slide_shapes import BEYOND, Laid, Layer, Painter
 from compoundkin.view.sketch.stroke_row import StrokeRow
 
 # Teeth nearer than this to each other are not drawn one by one.
-CLOSEST = 7.0
+CLOSEST = 5.0
 # A tooth reaches so far beyond its pitch circle or line, and so far within it.
 TOOTH = 3.0
 # How thick the rim of a ring gear is behind its teeth, and a rack or flat face.

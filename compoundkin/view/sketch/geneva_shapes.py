@@ -49,8 +49,10 @@ class Geneva(NamedTuple):
 
 def geneva(scene: Scene, seen: Seen) -> Geneva | None:
     """Return the Geneva wheel whose slot a groove is. None where its dimensions are not those of one."""
+    if not isinstance(seen.mark, Groove) or len(seen.mark.line) != 2 or FRAME in seen.members[:2]:
+        return None
     stud = next((s for s in scene.seen if s.pair is seen.pair and isinstance(s.mark, Stud)), None)
-    if not isinstance(seen.mark, Groove) or stud is None or len(seen.mark.line) != 2 or FRAME in seen.members[:2]:
+    if stud is None:
         return None
     wheel, crank = seen.members[seen.mark.member], stud.members[stud.mark.member]  # type: ignore[union-attr]
     axes = [_pivot(scene, link) for link in (wheel, crank)]

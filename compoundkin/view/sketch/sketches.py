@@ -36,6 +36,7 @@ from compoundkin.view.sketch.vectors import (
     vector_shapes,
     wanted,
 )
+from compoundkin.view.sketch.wedge_shapes import slopes
 
 # A place that would be good to see, such as an instant centre, makes the picture larger by at most this part of it.
 STRETCH = 0.5
@@ -81,7 +82,7 @@ def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
     behind = racks(painter.scene)
     whole = {found.wheel for found in genevas(painter.scene)} if painter.only is None else set()
     for name in (link for link in painter.scene.mechanism.links if painter.shows(link) and link not in whole):
-        shapes = body(painter.scene, painter.window, name)
+        shapes = body(painter.scene, painter.window, name, slopes(painter, name))
         flat = Layer.BEHIND if name in behind else Layer.BAR
         laid += [Laid(Layer.PLATE if isinstance(shape, Polygon) else flat, shape, name) for shape in shapes]
     laid += [*pins(painter), *drives(painter)] if grounded else []

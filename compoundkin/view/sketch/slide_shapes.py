@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding
-from compoundkin.view.sketch.block_sizes import block_size
+from compoundkin.view.sketch.block_sizes import block_size, share_of_block
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.own_discs import racks
 from compoundkin.view.sketch.picture import Window
@@ -104,20 +104,19 @@ class Painter:
         return frozenset(step.pair.name for step in self.scene.driven)
 
     def is_cylinder(self, seen: Seen) -> bool:
-        """Tell whether a slide is drawn as a cylinder. It is one, or driven between two moving links."""
-        if isinstance(seen.mark, Sliding) and seen.mark.is_cylinder:
-            return True
-        return FRAME not in seen.members and seen.pair.name in self.driven
+        """Tell whether a slide is drawn as a cylinder. It is one, or driven between moving links and never at zero."""
+        mark, is_driven = seen.mark, FRAME not in seen.members and seen.pair.name in self.driven
+        return isinstance(mark, Sliding) and (mark.is_cylinder or (is_driven and mark.low * mark.high > 0.0))
 
     def is_rod(self, seen: Seen) -> bool:
         """Tell whether a slide is drawn as a rod. The link with its guide has but one point then."""
         guide, block = (len(self.scene.points[name]) for name in seen.members)
         return seen.members[0] != FRAME and guide == 1 and block > 1
 
-    def block_at(self, link: str, middle: complex, along: complex) -> Laid:
-        """Draw a block."""
+    def block_at(self, link: str, middle: complex, along: complex, share: float = 1.0) -> Laid:
+        """Draw a block, or so much of one."""
         style = "pin frame" if link == FRAME else f"pin {style_of('ring', self.scene.groups[link])}"
-        return Laid(Layer.BLOCK, Polygon(box(middle, along, *self.block), style), link)
+        return Laid(Layer.BLOCK, Polygon(box(middle, along, *(share * side for side in self.block)), style), link)
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
         """Draw a bar from a place to its link's nearest point. It is drawn where the place is none of them."""
@@ -141,7 +140,8 @@ def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
     else:
         yield from _guide(painter, guide, mark)
         if block not in racks(painter.scene):  # which slide without a block
-            yield painter.block_at(block, painter.place(block, mark.block), painter.along(block, mark.turn))
+            middle, e = painter.place(block, mark.block), painter.along(block, mark.turn)
+            yield painter.block_at(block, middle, e, share_of_block(painter.scene, seen))
 
 
 def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:

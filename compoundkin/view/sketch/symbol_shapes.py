@@ -12,9 +12,10 @@ from compoundkin.view.sketch.cylinder_shapes import cylinder, is_piston, piston
 from compoundkin.view.sketch.gear_shapes import track, wheel
 from compoundkin.view.sketch.geneva_shapes import geneva, geneva_wheel
 from compoundkin.view.sketch.scene import Seen
-from compoundkin.view.sketch.shapes import CircleShape, Polyline, direction
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, direction
 from compoundkin.view.sketch.sketch_style import PIN, STUD
 from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter, sliding, stops
+from compoundkin.view.sketch.wedge_shapes import plate_around
 
 # A groove ends so far beyond the middle of a pin at its end.
 TRACK = 7.0
@@ -61,12 +62,15 @@ def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
     line = painter.line(link, mark.line)
     # a groove of a bar covers it; one of the frame is behind all bars
     layer = Layer.FRAME if link == FRAME else Layer.GROOVE
+    plate = plate_around(painter, link, line) if link != FRAME and len(mark.line) > 2 else ()
+    if plate:
+        yield Laid(Layer.WHEEL, Polygon(plate, painter.style("plate", link)), link)
     yield Laid(layer, Polyline(line, painter.style("track", link)), link)
     yield Laid(layer, Polyline(line, "knock"), link)
     ends = [place + TRACK * direction(place - inner) for place, inner in ((line[0], line[1]), (line[-1], line[-2]))]
     yield from stops(painter, link, (ends[0], line[0], line[-1], ends[1]), mark.stops, layer)
     own = [painter.place(link, p) for p in painter.scene.points[link].values()]
-    if link != FRAME and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
+    if link != FRAME and not plate and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
 
 

@@ -1,12 +1,19 @@
-"""Sizes and windows of sketches: blocks no larger than what carries them, points that only define a guide."""
+"""Things drawn as what they are, in proportion: blocks, racks, Geneva wheels, pistons, followers, guide points."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.view.sketch.shapes import Polygon, leaves
+from compoundkin.files import shipped_mechanisms
+from compoundkin.view.sketch.cylinder_shapes import is_piston
+from compoundkin.view.sketch.geneva_shapes import HALF, disc_line, genevas, wheel_line
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, leaves
+from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import BLOCK
+from compoundkin.view.sketch.sketches import in_layers, window_on
+from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter
 
 
 def slider_crank(through: complex, crank: float = 0.2) -> ck.Mechanism:
@@ -24,6 +31,8 @@ def slider_crank(through: complex, crank: float = 0.2) -> ck.Mechanism:
 def test_a_point_that_only_defines_a_guide_does_not_enlarge_the_window() -> None:
     near, far = (ck.draw(slider_crank(complex(x, 0.1)), at=0.7) for x in (-0.9, 40.0))
     assert (near.width, near.height) == (far.width, far.height)
+    assert near.window is not None
+    assert far.window is not None
     assert near.window.scale == pytest.approx(far.window.scale, rel=1e-9)
     assert "G" not in {getattr(shape, "text", "") for shape in leaves(near.shapes)}
     # beside what is drawn of its guide it is shown
@@ -47,5 +56,91 @@ def test_a_block_is_in_proportion_to_the_links_that_carry_it(crank: float) -> No
     length, width = sorted((abs(block.points[1] - block.points[0]), abs(block.points[2] - block.points[1])))[::-1]
     assert length / width == pytest.approx(BLOCK[0] / BLOCK[1])
     assert 0.7 * BLOCK[0] - 1e-9 <= length <= BLOCK[0] + 1e-9
+    assert picture.window is not None
     # not longer than the crank that carries it, where that leaves room for the pin in it
     assert length <= max(crank * picture.window.scale, 0.7 * BLOCK[0]) + 1e-9
+
+
+# --- things drawn as what they are -----------------------------------------------------------------------
+
+
+def laid_of(name: str) -> list[Laid]:
+    scene = scene_of(shipped_mechanisms.load_named(name), None, None, 0)
+    return in_layers(Painter(scene, window_on(scene)))
+
+
+def test_a_rack_is_behind_its_pinion_and_slides_without_a_block() -> None:
+    laid = laid_of("rack-and-pinion-steering")
+    last_of_rack = max(k for k, one in enumerate(laid) if one.link == "bar" and one.layer < Layer.PIN)
+    wheel = next(k for k, one in enumerate(laid) if one.link == "pinion" and isinstance(one.shape, CircleShape))
+    assert last_of_rack < wheel
+    assert not [one for one in laid if one.layer == Layer.BLOCK]
+
+
+@pytest.mark.parametrize("slots", [3, 4, 6, 8])
+def test_a_geneva_wheel_has_the_slots_and_arcs_that_its_dimensions_tell(slots: int) -> None:
+    crank, wheel = np.sin(np.pi / slots), np.cos(np.pi / slots)
+    mechanism = ck.Mechanism(
+        "Geneva",
+        ck.link("frame", O=(0, 0), C=(1, 0)),
+        ck.link("crank", O=(0, 0), A=(crank, 0)),
+        ck.link("wheel", C=(0, 0), E=(-wheel, 0)),
+        ck.slot("crank", on="wheel", at="A", through="C", angle=np.pi, reach=(0.9 * (1 - crank), "E")),
+        ck.drive("crank", values=np.linspace(-0.9, 0.9, 5) * (np.pi / 2 - np.pi / slots)),
+        ck.drawn(A=(crank, 0), E=(1 - wheel, 0)),
+    )
+    scene = scene_of(mechanism, None, 2, 0)
+    (found,) = genevas(scene)
+    assert found.slots == slots
+    scale = 300.0
+    line, around = wheel_line(found, scale), 2 * np.pi / slots
+    # the same after the turn of one slot, and round about as wide as its mouths say
+    turned = line * np.exp(1j * around)
+    assert max(min(abs(turned - p)) for p in line) < 1e-9
+    assert abs(line).max() == pytest.approx(wheel, rel=1e-9)
+    # where the crank locks it, its disc lies in an arc of the wheel and does not cut it
+    centres = np.exp(1j * (np.pi + around * (np.arange(slots) + 0.5)))
+    radius = abs(disc_line(found, scale)).max()
+    assert abs(line[None] - centres[:, None]).min(axis=1) == pytest.approx(np.full(slots, radius), rel=1e-9)
+    # the pin is in a slot at every pose: no edge of the wheel is nearer to it than half a slot's width
+    motion = ck.solve(mechanism)
+    pin = motion.points["A"].position - 1.0
+    own = pin * np.exp(-1j * motion.links["wheel"].angle)
+    assert min(abs(line - p).min() for p in own) * scale > 0.9 * HALF
+
+
+def test_pistons_are_what_is_called_so_and_never_leave_their_bores_on_the_side_of_the_head() -> None:
+    for name, count in (
+        ("v8-engine", 8),
+        ("slider-crank", 1),
+        ("atkinson-engine", 1),
+        ("hand-pump", 1),
+        ("toggle-press", 0),
+    ):
+        motion = ck.solve(shipped_mechanisms.load_named(name))
+        assert sum(map(is_piston, scene_of(motion, None, None, 0).seen)) == count
+    for sense, mechanism in ((1, "slider-crank"), (-1, "slider-crank-crossed")):
+        motion = ck.solve(shipped_mechanisms.load_named(mechanism))
+        for pose in (0, 17, 36):
+            picture = ck.draw(motion, pose=pose)
+            (body,) = [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style.startswith("pin ")]
+            bore = next(s for s in leaves(picture.shapes) if isinstance(s, Polyline) and len(s.points) == 4)
+            crown, head = (max(sense * p.real for p in s.points) for s in (body, bore))
+            assert head > crown + 5
+            assert max(p.imag for p in bore.points) > max(p.imag for p in body.points)
+
+
+def test_a_sliding_follower_has_a_stem_that_stays_in_its_bush() -> None:
+    motion = ck.solve(shipped_mechanisms.load_named("disc-cam-roller-program"))
+    for pose in (0, 20, 45):
+        picture = ck.draw(motion, pose=pose)
+        (rod,) = [s for s in leaves(picture.shapes) if isinstance(s, Polyline) and s.style == "bar1"]
+        bush = [
+            s for s in leaves(picture.shapes) if isinstance(s, Polyline) and s.style == "frame" and len(s.points) == 2
+        ]
+        walls = [p for s in bush for p in s.points if abs(p.real - rod.points[0].real) < 10]
+        assert len(walls) == 4
+        # y points down on paper
+        low, high = (pick(p.imag for p in rod.points) for pick in (max, min))
+        assert high < min(p.imag for p in walls) < max(p.imag for p in walls) < low
+    assert not [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style.startswith("pin ")]
