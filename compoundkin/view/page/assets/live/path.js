@@ -51,9 +51,12 @@
       this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
       this.states = new page.States(live, this.program);
-      this.states.units = live.dimensions.map(({ kind, value }) => (kind === "angle" ? 1 : kind === "ratio" ? Math.abs(value) : live.size));
-      this.states.single = this.one;
-      this.states.driven = (machine, k) => this.driven(machine, this.drives.map((values) => values.map((value) => value[k])));
+      const units = live.dimensions.map(({ kind, value }) => (kind === "angle" ? 1 : kind === "ratio" ? Math.abs(value) : live.size));
+      Object.assign(this.states, {
+        units, start: data.start, single: this.one,
+        drives: (k) => this.drives.map(([values]) => values[k]),
+        drive: (values) => values.forEach((value, index) => { this.one.rows[3 * index][0] = value; }),
+      });
       this.home = { numbers: this.own, values: live.states.map(({ own }) => unpacked(own, data.poses)), sides: null };
     }
     driven(machine, drives) {
@@ -63,7 +66,7 @@
     // the motion for dimensions; `near` is that of dimensions nearby. Without rates only positions are computed.
     solved(numbers, near = null, { rates = true } = {}) {
       const machine = this.whole, { links, outputs, ends } = this.program;
-      const states = this.states.any ? this.states.carried(machine, numbers, this.near(near)) : null;
+      const states = this.states.any ? this.states.carried(machine, numbers, this.near(near), this.home) : null;
       if (!states) machine.take(numbers);
       machine.run(states ? ends[0] : 0, rates ? ends[2] : ends[1]);
       const { failed, assembled } = this.closed(machine);

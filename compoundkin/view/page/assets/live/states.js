@@ -8,8 +8,12 @@
   const ROUNDS = 10; // Newton's steps, of which three are the rule
   const CLOSED = 1e-9; // the step after such a one reaches rounding
   const LEAP = 0.5; // what moves farther (parts of the size, radians) has left its configuration
+  const STRAY = 0.05; // so far from where it was led to, a pose may be of another branch: shorter steps are taken
+  const SHORTEST = 1 / 64; // of the way between two poses, or two designs
+  const UNEVEN = 0.02; // from pose to pose states go on as in the design before, but for this and the change
 
   const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
+  const between = (here, there, part) => (part === 1 ? there : here.map((value, k) => value + part * (there[k] - value)));
 
   class States {
     constructor(live, program) {
@@ -24,24 +28,27 @@
       return angle ? wrapped(here - there) : (here - there) / this.size;
     }
 
-    // brings the states of a design nearby to other dimensions, all poses at once, and leaves the machine with them
-    carried(machine, numbers, near) {
+    // the states for other dimensions, with the machine left at them: those of a design nearby, corrected at all poses
+    // at once. They are right where they agree with the pose at which everything starts, and go on evenly from pose to
+    // pose; otherwise they are followed from there.
+    carried(machine, numbers, near, home = null) {
       const values = near.values.map((row) => row.slice());
       const strides = this.corrected ? this.strides(numbers, near.numbers) : 1;
       for (let step = 1; step <= strides; step++) {
-        const part = step / strides;
-        machine.take(numbers.map((to, k) => (part === 1 ? to : near.numbers[k] + part * (to - near.numbers[k]))));
+        machine.take(between(near.numbers, numbers, step / strides));
         this.close(machine, values, near);
       }
-      if (this.corrected) this.march(machine, numbers, values, near);
+      if (this.corrected && home) this.settle(numbers, values, near, home);
       this.give(machine, values);
       machine.run(0, this.program.ends[0]);
       return { numbers: Float64Array.from(numbers), values, sides: this.sides.map((place) => machine.copy(place)) };
     }
     strides(numbers, before) {
-      let far = 0;
-      numbers.forEach((to, k) => { far = Math.max(far, Math.abs(to - before[k]) / (this.units[k] || 1)); });
-      return Math.min(STRIDES, Math.max(1, Math.ceil(far / STRIDE)));
+      return Math.min(STRIDES, Math.max(1, Math.ceil(this.far(numbers, before) / STRIDE)));
+    }
+    // the greatest change of a dimension, in parts of the size, radians, or parts of itself
+    far(numbers, before) {
+      return numbers.reduce((far, to, k) => Math.max(far, Math.abs(to - before[k]) / (this.units[k] || 1)), 0);
     }
     give(machine, values, k = null) {
       this.all.forEach(({ row }, index) => {
@@ -100,32 +107,65 @@
       return changed;
     }
 
-    // what was lost is looked for from the poses beside it, both ways along the motion
-    march(machine, numbers, values, near) {
-      if (!this.lost.includes(1) || !this.lost.includes(0)) return;
+    // follows the states from the pose where everything starts, unless they are right as they are
+    settle(numbers, values, near, home) {
+      const at = (rows, k) => rows.map((row) => row[k]);
+      const k = this.start;
+      this.drive(this.drives(k));
+      const begin = this.led(at(home.values, k), home, numbers) || this.led(at(near.values, k), near, numbers);
+      if (!begin) return;
+      const agrees = !this.lost.includes(1) && this.apart(begin, at(values, k)) < CLOSED * 10;
+      if (agrees && this.isEven(values, near, UNEVEN + this.far(numbers, near.numbers))) return;
       this.single.take(numbers);
-      const found = this.lost.map((lost) => 1 - lost);
-      for (const way of [1, -1]) {
-        for (let n = 1; n < found.length; n++) {
-          const k = way > 0 ? n : found.length - 1 - n;
-          if (!found[k] && found[k - way] && this.reached(k, way, found, values, near)) found[k] = 1;
-        }
+      for (const way of [1, -1]) this.march(k, way, begin, values);
+    }
+    // the state of the start as dimensions go from those of a design to others, in steps as long as it stays near
+    led(state, design, numbers) {
+      if (state.some((value) => value !== value)) return null;
+      return this.follow(state, null, (part) => this.single.take(between(design.numbers, numbers, part)))?.state;
+    }
+    march(k, way, begin, values) {
+      let found = { state: begin, slope: null };
+      for (let n = k + way; n >= 0 && n < values[0].length; n += way) {
+        const from = this.drives(n - way), to = this.drives(n);
+        found = this.follow(found.state, found.slope, (part) => this.drive(from.map((one, index) => one + part * (to[index] - one))));
+        if (!found) return;
+        found.state.forEach((value, index) => { values[index][n] = value; });
       }
     }
-    // one pose from that beside it, as the two before it lead on
-    reached(k, way, found, values) {
-      const one = this.single, from = k - way;
-      const leads = from - way >= 0 && from - way < found.length && found[from - way];
-      const guess = this.all.map((state, index) => {
-        const last = values[index][from];
-        return leads ? last + this.away(state, last, values[index][from - way]) * (state.angle ? 1 : this.size) : last;
+    // follows a state from one place to another; `go` brings the machine to a part of the way
+    follow(state, slope, go) {
+      const one = this.single;
+      let t = 0, h = 1, side = null;
+      while (t < 1) {
+        go(Math.min(1, t + h));
+        const guess = state.map((value, index) => (slope ? value + h * slope[index] : value));
+        const led = guess.slice();
+        const closes = this.newton(one, guess) && this.apart(guess, led) <= STRAY;
+        const sides = closes ? this.sides.map((place) => one.row(place, 0)[0]) : null;
+        if (closes && !(side && sides.some((now, index) => now * side[index] < 0))) {
+          slope = this.all.map((each, index) => (this.away(each, guess[index], state[index]) * (each.angle ? 1 : this.size)) / h);
+          [state, side] = [guess, sides];
+          t += h;
+          h = Math.min(2 * h, 1 - t);
+        } else if ((h /= 2) < SHORTEST) return null;
+      }
+      return { state, slope };
+    }
+    apart(here, there) {
+      return Math.max(...this.all.map((each, index) => (each.corrected ? Math.abs(this.away(each, here[index], there[index])) : 0)));
+    }
+    // whether states go on from pose to pose as they did in another design
+    isEven(values, near, most) {
+      return this.all.every((each, index) => {
+        const own = values[index], other = near.values[index];
+        if (each.corrected) {
+          for (let k = 1; k < own.length; k++) {
+            if (Math.abs(this.away(each, own[k], own[k - 1]) - this.away(each, other[k], other[k - 1])) > most) return false;
+          }
+        }
+        return true;
       });
-      const start = guess.slice();
-      this.driven(one, k);
-      if (!this.newton(one, guess)) return false;
-      if (this.all.some((state, index) => state.corrected && !(Math.abs(this.away(state, guess[index], start[index])) <= LEAP / 5))) return false;
-      guess.forEach((value, index) => { values[index][k] = value; });
-      return true;
     }
     // corrects the state of one pose; tells whether it closes
     newton(one, guess) {

@@ -1,0 +1,193 @@
+"""Live pages: what the browser computes for other dimensions is what `solve` finds for that mechanism."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from base64 import b64decode
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.base.series import Number
+from compoundkin.catalog import load_named
+from compoundkin.kinematics import Motion
+from compoundkin.view.page.html_document import asset
+from compoundkin.view.page.live.live_data import live_data
+from compoundkin.view.report.shown_poses import Sample
+
+SCRIPTS = ("live/machine.js", "live/states.js", "live/path.js")
+# Dyads of all kinds, gears, belts, racks, rolling, slots with ends, cylinders, several drivers, a group of class III.
+MECHANISMS = (
+    "six-bar", "slider-crank-offset", "elliptic-trammel", "scotch-yoke", "oscillating-guide", "geared-five-bar",
+    "planetary-train", "rack-driven-double-slider", "rolling-wheel", "geneva-wheel", "five-bar", "oscillating-cylinder",
+    "class-iii-six-bar",
+)  # fmt: skip
+DRAGS, POSES = 100, 19
+# Drags as they come, one after another: each from where the one before has led.
+DRAGGED = """(jobs) => JSON.stringify(JSON.parse(jobs).map(({ data, designs }) => {
+  const path = new window.compoundkin.Path(data);
+  let near = path.solved(path.own);
+  const every = [], failed = [], words = [];
+  for (const numbers of designs) {
+    near = path.solved(Float64Array.from(numbers), near);
+    for (const { x, y, angle, v, a } of near.links) every.push(x, y, angle, ...v, ...a);
+    failed.push([...near.failed]);
+    words.push(failed.at(-1).map((_, k) => path.why(near.numbers, near, k)));
+  }
+  const bytes = new Uint8Array(Float64Array.from(every.flatMap((row) => [...row])).buffer);
+  let rows = "";
+  for (let k = 0; k < bytes.length; k += 8190) rows += btoa(String.fromCharCode(...bytes.subarray(k, k + 8190)));
+  return { failed, words, rows };
+}))"""
+
+
+class Dragged:
+    """A mechanism with the dimensions of its page changed at random, again and again."""
+
+    def __init__(self, name: str) -> None:
+        mechanism = load_named(name)
+        whole = ck.solve(mechanism)
+        every = max(1, (whole.inputs.poses - 1) // (POSES - 1))
+        self.values = {drive: np.ravel(whole.drives[drive].value)[::every] for drive in whole.drives}
+        self.rates = {drive: float(np.ravel(whole.drives[drive].rate)[0]) for drive in whole.drives}
+        self.motion = ck.solve(mechanism, self.values, speed=self.rates, order=2)
+        self.links = tuple(name for name in self.motion.links if name not in mechanism.led_links)
+        poses = self.motion.inputs.poses
+        live = live_data(Sample(self.motion), np.arange(poses), self.links, ())
+        self.data: dict[str, Any] = {"poses": poses, "start": 0, "live": live}
+        self.dimensions = self.data["live"]["dimensions"]
+        self.designs = np.array([*self._walk()])
+
+    def _walk(self) -> Iterator[Number]:
+        """Steps of two dimensions at a time; every fourth goes halfway back."""
+        rng, size = np.random.default_rng(7), self.motion.size
+        own = np.array([one["value"] for one in self.dimensions])
+        kinds = [one["kind"] for one in self.dimensions]
+        scale = np.array([{"angle": 1.0, "ratio": v}.get(kind, size) for kind, v in zip(kinds, own, strict=True)])
+        at = own.copy()
+        for k in range(DRAGS):
+            at = own + (at - own) / 2.0 if k % 4 == 3 else at.copy()
+            some = rng.choice(len(own), 2, replace=False)
+            at[some] += 0.03 * scale[some] * rng.standard_normal(2)
+            yield at
+
+    def solved(self) -> Motion:
+        """The same designs as `solve` finds them."""
+        names = [one["name"] for one in self.dimensions]
+        path = ck.compile(self.motion.mechanism, next(iter(self.motion.drives)), free=names, values=self.values)
+        changed = dict(zip(names, self.designs.T[:, :, None], strict=True))
+        return ck.solve(path.mechanism(changed), self.values, speed=self.rates, order=2, modes=path.modes)
+
+
+def expected(motion: Motion, links: tuple[str, ...]) -> Number:
+    """The same rows of the same links of a motion."""
+    rows = []
+    for name in links:
+        link = motion.links[name]
+        for k, turned in enumerate((link.angle, link.angular_velocity, link.angular_acceleration)):
+            z = link.origin.derivative(k)
+            rows += [np.broadcast_to(row, motion.shape) for row in (z.real, z.imag, turned)]
+    return np.stack(rows, axis=1)
+
+
+def with_paths(browser: Any) -> Any:
+    """An empty page that knows paths."""
+    view = browser.new_page()
+    for name in SCRIPTS:
+        view.add_script_tag(content=asset(name))
+    return view
+
+
+@pytest.fixture(scope="module")
+def found(browser: Any) -> dict[str, tuple[Dragged, dict[str, Any]]]:
+    """What a browser finds for all drags of all mechanisms."""
+    dragged = {name: Dragged(name) for name in MECHANISMS}
+    view = with_paths(browser)
+    jobs = [{"data": one.data, "designs": one.designs.tolist()} for one in dragged.values()]
+    found = json.loads(view.evaluate(DRAGGED, json.dumps(jobs)))
+    view.close()
+    return {name: (one, each) for (name, one), each in zip(dragged.items(), found, strict=True)}
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_the_browser_finds_what_solve_finds(name: str, found: dict[str, Any]) -> None:
+    dragged, told = found[name]
+    with warnings.catch_warnings(action="ignore"):
+        motion = dragged.solved()
+    failed, size = np.array(told["failed"]), motion.size
+    rows = np.frombuffer(b64decode(told["rows"])).reshape(DRAGS, -1, failed.shape[1])
+    assert np.array_equal(failed, motion.failed)
+    rest = rows - expected(motion, dragged.links)
+    assert np.array_equal(np.isnan(rest).any(axis=1), failed != 0)
+    known = np.where((failed != 0)[:, None], 0.0, rest).reshape(DRAGS, -1, 3, 3, failed.shape[1])
+    lengths, angles = np.abs(known[:, :, 0, :2]) / size, known[:, :, 0, 2]
+    # full turns may be counted from another one at the first pose, and are the same along the motion
+    turns = 2.0 * np.pi * np.rint(angles[..., :1] / (2.0 * np.pi))
+    assert max(lengths.max(), np.abs(angles - turns).max()) < 1e-9
+    rates = np.abs(known[:, :, 1:]) / (np.array([size, size, 1.0])[:, None] * (1.0 + max(dragged.rates.values())) ** 2)
+    # beside limit positions rates have few digits
+    assert np.quantile(rates, 0.99) < 1e-9
+    with warnings.catch_warnings(action="ignore"):
+        gaps = ck.gaps(motion)
+    for gap in gaps:
+        said = told["words"][gap.design[0]][(gap.first + gap.last) // 2]
+        assert said["group"] == (gap.pair or f"{gap.group}({', '.join(gap.links)})")
+        # whether a group without a closed form comes back after a gap is found out by `gaps` alone
+        assert gap.reason == said["text"] or gap.reason.startswith(f"{said['text']}; ")
+
+
+def live(motion: Motion) -> dict[str, Any]:
+    """What a page of all poses of a motion has."""
+    poses = motion.inputs.poses
+    found = live_data(Sample(motion), np.arange(poses), tuple(motion.links), ())
+    return {"poses": poses, "start": 0, "live": found}
+
+
+def test_updates_keep_up_with_the_hand(browser: Any) -> None:
+    six_bar = ck.solve(load_named("six-bar"), {"crank": ck.deg(range(361))}, order=2)
+    large = ck.composing.random_mechanism(groups=20, seed=1)
+    drawn = float(np.ravel(ck.solve(large).drives[large.drives[0].name].value)[0])
+    many = ck.solve(large, {large.drives[0].name: drawn + np.linspace(0.0, 1e-6, 238)}, order=2)
+    view = with_paths(browser)
+    for motion, most in ((six_bar, 16.0), (many, 33.0)):
+        times = view.evaluate(UPDATES, live(motion))
+        # the machine has other work too, of which half of the updates know nothing
+        assert np.median(times) < most, motion
+    view.close()
+
+
+UPDATES = """(data) => {
+  const path = new window.compoundkin.Path(data), times = [];
+  for (let k = 0; k < 50; k++) {
+    const numbers = path.own.map((value, n) => value * (1 + 1e-5 * Math.sin(k + n)));
+    const from = performance.now();
+    path.solved(numbers);
+    times.push(performance.now() - from);
+  }
+  return times;
+}"""
+
+
+def test_a_page_that_cannot_be_live_says_why() -> None:
+    for name, why in (
+        ("parallelogram", "the motion passes a change point"),
+        ("groove-cam-plate", "contacts with a profile are searched for"),
+    ):
+        assert why in live(ck.solve(load_named(name)))["live"]["why"]
+    assert live(ck.solve(load_named("six-bar"), {"crank": [0.5]}))["live"] is None
+
+
+def test_dimensions_are_those_that_may_be_changed_alone() -> None:
+    def names(name: str) -> set[str]:
+        return {one["name"] for one in live(ck.solve(load_named(name)))["live"]["dimensions"]}
+
+    # the arm of wheels with a module is as long as these ask, their teeth are whole
+    assert {"sun.S.x", "planet.Q.y"} < names("planetary-train")
+    assert not {one for one in names("planetary-train") if "teeth" in one or one.startswith("arm.")}
+    # an overconstrained lift moves by its equal arms alone
+    assert names("double-parallelogram-lift") == {"head.T.x", "head.T.y"}
+    assert {"slot.angle", "crank.D.x", "frame.B.y"} < names("six-bar")
