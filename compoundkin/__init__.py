@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
     from compoundkin.analysis.checks import verify
     from compoundkin.analysis.equations.loop_equations import loop_equations
+    from compoundkin.analysis.interference.interference_of_motion import interference
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.dynamics.force_analysis import force_analysis
@@ -100,6 +101,7 @@ __all__ = [
     "gear",
     "gravity",
     "instant_centres",
+    "interference",
     "link",
     "load",
     "loop_equations",
@@ -150,6 +152,7 @@ _LATE = {
     "force_analysis": "dynamics.force_analysis",
     "gaps": "kinematics.gaps",
     "instant_centres": "analysis.centres.centres_of_motion",
+    "interference": "analysis.interference.interference_of_motion",
     "load": "files",
     "loop_equations": "analysis.equations.loop_equations",
     "mobility_analysis": "structure.redundancy.mobility_analysis",

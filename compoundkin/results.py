@@ -11,6 +11,7 @@ from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
 from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations.loop_equations import LoopEquations
+from compoundkin.analysis.interference.interference_findings import Interference, LinkClearance, LinkTouch
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.reached_region import Workspace
 from compoundkin.dynamics.forces import Forces
@@ -81,12 +82,15 @@ __all__ = [
     "GroupMode",
     "HeldConstraint",
     "HoldingEffort",
+    "Interference",
     "Jacobian",
     "JaxPath",
     "LiftOff",
     "LiftOffSpeed",
+    "LinkClearance",
     "LinkForces",
     "LinkMotion",
+    "LinkTouch",
     "LinkWrench",
     "LocalMinimum",
     "LoopEquations",

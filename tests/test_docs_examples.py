@@ -33,6 +33,19 @@ def test_the_page_on_loads_prints_what_it_shows(capsys: pytest.CaptureFixture[st
     assert "mass centre and inertia of a uniform bar A-B\n(15+0j) 30.0\n" in printed
 
 
+def test_the_page_on_outlines_prints_what_it_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    exec("\n".join(re.findall(r"```python\n(.*?)```", (DOCS / "outlines.md").read_text("utf-8"), re.DOTALL)), {})
+    assert capsys.readouterr().out.splitlines() == [
+        "2 pairs of links touch",
+        "crank and frame touch from 335.6721 to 16.6997 degrees",
+        "pin B and frame touch from 341.8859 to 10.4859 degrees",
+        "rocker and frame come to 5.2737",
+    ]
+
+
 def test_the_page_on_machines_prints_what_it_shows() -> None:
     page = (DOCS / "machine.md").read_text("utf-8")
     lines = [line[4:] for line in page.splitlines() if line.startswith("    ")]

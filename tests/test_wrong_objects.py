@@ -45,6 +45,7 @@ def at_hand() -> dict[str, Any]:
         "loaded": ck.solve(
             arm.replace(units={"length": "m", "mass": "kg", "force": "N"}), {"upper": [1.0], "fore": 1.0}
         ),
+        "outlined": ck.solve(bar.replace(ck.outline("crank", 0.1))),
         "chain": ck.chains.chains(6)[0],
         "group": ck.chains.assur_groups(2)[0],
         "place": ck.coupler.LinkPosition((0, 0), 1.0),
@@ -113,6 +114,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "gravity": {"x": 0.0, "y": -9.81, "unit": "m/s^2"},
         "instant_centres": {"motion": motion},
         "link": {"name": "a", "A": 0},
+        "interference": {"motion": h["outlined"]},
         "load": {"path": str(ck.catalog.path("six-bar"))},
         "loop_equations": {"mechanism": m, "order": 2},
         "mass": {"link": "a", "mass": 1.0, "at": "A", "inertia": 0.1, "density": None},

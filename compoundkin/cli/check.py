@@ -29,8 +29,8 @@ Examples:
 def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     """Verify a motion and print a table of all findings. It uses ways without the formulas that solved it.
 
-    Exit code 3: some poses cannot be assembled; 4: a check failed, and the pair or link, its group and the pose
-    where it is worst are named.
+    Outlines of links are compared too. Exit code 3: some poses cannot be assembled; 4: a check failed, or links touch
+    by their outlines, and the pair or link, its group and the pose where it is worst are named.
     """
     from compoundkin.cli.progress import working
     from compoundkin.structure import decompose

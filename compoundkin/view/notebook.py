@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import singledispatch
+from typing import Any
 
 from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
+from compoundkin.analysis.interference.interference_findings import Interference
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
@@ -27,8 +29,9 @@ from compoundkin.view.page.player import framed
 from compoundkin.view.report.centres_section import centre_blocks
 from compoundkin.view.report.configurations_section import circuits_report, configurations_section
 from compoundkin.view.report.extremes_blocks import cam_blocks
+from compoundkin.view.report.interference_section import blocks_of_designs
 from compoundkin.view.report.mobility_sections import analysis_blocks
-from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, TableBlock
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.structure_sections import links_section
@@ -38,6 +41,13 @@ from compoundkin.view.sketch import draw
 
 # Pictures of more links than these take more than a second: they are drawn where they are asked for.
 MOST_LINKS = 30
+# What shows itself as blocks of a report.
+_BLOCKS: dict[type, Callable[[Any], Iterable[Block]]] = {
+    Centres: centre_blocks,
+    MobilityAnalysis: analysis_blocks,
+    Interference: blocks_of_designs,
+    CamAnalysis: lambda what: cam_blocks(Sample(what.motion), what),
+}
 
 
 def html_of(what: object) -> str | None:
@@ -194,18 +204,8 @@ def _(what: Configuration) -> Iterator[str]:
 
 
 @_parts.register
-def _(what: Centres) -> Iterator[str]:
-    yield from map(plain_block, centre_blocks(what))
-
-
-@_parts.register
-def _(what: MobilityAnalysis) -> Iterator[str]:
-    yield from map(plain_block, analysis_blocks(what))
-
-
-@_parts.register
-def _(what: CamAnalysis) -> Iterator[str]:
-    yield from map(plain_block, cam_blocks(Sample(what.motion), what))
+def _(what: Centres | MobilityAnalysis | Interference | CamAnalysis) -> Iterator[str]:
+    yield from map(plain_block, _BLOCKS[type(what)](what))
 
 
 @_parts.register

@@ -20,6 +20,12 @@ from compoundkin.view.report.findings_table import finding_sentence, findings_ta
 from compoundkin.view.report.forces_section import force_checks_sections, forces_section
 from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
+from compoundkin.view.report.interference_section import (
+    found_interference,
+    interference_in_short,
+    interference_sections,
+    touch_sentences,
+)
 from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
 from compoundkin.view.report.performance_section import performance_section
 from compoundkin.view.report.published_section import Comparison, comparisons, published_section
@@ -56,28 +62,25 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
-    forces = loaded_forces(motion)
+    forces, touching = loaded_forces(motion), found_interference(motion)
     outcome = outcome_of(motion, with_forces(check, forces), published)
-    return Report(
-        motion.mechanism.title,
-        (
-            about_section(structure, motion_in_short(outcome), told),
-            *counted_sections(structure, motion=motion),
-            solving_section(structure, motion),
-            drivers_section(structure, sample),
-            *([equivalent] if (equivalent := equivalent_section(sample)) else []),
-            *assembly_sections(motion, 0),
-            *moving,
-            performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
-            *([forces_section(forces)] if forces is not None else []),
-            *([gaps_section(sample, missing)] if missing else []),
-            checks_section(sample, check),
-            *([published_section(structure, published)] if published else []),
-        ),
-        outcome,
-        motion,
-        outputs,
+    in_short = f"{motion_in_short(outcome)}{interference_in_short(touching)}"
+    sections = (
+        about_section(structure, in_short, told),
+        *counted_sections(structure, motion=motion),
+        solving_section(structure, motion),
+        drivers_section(structure, sample),
+        *([equivalent] if (equivalent := equivalent_section(sample)) else []),
+        *assembly_sections(motion, 0),
+        *moving,
+        performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
+        *([forces_section(forces)] if forces is not None else []),
+        *interference_sections(sample, touching),
+        *([gaps_section(sample, missing)] if missing else []),
+        checks_section(sample, check),
+        *([published_section(structure, published)] if published else []),
     )
+    return Report(motion.mechanism.title, sections, outcome, motion, outputs)
 
 
 def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] = ()) -> Outcome:
@@ -121,11 +124,14 @@ def check_report(motion: Motion) -> Report:
     sample, check, forces = Sample(motion), verify(motion), loaded_forces(motion)
     both = with_forces(check, forces)
     outcome = outcome_of(motion, both)
+    touching = found_interference(motion)
     alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in both.findings if not f.passed)
+    alerts += tuple(Alert(f"{sentence}.") for sentence in touch_sentences(motion, touching))
     failed = (Section("failed", "What failed", alerts),) if alerts else ()
-    about = Section("about", "", (Paragraph(motion_in_short(outcome)),))
+    about = Section("about", "", (Paragraph(motion_in_short(outcome) + interference_in_short(touching)),))
     of_forces = force_checks_sections(sample, forces)
-    sections = (about, *_missing(sample), checks_section(sample, check), *of_forces, *failed)
+    compared = interference_sections(sample, touching)
+    sections = (about, *_missing(sample), checks_section(sample, check), *of_forces, *compared, *failed)
     return Report(motion.mechanism.title, sections, outcome, motion)
 
 

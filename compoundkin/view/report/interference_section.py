@@ -1,0 +1,121 @@
+"""The section Interference: which links touch, from where to where, and how near the others come."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import degrees
+
+from compoundkin.analysis.interference.interference_findings import Interference, LinkClearance, LinkTouch
+from compoundkin.analysis.interference.interference_of_motion import interference
+from compoundkin.base.errors import InvalidInput
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.wording import counted, listed, number
+
+# So many clearances are listed, the least first.
+MOST = 12
+# Of more designs than these the first ones are told.
+MOST_DESIGNS = 3
+INTERFERENCE = "interference"
+
+
+def found_interference(motion: Motion) -> Interference | InvalidInput | None:
+    """Return what touches, None where there are no outlines.
+
+    Where they cannot be compared it is the reason.
+    """
+    if not motion.mechanism.outlines:
+        return None
+    try:
+        return interference(motion)
+    except InvalidInput as error:
+        return error
+
+
+def interference_sections(sample: Sample, found: Interference | InvalidInput | None) -> tuple[Section, ...]:
+    """Return the section on outlines. None where there are none."""
+    if found is None:
+        return ()
+    if isinstance(found, InvalidInput):
+        blocks: tuple[Block, ...] = (Alert(f"Outlines were not compared: {found}."),)
+    else:
+        blocks = tuple(interference_blocks(sample, found))
+    return (Section(INTERFERENCE, "Interference", blocks),)
+
+
+def interference_in_short(found: Interference | InvalidInput | None) -> str:
+    """Return what it comes to, as a sentence; nothing where there are no outlines."""
+    if found is None or isinstance(found, InvalidInput):
+        return ""
+    return f" {found.verdict[:1].upper()}{found.verdict[1:]}."
+
+
+def interference_blocks(sample: Sample, found: Interference) -> Iterator[Block]:
+    """Yield what there is to say of a design's touches and clearances."""
+    touches = [one for one in found.touches if one.design == sample.design]
+    clearances = [one for one in found.clearances if one.design == sample.design]
+    text = (
+        "Outlines that share a layer are compared, at the poses and between them. Of joined links, what reaches the"
+        " points of their joint overlaps by nature and is left out."
+    )
+    yield Paragraph(f"{found.verdict[:1].upper()}{found.verdict[1:]}. {text}")
+    if found.missing:
+        yield Paragraph(f"{counted(found.missing, 'pose')} that cannot be assembled are left out.")
+    yield from (Alert(f"{touch_sentence(sample, one)}.") for one in touches)
+    if clearances:
+        yield TableBlock(_columns(sample), tuple(_row(sample, one) for one in clearances[:MOST]))
+    if len(clearances) > MOST:
+        yield Paragraph(f"... and {counted(len(clearances) - MOST, 'pair')} of links farther apart.")
+    if found.neighbours:
+        names = listed(f"{one} and {other}" for one, other in found.neighbours[:MOST])
+        more = f", {len(found.neighbours) - MOST} more" if len(found.neighbours) > MOST else ""
+        yield Paragraph(f"Neighbours whose shapes about their joint are not compared: {names}{more}.")
+
+
+def blocks_of_designs(found: Interference) -> Iterator[Block]:
+    """Yield what there is to say of the first designs, or the only one."""
+    for design in range(found.motion.inputs.designs)[:MOST_DESIGNS]:
+        yield from interference_blocks(Sample(found.motion, design), found)
+
+
+def touch_sentences(motion: Motion, found: Interference | InvalidInput | None) -> Iterator[str]:
+    """Yield all touches in words, of several designs with the design."""
+    for one in found.touches if isinstance(found, Interference) else ():
+        of = f", design {one.design}" if motion.inputs.designs > 1 else ""
+        yield f"interference: {touch_sentence(Sample(motion, one.design), one)}{of}"
+
+
+def touch_sentence(sample: Sample, touch: LinkTouch) -> str:
+    """Return one touch in words. "crank and frame touch from crank 75.5225 deg to 104.478 deg, first at (0, 7)"."""
+    layers = f"{'layer' if len(touch.layers) == 1 else 'layers'} {listed(map(str, touch.layers))}"
+    where = f"first at ({number(touch.at.real)}, {number(touch.at.imag)})"
+    two = f"{touch.one} and {touch.other} on {layers}"
+    if sample.poses == 1:
+        return f"{two} touch, at ({number(touch.at.real)}, {number(touch.at.imag)})"
+    spans = [f"{one.name} {_shown(one, touch.begin)} to {_shown(one, touch.end)}" for one in sample.varying]
+    if touch.times is not None:
+        spans = [f"{number(touch.times[0])} s to {number(touch.times[1])} s", *spans]
+    if touch.open_begin and touch.open_end and touch.first <= touch.last:
+        return f"{two} touch all the way from {'; '.join(spans)}"
+    return f"{two} touch from {'; '.join(spans)}, {where}"
+
+
+def _shown(driver: Quantity, values: Mapping[str, float]) -> str:
+    """Return a driver's value with its unit."""
+    value = degrees(values[driver.name]) if driver.is_angle else values[driver.name]
+    return f"{value + 0.0:.9g} {driver.unit}".rstrip()
+
+
+def _columns(sample: Sample) -> tuple[Column, ...]:
+    unit = sample.motion.mechanism.unit
+    places = [Column(f"at {one.name}", one.unit, "fixed", 1e-9) for one in sample.varying]
+    return (Column("link"), Column("and"), Column("layer"), Column("least clearance", unit, "each"), *places,
+            Column("x", unit, "fixed"), Column("y", unit, "fixed"))  # fmt: skip
+
+
+def _row(sample: Sample, one: LinkClearance) -> tuple[Cell, ...]:
+    values = (degrees(one.drives[d.name]) if d.is_angle else one.drives[d.name] for d in sample.varying)
+    layers = ", ".join(map(str, one.layers))
+    return (one.one, one.other, layers, one.clearance, *values, one.at.real, one.at.imag)
