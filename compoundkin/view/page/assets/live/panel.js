@@ -25,7 +25,7 @@
       const id = `dimension-${panel.fields.length}`;
       this.root = make("div", "dimension", "", place);
       if (links.length) this.root.dataset.links = links.join(",");
-      const label = make("label", "", "", this.root);
+      const named = make("div", "named", "", this.root), label = make("label", "", "", named);
       label.htmlFor = id;
       make("span", "", row.label, label).ariaHidden = "true";
       make("span", "unseen", `${row.spoken} of ${row.owner}`, label);
@@ -34,11 +34,10 @@
       Object.assign(this.input, { id, type: "text", inputMode: row.positive ? "decimal" : "text", autocomplete: "off", spellcheck: false });
       this.input.setAttribute("role", "spinbutton");
       this.input.setAttribute("aria-describedby", `${id}-unit ${id}-was ${id}-more`);
-      make("span", "of", row.unit, this.root).id = `${id}-unit`;
-      const was = make("span", "was", "", this.root);
-      this.was = make("span", "", "", was);
+      this.was = make("span", "was", "", named);
       this.was.id = `${id}-was`;
-      this.back = this.button(was);
+      make("span", "of", row.unit, this.root).id = `${id}-unit`;
+      this.back = this.button(this.root);
       this.more = make("p", "more", "", this.root);
       this.more.id = `${id}-more`;
       this.listen();
@@ -146,7 +145,7 @@
 
   // A driver at the pose shown; another value goes to the nearest pose.
   class DriverRow {
-    constructor(panel, driver) {
+    constructor(panel, _, driver) {
       Object.assign(this, { panel, driver, values: driver.parts[""], owner: "the driver", label: driver.name, spoken: `value of ${driver.name}` });
       Object.assign(this, { late: false, positive: false, isAngle: driver.unit === "deg", unit: driver.unit === "deg" ? "°" : page.raised(driver.unit) });
       this.low = Math.min(...this.values);
@@ -187,19 +186,21 @@
       this.update();
     }
     build({ links, pairs }) {
-      const place = this.root.querySelector(".dimensions");
-      const rows = [...links, ...pairs].reduce((sum, { rows }) => sum + rows.filter((row) => !row[2]).length, 0);
-      if (this.player.drivers.length) {
-        const group = this.group(place, "Drivers", null, true);
-        for (const driver of this.player.drivers) this.field(new DriverRow(this, driver), [], group);
-      }
-      for (const { name, rows: own } of links) {
-        const group = this.group(place, name, this.player.data.links.find((link) => link.name === name), rows <= MANY);
-        for (const row of own) this.field(new page.PointRow(this, name, row), [name], group);
-      }
-      for (const { name, links: members, rows: own } of pairs) {
-        const group = this.group(place, name, null, rows <= MANY);
-        for (const row of own) this.field(new page.NumberRow(this, name, row), members, group);
+      const { player } = this, shown = ({ rows }) => rows.filter((row) => !row[2]).length;
+      const groups = [
+        ...links.map(({ name, rows }) => ({ name, rows, links: [name], Kind: page.PointRow, link: player.data.links.find((one) => one.name === name) })),
+        ...pairs.map(({ name, rows, links: members }) => ({ name, rows, links: members, Kind: page.NumberRow })),
+      ];
+      const all = groups.reduce((sum, group) => sum + shown(group), 0);
+      if (player.drivers.length) groups.unshift({ name: "Drivers", rows: player.drivers, links: [], Kind: DriverRow });
+      // two columns about as high as each other, which stay as they are when rows come and go
+      const height = (group) => (shown(group) ? 1 + shown(group) : 0), half = groups.reduce((sum, group) => sum + height(group), 0) / 2;
+      const columns = [0, 1].map(() => make("div", "", "", this.root.querySelector(".dimensions")));
+      let above = 0;
+      for (const { name, rows, links: about, Kind, link } of groups) {
+        const place = this.group(columns[above < half ? 0 : 1], name, link, Kind === DriverRow || all <= MANY);
+        for (const row of rows) this.field(new Kind(this, name, row), about, place);
+        above += height({ rows });
       }
     }
     group(place, name, link, open) {
