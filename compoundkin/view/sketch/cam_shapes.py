@@ -8,16 +8,18 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Wheel
+from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Stud, Wheel
 from compoundkin.view.sketch.gear_shapes import HUB, RIM
 from compoundkin.view.sketch.link_shapes import joints
 from compoundkin.view.sketch.scene import Scene, Seen
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, direction, hatching
-from compoundkin.view.sketch.sketch_style import BAR, PIN
+from compoundkin.view.sketch.sketch_style import BAR, PIN, style_of
 from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter
 
 # A bush is so long, so far beyond the follower at its farthest, and its walls are so far from the stem.
 BUSH, AWAY, CLEARANCE = 30.0, 12.0, 3.0
+# How long the flanks of a knife edge are, and half their distance.
+EDGE = 13.0, 5.0
 # The stem comes out of its bush by this much at the lowest place.
 OUT = 10.0
 
@@ -77,6 +79,32 @@ def stem(painter: Painter, slide: Seen, mark: Sliding, cam: Seen) -> Iterator[La
     length = (mark.high - mark.low) * scale + (away + BUSH + OUT)
     top = eye + painter.along(block, mark.turn) * (length * sense)
     yield Laid(Layer.BAR, Polyline((eye, top), painter.style("bar", block)), block)
+
+
+def knife_edge(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
+    """Draw the edge of a follower on a disc: a point on the profile, and its flanks away from the cam."""
+    link = seen.members[mark.member]
+    tip = painter.place(link, mark.at)
+    own = [painter.place(link, p) - tip for p in painter.scene.points[link].values()]
+    slide = next((s for s in painter.scene.seen if isinstance(s.mark, Sliding) and s.members[1] == link), None)
+    if slide is not None and isinstance(slide.mark, Sliding) and slide.members[0] == FRAME:
+        e = painter.along(link, slide.mark.turn)
+        away = e * (1.0 if (np.conjugate(e) * (tip - _shaft(painter, _profile_of(painter, seen)))).real >= 0 else -1.0)
+    else:
+        away = direction(max(own, key=abs, default=0j))
+    flank, across = away * EDGE[0], away * EDGE[1] * 1j
+    corners = (tip, tip + flank + across, tip + flank - across)
+    yield Laid(Layer.BLOCK, Polygon(corners, f"pin {style_of('ring', painter.scene.groups[link])}"), link)
+
+
+def is_edge(painter: Painter, seen: Seen) -> bool:
+    """Tell whether a mark of a pair is an edge on a disc. A pin in a groove or a ring is none."""
+    on = [s.mark for s in painter.scene.seen if s.pair is seen.pair and isinstance(s.mark, Outline)]
+    return any(mark.closed and not mark.is_hollow for mark in on)
+
+
+def _profile_of(painter: Painter, seen: Seen) -> Seen:
+    return next(s for s in painter.scene.seen if s.pair is seen.pair and isinstance(s.mark, Outline))
 
 
 def _shaft(painter: Painter, cam: Seen) -> complex:

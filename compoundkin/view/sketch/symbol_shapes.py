@@ -7,7 +7,7 @@ from typing import Any
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
-from compoundkin.view.sketch.cam_shapes import led_by, profile, stem
+from compoundkin.view.sketch.cam_shapes import is_edge, knife_edge, led_by, profile, stem
 from compoundkin.view.sketch.cylinder_shapes import cylinder, is_piston, piston
 from compoundkin.view.sketch.gear_shapes import track, wheel
 from compoundkin.view.sketch.geneva_shapes import geneva, geneva_wheel
@@ -76,7 +76,10 @@ def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
 
 def _stud(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
     link = seen.members[mark.member]
-    yield Laid(Layer.PIN, CircleShape(painter.place(link, mark.at), STUD, "dot"), link)
+    if is_edge(painter, seen):
+        yield from knife_edge(painter, seen, mark)
+    else:
+        yield Laid(Layer.PIN, CircleShape(painter.place(link, mark.at), STUD, "dot"), link)
 
 
 def _strap(painter: Painter, seen: Seen, mark: Strap) -> Iterator[Laid]:

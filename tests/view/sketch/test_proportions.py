@@ -144,3 +144,25 @@ def test_a_sliding_follower_has_a_stem_that_stays_in_its_bush() -> None:
         low, high = (pick(p.imag for p in rod.points) for pick in (max, min))
         assert high < min(p.imag for p in walls) < max(p.imag for p in walls) < low
     assert not [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style.startswith("pin ")]
+
+
+def test_a_knife_edge_points_at_its_profile() -> None:
+    disc = ck.profiles.disc(30.0, 12 + 0j)
+    picture = ck.draw(
+        ck.Mechanism(
+            "Knife edge",
+            ck.link("frame", A=(0, 0)),
+            ck.link("cam", A=(0, 0), M=(12, 0)),
+            ck.link("follower", P=(0, 0)),
+            ck.slide("follower", on="frame", at="P", through="A", angle=np.pi / 2, offset=-5.0),
+            ck.cam("follower", on="cam", at="P", profile=disc),
+            ck.drive("cam", values=ck.deg(np.arange(0, 360, 20))),
+            ck.drawn(P=(5, 30)),
+        )
+    )
+    edges = [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and len(s.points) == 3]
+    (edge,) = [s for s in edges if s.style.startswith("pin ")]
+    profile = next(s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style == "plate0")
+    away = [min(abs(p - q) for q in profile.points) for p in edge.points]
+    assert away[0] == min(away)
+    assert edge.points[0].imag > max(p.imag for p in edge.points[1:])
