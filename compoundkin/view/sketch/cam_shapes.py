@@ -82,7 +82,7 @@ def stem(painter: Painter, slide: Seen, mark: Sliding, cam: Seen) -> Iterator[La
 
 
 def knife_edge(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
-    """Draw the edge of a follower on a disc: a point on the profile, and its flanks away from the cam."""
+    """Draw the edge of a follower on a disc. Its flanks go away from the cam."""
     link = seen.members[mark.member]
     tip = painter.place(link, mark.at)
     own = [painter.place(link, p) - tip for p in painter.scene.points[link].values()]
