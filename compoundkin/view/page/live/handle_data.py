@@ -16,18 +16,20 @@ def handle_data(scene: Scene, numbers: Mapping[str, int]) -> dict[str, Any]:
     """Return the points and drivers that a pointer can drag. `numbers` are the indices of links on the page.
 
     Of a point its name and `links`, those that carry another point too: its coordinates change on these, the others
-    follow it. `on` is the link along whose guide it stays. Of a driver its name, link, point, and whether it turns.
+    follow it. `on` is the link along whose guide it stays. Of a driver its name, its two links, its point, whether it
+    turns.
     """
     points = [found for letter in scene.letters if (found := _point(scene, numbers, letter)) is not None]
     drivers = [
         {
             "name": one.drive.name,
             "link": numbers[one.drive.link],
+            "on": numbers[one.drive.on],
             "at": one.pair.letters[0],
             "turns": one.pair.free_is_angle,
         }
         for one in scene.driven
-        if not one.is_passive and one.drive.link in numbers
+        if not one.is_passive and {one.drive.link, one.drive.on} <= numbers.keys()
     ]
     return {"points": points, "drivers": drivers}
 

@@ -18,6 +18,8 @@ SCRIPTS = (
     "live/handles.js",
     "live/readout.js",
     "live/free_pose.js",
+    "live/point_hold.js",
+    "live/driver_hold.js",
     "live/drag.js",
     "live/ghost.js",
     "live/history.js",

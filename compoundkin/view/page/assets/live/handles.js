@@ -68,7 +68,7 @@
       return 1 / (this.map.scale * this.player.data.window.scale);
     }
     place() {
-      if (!this.map || this.player.playing) return;
+      if (!this.map) return;
       for (const one of this.all) {
         one.at = one.kind === "point" ? this.toScreen(this.player.place(one.name)) : this.besideDriver(one.data);
         const [x, y] = one.at;
