@@ -26,24 +26,27 @@
       this.by = by;
       this.waits = null;
       one.button.classList.add("held");
+      this.player.svg.classList.add("dragging"); // the picture's frame stays as it is
       if (by === "keys") one.button.setAttribute("aria-pressed", "true");
     }
     drop() {
+      const { held } = this;
       this.flush();
-      this.held.drop();
       this.release();
+      held.drop();
     }
     takeBack() {
-      const { one } = this.held;
+      const { held } = this, { one } = held;
       this.waits = null;
-      this.held.takeBack();
       this.release();
+      held.takeBack();
       if (this.by === "keys") this.numbers.say(`${one.label} is where it was.`);
     }
     release() {
       const { button } = this.held.one;
       this.held = null;
       button.classList.remove("held");
+      this.player.svg.classList.remove("dragging");
       button.setAttribute("aria-pressed", "false");
       this.numbers.clear();
       this.handles.place();
