@@ -37,7 +37,7 @@ ABOUT, GROUPS = "about", "groups"
 OF_DIMENSIONS = frozenset((
     "links", "circuits", "outputs", "performance", "checks", "published", "gaps", "forces", "force-checks", "centres",
     "secondary", "velocities", "figures", "limits", "toggles", "changes", "cams", "configurations", "branches",
-    "equations", "newton", "constants", "states", "simulation", "unknowns",
+    "equations", "newton", "constants", "states", "simulation", "unknowns", "interference",
 ))  # fmt: skip
 
 

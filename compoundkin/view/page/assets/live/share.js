@@ -59,18 +59,22 @@
   open();
 
   // --- what does not follow --------------------------------------------------------------------------------------------------------
+  let isNoted = false;
+  const note = (name, place) => {
+    const made = document.createElement(name);
+    made.className = "original";
+    made.textContent = "Of the original dimensions.";
+    place(made);
+  };
   const noted = () => {
-    const others = [...document.querySelectorAll("section[data-depends]")].map((one) => [one.querySelector("h2"), !("follows" in one.dataset)]);
-    for (const [head, depends] of [[document.querySelector(".badges"), true], ...others]) {
-      if (!head) continue;
-      let note = head.nextElementSibling && head.nextElementSibling.matches(".original") ? head.nextElementSibling : null;
-      if (!note && design.isChanged && depends) {
-        note = document.createElement("p");
-        note.className = "original";
-        note.textContent = "Of the original dimensions.";
-        head.after(note);
-      }
-      if (note) note.hidden = !design.isChanged || !depends;
+    if (design.isChanged === isNoted) return;
+    isNoted = design.isChanged;
+    for (const old of document.querySelectorAll(".original")) old.remove();
+    if (!isNoted) return;
+    // among the badges, so that nothing below moves
+    for (const badges of document.querySelectorAll(".badges")) note("li", (made) => badges.append(made));
+    for (const section of document.querySelectorAll("section[data-depends]:not([data-follows])")) {
+      note("p", (made) => section.querySelector("h2").after(made));
     }
   };
   design.on("change", noted);
