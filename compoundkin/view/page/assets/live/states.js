@@ -114,24 +114,37 @@
       this.drive(this.drives(k));
       const begin = this.led(at(home.values, k), home, numbers) || this.led(at(near.values, k), near, numbers);
       if (!begin) return;
-      const agrees = !this.lost.includes(1) && this.apart(begin, at(values, k)) < CLOSED * 10;
-      if (agrees && this.isEven(values, near, UNEVEN + this.far(numbers, near.numbers))) return;
+      const agrees = !this.lost[k] && this.apart(begin, at(values, k)) < CLOSED * 10;
       this.single.take(numbers);
-      for (const way of [1, -1]) this.march(k, way, begin, values);
+      if (!agrees || !this.isEven(values, near, UNEVEN + this.far(numbers, near.numbers))) {
+        for (const way of [1, -1]) this.march(k, way, begin, values);
+        return;
+      }
+      // what was lost may be reached from the poses beside it
+      const lost = this.lost;
+      for (const way of [1, -1]) {
+        for (let n = 1, end = -1; n < lost.length; n++) {
+          const from = way > 0 ? n - 1 : lost.length - n;
+          if (from !== end && !lost[from] && lost[from + way]) end = this.march(from, way, at(values, from), values, lost);
+        }
+      }
     }
     // the state of the start as dimensions go from those of a design to others, in steps as long as it stays near
     led(state, design, numbers) {
       if (state.some((value) => value !== value)) return null;
       return this.follow(state, null, (part) => this.single.take(between(design.numbers, numbers, part)))?.state;
     }
-    march(k, way, begin, values) {
+    // from pose to pose, through those `only` that are lost; tells where it ended
+    march(k, way, begin, values, only = null) {
       let found = { state: begin, slope: null };
-      for (let n = k + way; n >= 0 && n < values[0].length; n += way) {
+      for (let n = k + way; n >= 0 && n < values[0].length && (!only || only[n]); n += way) {
         const from = this.drives(n - way), to = this.drives(n);
         found = this.follow(found.state, found.slope, (part) => this.drive(from.map((one, index) => one + part * (to[index] - one))));
-        if (!found) return;
+        if (!found) return n - way;
         found.state.forEach((value, index) => { values[index][n] = value; });
+        if (only) only[n] = 0;
       }
+      return -1;
     }
     // follows a state from one place to another; `go` brings the machine to a part of the way
     follow(state, slope, go) {
@@ -161,6 +174,7 @@
         const own = values[index], other = near.values[index];
         if (each.corrected) {
           for (let k = 1; k < own.length; k++) {
+            if (this.lost[k] || this.lost[k - 1]) continue;
             if (Math.abs(this.away(each, own[k], own[k - 1]) - this.away(each, other[k], other[k - 1])) > most) return false;
           }
         }
