@@ -17,8 +17,8 @@ from compoundkin.model.attributes import RADIANS, coordinate_dimension, unit_of
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
-from compoundkin.programs.sources.operation_table import CODES
-from compoundkin.programs.sources.page_program import PageProgram, RecordedReason
+from compoundkin.programs.tables.operation_table import CODES
+from compoundkin.programs.tables.page_program import PageProgram, RecordedReason
 from compoundkin.view.page.live.followed_quantities import followed_quantities
 from compoundkin.view.page.live.panel_data import panel_data, template_data
 from compoundkin.view.page.markup import exact

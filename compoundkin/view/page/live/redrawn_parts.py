@@ -13,7 +13,7 @@ from compoundkin.programs.dimensions.named_dimensions import free_dimensions
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT
-from compoundkin.programs.sources.operation_table import CODES, OperationTable, operation_table
+from compoundkin.programs.tables.operation_table import CODES, OperationTable, operation_table
 from compoundkin.view.page.live.live_data import whole
 from compoundkin.view.page.live.noted_scene import POSE, noted_scene
 from compoundkin.view.sketch.link_shapes import ON_LINE, SAME

@@ -24,9 +24,9 @@ from compoundkin.programs.recording.recorded_motion import RecordedLink, Recorde
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_outputs
 from compoundkin.programs.sources.carried_states import CarriedState, carried_states
-from compoundkin.programs.sources.changeable_dimensions import buildable_dimensions, consistent_dimensions
-from compoundkin.programs.sources.operation_table import OperationTable, operation_table
 from compoundkin.programs.sources.told_configuration import changed_modes
+from compoundkin.programs.tables.changeable_dimensions import buildable_dimensions, consistent_dimensions
+from compoundkin.programs.tables.operation_table import OperationTable, operation_table
 
 # Pages show positions, velocities and accelerations.
 HIGHEST = 2
