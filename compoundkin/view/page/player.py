@@ -15,7 +15,7 @@ from compoundkin.view.sketch.sketch_style import page_css
 MOST_POSES = 181
 # The frame is so high, in pixels: the sketch as it is on a page so wide, and the controls below it.
 WIDTH, HIGHEST, CONTROLS = 640.0, 448.0, 190.0
-STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}"
+STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}.sketch{max-height:448px}"
 
 
 def player(motion: Motion, design: int = 0) -> str:

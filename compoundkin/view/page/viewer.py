@@ -18,7 +18,7 @@ from compoundkin.view.page.moving_data import MotionData
 from compoundkin.view.page.plot_data import plot_data
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch
-from compoundkin.view.sketch.svg import FONT, NATURAL, elements, link_names, number
+from compoundkin.view.sketch.svg import FONT, elements, link_names, number
 
 # So many names below the sketch are stops of the keyboard.
 MOST_STOPS = 12
@@ -105,8 +105,7 @@ def _sketch(moving: MotionData) -> str:
         element("g", lines(parts), class_="parts"),
         *(element("g", "", class_=name) for name in ("velocities", "accelerations", "forces", "dots")),
     ]
-    wide = f"max-width:{number(sketch.window.width * NATURAL)}px;{FONT}"
-    return element("svg", lines(inside), viewBox=size, role="img", aria_label=title, style=wide, class_="sketch")
+    return element("svg", lines(inside), viewBox=size, role="img", aria_label=title, style=FONT, class_="sketch")
 
 
 def _parts(sketch: MovingSketch) -> Iterator[str]:

@@ -7,7 +7,11 @@
   const DEGREE = 180 / Math.PI;
   const FAR = 1e5; // picture units: beyond, a place is a direction
   const DOT = 3.2;
-  const LEGIBLE = 0.85, LARGEST = 2.2; // pixels for a picture unit below which names grow, and by how much at most
+  // pixels for a picture unit: names are no smaller and no larger than at these (the smallest are 11 units high), but
+  // at most so many times as large as they are drawn
+  const LEGIBLE = 12.4 / 11, LARGE = 1.5, LARGEST = 6;
+  const OF_LETTERS = 11 / 14; // the size of numbers to that of letters
+  const ROOM = 10; // for what names have grown, around the picture
   const WIDE = 4.4, TALL = 8, RIM = 9.5; // half a letter's width and height, and the circle around a number
   const TOGETHER = 3; // centres nearer to each other are named together
   const ROUNDING = 3e-7;
@@ -90,7 +94,8 @@
       this.points = Object.fromEntries(data.points.map((point) => [point.name, point]));
       this.shown = new Set(["names"]);
       this.letters = 1;
-      this.view = { left: 0, bottom: data.window.height };
+      this.whole = 1; // the same where the picture is not enlarged
+      this.room = this.base = { left: 0, top: 0, width: data.window.width, height: data.window.height };
       this.find();
       this.listen();
       this.design = null; // of a live page: design.js
@@ -188,13 +193,15 @@
       });
     }
 
-    // on a small picture names are drawn larger, so that they stay legible
+    // on a small picture names are drawn larger, so that they stay legible; where it is enlarged they do not grow with it
     fit() {
-      const { width, height } = this.svg.viewBox.baseVal;
-      const pixels = Math.min(this.svg.clientWidth / width, this.svg.clientHeight / height);
-      const letters = pixels > 0 ? Math.min(LARGEST, Math.max(1, LEGIBLE / pixels)) : 1;
-      if (Math.abs(letters - this.letters) < 0.02) return;
-      this.letters = letters;
+      const grown = ({ width, height }) => {
+        const pixels = Math.min(this.svg.clientWidth / width, this.svg.clientHeight / height);
+        return pixels > 0 ? Math.min(LARGEST, Math.max(Math.min(1, LARGE / pixels), LEGIBLE / pixels)) : 1;
+      };
+      const letters = grown(this.svg.viewBox.baseVal), whole = grown(this.base);
+      if (Math.abs(letters - this.letters) < 0.02 && Math.abs(whole - this.whole) < 0.02) return;
+      Object.assign(this, { letters, whole });
       this.makeRoom();
       if (this.assembled[this.pose] === 1) this.move(this.pose);
       this.overlay();
@@ -268,7 +275,7 @@
     }
     move(k) {
       this.parts.forEach((part, index) => {
-        const name = this.letters > 1 && this.names[index];
+        const name = this.letters !== 1 && this.names[index];
         const placed = this.placement(this.links, this.data.parts[index], k, name);
         // the frame's parts stay where they are
         if (placed !== this.placed[index]) part.setAttribute("transform", placed);
@@ -281,21 +288,25 @@
       const at = this.paper(pointAt(links[link], px, py, k)), [x, y] = name ? this.within(at, name) : at;
       // y points downward on paper: what turns counterclockwise has a negative angle there
       const turned = turns ? ` rotate(${-(links[link].angle[k] - this.upright[link]) * DEGREE})` : "";
-      return `translate(${x} ${y})${turned}${name ? ` scale(${this.letters})` : ""}`;
+      return `translate(${x} ${y})${turned}${name ? ` scale(${this.grown(name)})` : ""}`;
     }
 
     // the box of a name as seen from the point it belongs to: its middle, half its width and height
     box(part) {
       const text = part.querySelector("text");
       const [x, y] = ["x", "y"].map((name) => Number(text.getAttribute(name)));
-      const round = part.querySelector("circle");
-      return { x, y, wide: round ? RIM : Math.max(WIDE * text.textContent.length, text.getComputedTextLength() / 2), tall: round ? RIM : TALL };
+      const round = part.querySelector("circle"), small = round ? 1 : OF_LETTERS;
+      return { x, y, wide: round ? RIM : Math.max(WIDE * text.textContent.length, text.getComputedTextLength() / 2), tall: round ? RIM : TALL, small };
+    }
+    // letters are larger than numbers, and have to grow less
+    grown(name) {
+      return this.letters > 1 ? Math.max(1, this.letters * name.small) : this.letters;
     }
     // where a name that has grown is put, so that it stays in the picture
     within([x, y], name) {
-      const { width, height } = this.data.window, by = this.letters;
-      const held = (at, off, half, size) => Math.max(by * half, Math.min(size - by * half, at + by * off)) - by * off;
-      return [held(x, name.x, name.wide, width), held(y, name.y, name.tall, height)];
+      const { left, top, width, height } = this.room, by = this.grown(name);
+      const held = (at, off, half, from, size) => Math.max(from + by * half, Math.min(from + size - by * half, at + by * off)) - by * off;
+      return [held(x, name.x, name.wide, left, width), held(y, name.y, name.tall, top, height)];
     }
 
     // --- what is switched on and off --------------------------------------------------------------------------------
@@ -345,9 +356,17 @@
           }
         }
       }
-      bottom += told * SCALE * this.letters;
-      this.view = { left, bottom };
-      this.svg.setAttribute("viewBox", `${left} ${top} ${right - left} ${bottom - top}`);
+      this.base = { width: right - left, height: bottom - top };
+      const around = ROOM * Math.max(0, this.whole - 1);
+      [left, top, right] = [left - around, top - around, right + around];
+      bottom += around + told * SCALE * this.whole;
+      this.room = { left, top, width: right - left, height: bottom - top };
+      this.frame();
+    }
+    // what of its room is seen: all of it, unless view_box.js enlarges it
+    frame() {
+      const { left, top, width, height } = this.room;
+      this.svg.setAttribute("viewBox", `${left} ${top} ${width} ${height}`);
     }
     overlay() {
       const known = this.assembled[this.pose] === 1;
@@ -368,7 +387,7 @@
         if (Math.hypot(vx, vy) >= scale.shortest) this.arrow(this.paper(this.place(letter)), [vx, -vy], kind, layer);
       }
       const both = kind === "acceleration" && this.shown.has("velocity");
-      const x = this.view.left + 12, y = this.view.bottom - (both ? 1.5 : 0.5) * SCALE * this.letters;
+      const { left, top, height } = this.room, x = left + 12, y = top + height - (both ? 1.5 : 0.5) * SCALE * this.letters;
       this.arrow([x, y], [scale.length, 0], kind, layer);
       this.text(`${kind}, ${scale.text}`, x + 8 + scale.length, y, "ck-note", "start", layer);
     }
@@ -388,14 +407,14 @@
       const before = VECTORS.filter(([kind]) => this.shown.has(kind) && this.data.vectors[kind]).length;
       const rows = [["drive", text], ...Object.entries(kinds)];
       rows.forEach(([kind, words], row) => {
-        const x = this.view.left + 12, y = this.view.bottom - (before + rows.length - row - 0.5) * SCALE * this.letters;
+        const { left, top, height } = this.room, x = left + 12, y = top + height - (before + rows.length - row - 0.5) * SCALE * this.letters;
         const long = kind === "drive" ? length : KEY;
         this.arrow([x, y], [long, 0], kind, layer);
         this.text(words, x + 8 + long, y, "ck-note", "start", layer);
       });
     }
     text(words, x, y, style, anchor, layer) {
-      const grown = this.letters > 1 ? ` scale(${this.letters})` : "";
+      const grown = this.letters !== 1 ? ` scale(${this.letters})` : "";
       make("text", { class: style, transform: `translate(${x} ${y})${grown}`, dy: "0.35em", "text-anchor": anchor }, layer).textContent = words;
     }
     arrow([x, y], [dx, dy], kind, layer) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-PLAYER_SCRIPT, PLAYER_STYLE = "player.js", "player.css"
+PLAYER_SCRIPTS, PLAYER_STYLE = ("player.js", "view_box.js"), "player.css"
 # In this order: each uses those before it.
 SCRIPTS = (
     "live/machine.js",
@@ -48,9 +48,9 @@ def scripts_of(data: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the names of the scripts of a motion's data.
 
     >>> scripts_of({"live": None})
-    ('player.js',)
+    ('player.js', 'view_box.js')
     """
-    return (PLAYER_SCRIPT, *(SCRIPTS if is_live(data) else ()))
+    return (*PLAYER_SCRIPTS, *(SCRIPTS if is_live(data) else ()))
 
 
 def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:

@@ -142,7 +142,7 @@
       const { extent } = this;
       this.extent = extent ? extent.map((edge, k) => (k < 2 ? Math.min : Math.max)(edge, found[k])) : found;
       // under a pointer that drags, the picture stays where it is
-      if (!this.player.svg.classList.contains("dragging")) this.show();
+      if (!this.player.root.querySelector(".handle.held")) this.show();
     }
     settle() {
       this.extent = this.design.isChanged ? this.reach() : null;

@@ -1,0 +1,56 @@
+"""The view of the sketch: enlarged and moved by buttons, keys, wheel and pointer; its text legible at any width."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+BOX = """() => document.querySelector("svg.sketch").getAttribute("viewBox").split(" ").map(Number)"""
+SMALLEST = """() => Math.min(...[...document.querySelectorAll("svg.sketch .parts text")].map((text) =>
+    parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a))"""
+
+
+def test_the_view_is_enlarged_moved_and_fitted_again(made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"))
+    x, _, width, _ = whole = view.value(BOX)
+    view.get_by_role("button", name="Larger").click()
+    assert view.value(BOX)[2] == pytest.approx(width / 1.4)
+    view.focus("svg.sketch")
+    view.keyboard.press("+")
+    view.keyboard.press("ArrowRight")
+    moved = view.value(BOX)
+    assert moved[2] == pytest.approx(width / 1.96) and moved[0] > x + (width - moved[2]) / 2
+    assert view.value(SMALLEST) >= 11.99
+    view.keyboard.press("0")
+    assert view.value(BOX) == pytest.approx(whole)
+    # the wheel alone scrolls the page; with Ctrl the place below the pointer stays where it is
+    box = view.locator("svg.sketch").bounding_box()
+    at = round(box["x"] + box["width"] / 4), round(box["y"] + box["height"] / 4)
+    view.mouse.move(*at)
+    place = "at => { const p = compoundkin.players[0].viewBox.place(at); return [p.x, p.y]; }"
+    before = view.value(place, at)
+    view.keyboard.down("Control")
+    view.mouse.wheel(0, -300)
+    view.keyboard.up("Control")
+    view.wait_for_function(f"() => ({BOX})()[2] < {width * 0.9}")
+    assert view.value(place, at) == pytest.approx(before, abs=0.01)
+    # empty ground is dragged, and the picture goes with it
+    start = view.value(BOX)
+    view.mouse.down()
+    view.mouse.move(at[0] - 30, at[1])
+    view.mouse.up()
+    assert view.value(BOX)[0] > start[0]
+    assert view.value(place, (at[0] - 30, at[1])) == pytest.approx(before, abs=0.01)
+    view.get_by_role("button", name="The whole sketch").click()
+    assert view.value(BOX) == pytest.approx(whole) and view.complaints == []
+
+
+@pytest.mark.parametrize("width", [360, 768, 1440])
+def test_text_in_the_sketch_is_legible_at_any_width(width: int, made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"), size=(width, 740))
+    assert view.value(SMALLEST) >= 11.99
+    wide = view.value(
+        "() => { const p = document.querySelector('.player'), s = p.querySelector('.sketch'); return s.clientWidth / p.clientWidth; }"
+    )
+    assert wide > 0.99
