@@ -361,10 +361,10 @@
       [left, top, right] = [left - around, top - around, right + around];
       bottom += around + told * SCALE * this.whole;
       this.room = { left, top, width: right - left, height: bottom - top };
-      this.frame();
+      this.seeRoom();
     }
     // what of its room is seen: all of it, unless view_box.js enlarges it
-    frame() {
+    seeRoom() {
       const { left, top, width, height } = this.room;
       this.svg.setAttribute("viewBox", `${left} ${top} ${width} ${height}`);
     }

@@ -14,7 +14,7 @@
       this.buttons();
       this.keys();
       this.pointers();
-      player.frame = () => this.frame();
+      player.seeRoom = () => this.frame();
       player.viewBox = this;
       player.makeRoom();
     }
