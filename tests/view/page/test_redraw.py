@@ -49,7 +49,7 @@ NAMES = (
 # Vertices are written to a hundredth of a picture unit, and so are the places of parts.
 WRITTEN = 0.02
 # Points are moved by up to this part of the mechanism's size, angles by so much.
-MOVED = 0.015
+MOVED = 0.008
 # A line of more vertices is a curve, of which those are left out that it does not need.
 CORNERS = 20
 
