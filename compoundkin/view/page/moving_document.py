@@ -11,7 +11,7 @@ from compoundkin.view.page.markup import data_script
 from compoundkin.view.page.viewer import Viewer
 
 # What draws the plots.
-PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plots.js")
+PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plot_panel.js", "plots.js")
 
 
 def with_viewer(document: Document, moving: Viewer) -> Document:

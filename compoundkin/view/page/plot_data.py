@@ -9,6 +9,7 @@ import numpy as np
 from compoundkin.base.arrays import degrees
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes import between
+from compoundkin.kinematics.extremes.inputs_between import inputs_between
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import TIME, coordinate_dimension, order_of
@@ -24,7 +25,7 @@ def plot_data(moving: MotionData) -> dict[str, Any]:
 
     The pace is at the page's poses, rounding of lengths and angles by the orders of their rates. A jump has its place,
     counted in the page's poses, whether it is the end or the beginning of a smooth stretch, and
-    the outputs' values there.
+    what outputs and drivers are there.
     """
     return {"rate": _pace(moving), "jumps": _jumps(moving), "rounding": _rounding(moving)}
 
@@ -53,9 +54,10 @@ def _jumps(moving: MotionData) -> list[dict[str, Any]]:
         return []
     known = {name: _values(moving, name, places) for name in moving.outputs}
     parts = [{name: _known(of, k) for name, of in known.items()} for k in range(len(places))]
+    drives = _drives(moving, places)
     on_page = np.interp(places, moving.chosen, np.arange(len(moving.chosen)))
     return [
-        {"place": float(place), "begins": bool(k < np.count_nonzero(begins)), "values": parts[k]}
+        {"place": float(place), "begins": bool(k < np.count_nonzero(begins)), "values": parts[k], "drives": drives[k]}
         for k, place in enumerate(on_page)
     ]
 
@@ -66,6 +68,14 @@ def _values(moving: MotionData, name: str, places: Number) -> dict[str, Number]:
         there = between(moving.motion, moving.sample.design, places, max(moving.motion.order, order_of(name)))
         found = quantity(there, name).shown
     return shown_parts(np.ravel(found.values), moving.sample.floor(moving.sample.quantity(name)))
+
+
+def _drives(moving: MotionData, places: Number) -> list[list[list[float]]]:
+    """Return value, rate and second of each driver at places of the motion."""
+    designs = np.full(len(places), moving.sample.design)
+    found = inputs_between(moving.motion, designs, places, max(ORDERS)).drives.values()
+    rows = [[np.broadcast_to(np.ravel(v), len(places)).tolist() for v in values[: len(ORDERS)]] for values in found]
+    return [[[values[k] for values in row] for row in rows] for k in range(len(places))]
 
 
 def _known(parts: dict[str, Number], k: int) -> dict[str, float | None]:

@@ -44,6 +44,8 @@ def test_jumps_part_curves_rounding_has_no_marks_and_axes_have_limits(opened: An
     parts = ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("rod", B=0, C=3), ck.link("arm", D=0, C=3)
     names = ["arm.angular_acceleration", "crank.angular_velocity", "B.position"]
     mechanism = ck.Mechanism("program", *parts, ck.drive("crank", law=law), outputs=names)
+    longer = ck.link("rod", B=0, C=3.2)
+    changed = ck.Mechanism("program", *parts[:2], longer, parts[3], ck.drive("crank", law=law), outputs=names)
     motion = ck.solve(mechanism, time=np.linspace(0.0, 1.0, 23))
     page(motion).save(tmp_path / "jump.html")
     view = opened(tmp_path / "jump.html")
@@ -51,6 +53,7 @@ def test_jumps_part_curves_rounding_has_no_marks_and_axes_have_limits(opened: An
     assert [(round(a["x"], 6), round(b["x"], 6)) for a, b in pieces] == [(0, 0.25), (0.25, 0.76), (0.76, 1)]
     exact = ck.solve(mechanism, time=np.array([0.25 + 1e-9, 0.76 - 1e-9])).links["arm"].angular_acceleration
     assert [one["y"] for one in pieces[1]] == pytest.approx(exact.tolist(), rel=1e-6)
+    _follows(view, ck.solve(changed, time=motion.time))
     view.value("compoundkin.plots.add('A.position')")
     assert view.value(f"{PANELS}['A.position'].curves.map((curve) => curve.marks.length)") == [0, 0]
     assert view.value("compoundkin.plots.panels.every(({ plot }) => plot.series.every((one, k) => !k || !one.pxAlign))")
@@ -63,3 +66,15 @@ def test_jumps_part_curves_rounding_has_no_marks_and_axes_have_limits(opened: An
     panel.locator(".u-over").dblclick()
     assert view.value("compoundkin.plots.panels.at(-1).plot.scales.x.min") == 0.0
     assert view.complaints == []
+
+
+def _follows(view: Any, motion: ck.results.Motion) -> None:
+    """The extremes of a changed motion in time, on both sides of jumps too."""
+    view.value("() => { compoundkin.design.change({ 'rod.C.x': 3.2 }); compoundkin.figures.follow(); }")
+    (found,) = extremes(motion, "arm.angular_acceleration")
+    row = view.value("""() => [...document.querySelectorAll("tr[data-figure]")]
+        .find((row) => row.dataset.figure.includes("range") && row.dataset.figure.includes("arm.angular_acc"))
+        .innerHTML.match(/data-sort="[^"]*"/g).map((text) => Number(text.slice(11, -1)))""")
+    wanted = [v for end in (found.least, found.greatest) for v in (end.value[0], end.at.time[0])]
+    assert row[:4] == pytest.approx(wanted, abs=1e-5)
+    view.value("() => { compoundkin.design.reset(); compoundkin.figures.follow(); }")

@@ -5,7 +5,8 @@
   const TURN = 2 * Math.PI;
   const ROUNDING = 1e-12; // values nearer than this part of what is natural for them are one
   const ADDED = 0.5; // second differences by which a curve may rise beyond a pose
-  const ASIDE = 1e-9; // from a jump values are taken so far away, of a place
+  const SAME_JUMP = 1e-7; // places so near are both sides of a jump
+  const BESIDE = 2e-9; // a jump is so near to its pose, of a place
   const GOLDEN = (3 - Math.sqrt(5)) / 2;
   const NEAR = 3e-8; // how near a highest place is searched, of a place: nearer, values differ by rounding alone
   const STEPS = 4, WIDE = 1e-5; // to a zero of a length, and for its slopes
@@ -53,20 +54,32 @@
       Object.assign(this, { path, numbers, solved, player, last: player.poses - 1, known: new Map() });
       this.time = player.along.name === "time" ? player.along.values : null;
       this.wrapped = Object.fromEntries(path.program.outputs.map(({ name, wrapped }) => [name, wrapped]));
-      this.jumps = [...new Set((player.data.plots?.jumps ?? []).map(({ place }) => Math.round(place / (2 * ASIDE)) * 2 * ASIDE))];
+      this.jumps = paired(player.data.plots?.jumps ?? []);
     }
     // what is natural for a length or an angle, or a rate of it
     scale(kind, order) {
       const known = this.player.data.plots?.rounding[kind];
       return known ? known[order] / ROUNDING : 1;
     }
+    // where it is known what the drivers do: at poses, and on both sides of jumps in the place of a pose that is one
+    get knots() {
+      if (this.tied) return this.tied;
+      const { drives } = this.path, jumps = this.player.data.plots?.jumps ?? [];
+      const time = (s) => { const k = Math.min(Math.floor(s), this.last - 1); return this.time[k] + (s - k) * (this.time[k + 1] - this.time[k]); };
+      const sides = jumps.map(({ place, drives: rows }) => ({ place, time: time(place), rows }));
+      const poses = Array.from(this.time, (at, k) => ({ place: k, time: at, rows: drives.map((rows) => rows.map((row) => row[k])) }));
+      const kept = poses.filter(({ place }) => !jumps.some((jump) => Math.abs(jump.place - place) < SAME_JUMP));
+      return (this.tied = [...kept, ...sides].sort((a, b) => a.place - b.place));
+    }
     // what the drivers do at a place: between poses in proportion; in time by a polynomial with their rates
     drives(s) {
+      if (this.time) {
+        const { knots } = this, next = Math.min(Math.max(knots.findIndex(({ place }) => place >= s), 1), knots.length - 1);
+        const [a, b] = [knots[next - 1], knots[next]], at = [a, b].find(({ place }) => place === s), t = (s - a.place) / (b.place - a.place);
+        return at ? at.rows : a.rows.map((row, d) => quintic(b.time - a.time, t, row.map((value, order) => [value, b.rows[d][order]])));
+      }
       const k = Math.min(Math.max(Math.floor(s), 0), this.last - 1), t = s - k;
-      return this.path.drives.map(([value, rate, second]) => {
-        if (!this.time) return [value, rate, second].map((row) => row[k] + t * (row[k + 1] - row[k]));
-        return quintic(this.time[k + 1] - this.time[k], t, [value, rate, second].map((row) => [row[k], row[k + 1]]));
-      });
+      return this.path.drives.map((rows) => rows.map((row) => row[k] + t * (row[k + 1] - row[k])));
     }
     at(s) {
       const k = Math.round(Math.min(Math.max(s, 0), this.last));
@@ -93,14 +106,15 @@
         if (k < this.last && assembled[k + 1]) found.push({ low: k, high: k + 1, ends: [false, false] });
         if (k < this.last && !assembled[k + 1]) found.push({ low: k, high: this.limit(k, k + 1), ends: [false, true] });
       }
-      for (const jump of this.jumps) {
-        for (const one of found.filter(({ low, high }) => low <= jump + ASIDE && jump - ASIDE <= high)) {
-          const after = { low: jump + ASIDE, high: one.high, ends: [false, one.ends[1]] };
-          [one.high, one.ends] = [Math.min(one.high, jump - ASIDE), [one.ends[0], one.high < jump && one.ends[1]]];
-          if (after.high - after.low > ASIDE) found.push(after);
-        }
+      let whole = found;
+      for (const [before, after] of this.jumps) {
+        const [from, to] = [before ?? after, after ?? before];
+        whole = whole.flatMap((one) => (one.low > to || one.high < from ? [one] : [
+          { low: one.low, high: before ?? -Infinity, ends: [one.ends[0], false] },
+          { low: after ?? Infinity, high: one.high, ends: [false, one.ends[1]] },
+        ].filter(({ low, high }) => high > low)));
       }
-      return (this.found = found.filter(({ low, high }) => high > low).sort((a, b) => a.low - b.low));
+      return (this.found = whole.sort((a, b) => a.low - b.low));
     }
     get closes() {
       const { links, assembled } = this.solved, { last } = this, size = this.scale("length", 0);
@@ -121,6 +135,12 @@
     }
   }
 
+  // both sides of jumps: [place before, place after], one of them null at an end of the motion
+  const paired = (jumps) => {
+    const [ends, begins] = [false, true].map((kind) => jumps.filter((one) => one.begins === kind).map(({ place }) => place));
+    const beside = (list, place) => list.find((one) => Math.abs(one - place) < SAME_JUMP) ?? null;
+    return [...ends.map((place) => [place, beside(begins, place)]), ...begins.filter((place) => beside(ends, place) === null).map((place) => [null, place])];
+  };
   // value, rate and second at t of an interval in time, from those at both ends
   const quintic = (h, t, [[a, b], [da, db], [dda, ddb]]) => {
     const [p, q, r] = [da * h, dda * h * h, b - a], [dp, dq] = [db * h, ddb * h * h];
@@ -185,7 +205,9 @@
       }
       for (const one of offers) if (one.value > best) best = one.value;
       const first = offers.filter(({ value }) => value >= best - slack).reduce((a, b) => (b.at < a.at ? b : a), { at: Infinity });
-      return { value: sign * best, at: first.at, slack };
+      // both sides of a jump at a pose are that pose
+      const at = Math.abs(first.at - Math.round(first.at)) <= BESIDE ? Math.round(first.at) : first.at;
+      return { value: sign * best, at, slack };
     }
     // the least length near a place: where it is zero the steps of Gauss and Newton lead there
     zero(start, low, high) {

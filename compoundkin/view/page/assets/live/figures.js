@@ -170,6 +170,11 @@
       const whole = player.outputs.find((one) => one.name === name), vector = player.outputs.find((one) => one.name === name.slice(0, dot));
       const values = whole ? whole.parts[""] : vector && vector.parts[name.slice(dot + 1)];
       if (!values) continue;
+      // what no program tells, as forces, stays as it was
+      if (!design.solved.outputs[(whole ?? vector).name]) {
+        for (const [row] of seen) row.cells[head.cellIndex].classList.add("behind");
+        continue;
+      }
       const write = fixed(poses.map(([, k]) => values[k])), column = head.cellIndex;
       for (const [row, k] of seen) {
         const value = values[k];
