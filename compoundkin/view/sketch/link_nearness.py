@@ -8,7 +8,8 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.label_obstacles import lines_of
+from compoundkin.view.sketch.label_courses import STILL, Courses
+from compoundkin.view.sketch.label_obstacles import lines_of, obstacles
 from compoundkin.view.sketch.label_places import Label
 from compoundkin.view.sketch.shapes import CircleShape, Polygon
 from compoundkin.view.sketch.slide_shapes import Laid, Layer
@@ -53,24 +54,38 @@ def costs_of(own: Number, other: Number) -> Number:
     """Return what places cost by their distances to their own link and the nearest other."""
     wrong = own - other > EQUAL
     unclear = np.maximum(0.0, np.minimum(own, CLEARLY) - np.maximum(0.0, other - own)) * UNCLEAR
-    return np.where(wrong, WRONG + WORSE * np.minimum(own - other, own), 0.0) + np.where(own > EQUAL, unclear, 0.0)
+    return np.where(wrong, WRONG + WORSE * np.minimum(np.maximum(own - other, 0.0), own), 0.0) + np.where(
+        own > EQUAL, unclear, 0.0
+    )
 
 
-def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid]) -> list[Label]:
-    """Return labels, those of links with the costs of being nearer to another link."""
+def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid], courses: Courses = STILL) -> list[Label]:
+    """Return labels, those of links with the costs of being nearer to another link. These are of all poses."""
     shown = [one for one in laid if is_of_link(one)]
     links = list(dict.fromkeys(one.link for one in shown))
-    rows = [(line, links.index(one.link)) for one in shown for line in lines_of([one.shape])]
-    lines = np.array([line for line, _ in rows], dtype=complex).reshape(-1, 2)
-    owner = np.array([k for _, k in rows], dtype=int)
+    rows = [(courses.of(one), obstacles([one.shape])[0], links.index(one.link)) for one in shown]
+    owner = np.repeat([k for *_, k in rows], [len(lines) for _, lines, _ in rows]) if rows else np.zeros(0, dtype=int)
+    lines = np.concatenate([course.at(lines) for course, lines, _ in rows], axis=1) if rows else np.zeros((1, 0, 2))
     found = []
     for label in labels:
         kind, _, name = label.key.partition(" ")
         if kind == "link" and name in links and len(links) > 1:
-            at = np.array(label.places)
-            own = own_distances(at, (one for one in shown if one.link == name))
-            others = lines[owner != links.index(name)]
-            other = distances(at, others).min(axis=1) if len(others) else np.full(len(at), np.inf)
-            label = label.with_costs(costs_of(own, other))
+            own = own_distances(np.array(label.places), [one for one in shown if one.link == name])
+            others = courses.of_label(label.key).seen(lines[:, owner != links.index(name)])
+            label = label.with_costs(_of_all_poses(np.array(label.places), own, others))
         found.append(label)
     return found
+
+
+def _of_all_poses(at: Number, own: Number, lines: Number) -> Number:
+    """What places cost on the average of the poses, by their own distances and those of other lines at each pose."""
+    # what is farther than this from all places is none of the nearest that count
+    middle, far = at.mean(), np.abs(at - at.mean()).max() + own.max() + CLEARLY
+    costs = []
+    for at_pose in lines:
+        near = (
+            np.abs((at_pose[:, 0] + at_pose[:, 1]) / 2.0 - middle) - np.abs(at_pose[:, 1] - at_pose[:, 0]) / 2.0 < far
+        )
+        other = distances(at, at_pose[near]).min(axis=1, initial=np.inf)
+        costs.append(costs_of(own, other))
+    return np.mean(costs, axis=0)

@@ -15,13 +15,14 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.label_places import ROOM, placed, text_half
+from compoundkin.view.sketch.label_courses import Surroundings, courses_of, placed_along, poses_looked_at
+from compoundkin.view.sketch.label_places import ROOM, text_half
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, leaves, moved, sheet
 from compoundkin.view.sketch.shown_pose import scene_in
-from compoundkin.view.sketch.sketch_labels import badge, letters, numbered
+from compoundkin.view.sketch.sketch_labels import badge, labels_of
 from compoundkin.view.sketch.sketch_style import LETTER
 from compoundkin.view.sketch.sketches import in_layers, path, window_on
 from compoundkin.view.sketch.slide_shapes import Laid, Painter
@@ -195,11 +196,14 @@ def carried_parts(painter: Painter, laid: Sequence[Laid]) -> Iterator[MovingPart
 
 
 def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[MovingPart]:
-    """Numbers and letters, where they are in nobody's way at the pose shown."""
+    """Numbers and letters, where they are in the way of least over the whole motion."""
     scene, window = painter.scene, painter.window
-    wanted = [*(numbered(painter) if "links" in labels else []), *(letters(painter) if "points" in labels else [])]
-    drawn = [one.shape for one in laid]
-    for key, place in placed(wanted, drawn, window.width, window.height).items():
+    poses = poses_looked_at(
+        int(np.searchsorted(scene.known, scene.pose[1])), scene.count, len(scene.letters) + len(scene.legend)
+    )
+    courses = courses_of(scene, window, poses)
+    around = Surroundings.of(laid, courses, window.width, window.height)
+    for key, place in placed_along(labels_of(painter, laid, labels, courses), courses, around).items():
         kind, _, name = key.partition(" ")
         if kind == "link":
             yield MovingPart(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False, "", True)
