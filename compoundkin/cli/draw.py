@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -22,7 +22,14 @@ VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
 # What is drawn instead of the sketch: options, and the names of their values.
-INSTEAD = {"structure": "view", "polygon": "polygon", "construction": "construction", **FORCE_PICTURES}
+ASSEMBLED = ("configurations", "circuits")
+INSTEAD = {
+    "structure": "view",
+    "polygon": "polygon",
+    "construction": "construction",
+    **{kind: kind for kind in ASSEMBLED},
+    **FORCE_PICTURES,
+}
 
 
 @click.command(
@@ -35,6 +42,8 @@ Examples:
   compoundkin draw six-bar --at 35 --polygon velocity -o polygon.svg
   compoundkin draw six-bar --at 35 --construction plate -o circles.svg
   compoundkin draw six-bar --structure groups -o apart.svg
+  compoundkin draw six-bar --configurations --at 35 -o configurations.svg
+  compoundkin draw stephenson-iii --circuits -o circuits.svg
   compoundkin draw loaded.toml --at 35 --forces -o forces.svg
   compoundkin draw loaded.toml --at 35 --free-body plate -o plate.svg
 """
@@ -61,6 +70,12 @@ Examples:
     type=click.Choice(VIEWS),
     help="Instead: taken apart into groups; the independent loops; the graph of links and pairs; the circle diagram "
     "of centres.",
+)
+@click.option(
+    "--configurations", is_flag=True, help="Instead: all configurations at the drivers' values, to one scale."
+)
+@click.option(
+    "--circuits", is_flag=True, help="Instead: all circuits of the driver that --at leaves out, the first of those."
 )
 @force_options
 @pose_options
@@ -91,15 +106,32 @@ def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
     _fitting(asked)
     if asked["view"]:
         return draw(structure, kind=asked["view"], size=asked["size"])
+    for kind in (kind for kind in ASSEMBLED if asked[kind]):
+        return draw(structure, _values(structure, asked["at"], kind), kind=kind, **_words(asked, "labels", "size"))
     shown, at = _motion(structure, asked)
-    words = {key: asked[key] for key in ("design", "size")}
+    words = _words(asked, "design", "size")
     if wanted_of_forces(asked):
         return picture_of_forces(shown, at, asked, words)
     if asked["polygon"]:
         return draw(shown, at, kind="polygon", vectors=asked["polygon"], **words)
     if asked["construction"] is not None:
         return draw(shown, at, kind="construction", link=asked["construction"], **words)
-    return draw(shown, at, **words, **{key: asked[key] for key in OF_SKETCH})
+    return draw(shown, at, **words, **_words(asked, *OF_SKETCH))
+
+
+def _words(asked: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    return {name: asked[name] for name in names}
+
+
+def _values(structure: Structure, given: Sequence[str], kind: str) -> dict[str, float] | None:
+    """Driver values: all of them for configurations, those that are named for circuits; None where none is given."""
+    from compoundkin.cli import typed_values
+
+    if not given:
+        return None
+    found = typed_values.of_pose(structure, given)
+    named = {text.rpartition("=")[0] for text in given}
+    return found if kind == "configurations" else {name: value for name, value in found.items() if name in named}
 
 
 def _fitting(asked: Mapping[str, Any]) -> None:
@@ -112,6 +144,8 @@ def _fitting(asked: Mapping[str, Any]) -> None:
     unfit = instead[1:] + [key for key in OF_SKETCH if key != "labels" and asked[key]]
     if asked["view"]:
         unfit += [key for key in ("at", "speeds", "modes") if asked[key]]
+    if any(asked[kind] for kind in ASSEMBLED):
+        unfit += [key for key in ("speeds", "modes", "design") if asked[key]]
     if instead and unfit:
         option = unfit[0][:-1] if unfit[0] in ("paths", "speeds", "modes") else unfit[0]
         raise InvalidInput(Problem(f"--{option}", f"it does not go with --{instead[0]}", "leave one of them out"))

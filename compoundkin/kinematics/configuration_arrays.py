@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import Number, Vectors, wrapped
-from compoundkin.base.display import Shows
+from compoundkin.base.display import Shows, counted
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.configuration import (
@@ -82,6 +82,15 @@ class Configurations(Shows):
     def real_count(self) -> Number:
         """How many can be assembled, (...)."""
         return self.real.sum(axis=-1)
+
+    @property
+    def count_in_words(self) -> str:
+        """How many are real at the first driver values, and whether any is missing."""
+        real = sum(1 for _ in self)
+        if not self.possible:
+            return f"{counted(real, 'real configuration')} found by a search, which may have missed some."
+        text = f"{real} real of {self.possible} possible over the complex numbers"
+        return f"{text}; none is missing." if self.certified else f"{text}, as far as found numerically."
 
     @property
     def turns(self) -> Number:

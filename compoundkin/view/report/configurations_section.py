@@ -50,17 +50,9 @@ def configurations_section(found: Configurations) -> Section:
     )
     at = {name: float(first_entry(value)) for name, value in found.values.items()}
     angles = "The angles are those of the links from the frame's x axis."
-    text = f"{_drivers(structure, at)}: {_count(found, len(ones))} {angles}"
+    text = f"{_drivers(structure, at)}: {found.count_in_words} {angles}"
     curve = [Paragraph(CURVE.format(listed(found.curve.links)))] if found.curve else []
     return Section("configurations", "Configurations", (Paragraph(text), *curve, _table(columns, rows, keys=2)))
-
-
-def _count(found: Configurations, real: int) -> str:
-    """How many are real of how many, and how that is known."""
-    if not found.possible:
-        return f"{counted(real, 'real configuration')} found by a search, which may have missed some."
-    text = f"{real} real of {found.possible} possible over the complex numbers"
-    return f"{text}; none is missing." if found.certified else f"{text}, as far as found numerically."
 
 
 def _drivers(structure: Structure, values: Mapping[str, float]) -> str:

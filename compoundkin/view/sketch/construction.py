@@ -11,11 +11,12 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.dyad_loci import CircleLocus, Loci, Locus, same_locus
 from compoundkin.kinematics.groups import DyadSolver, as_dyad
 from compoundkin.structure import Group
+from compoundkin.view.sketch.asked_values import Drawable
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
 from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted, window_of
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, corners, sheet
-from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
+from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import SIDE, below, letters, lines_of_text, width_with
 from compoundkin.view.sketch.sketch_style import LETTER, PIN, SMALL, STUD, style_of
 from compoundkin.view.sketch.sketches import layered, nearby

@@ -13,8 +13,8 @@ from compoundkin.view.sketch.acting_forces import ShownForce
 from compoundkin.view.sketch.force_arrows import force_scale, named, written
 from compoundkin.view.sketch.force_sketch import ForcesAtPose, forces_at_pose
 from compoundkin.view.sketch.label_places import WIDE, Label, placed, text_half
-from compoundkin.view.sketch.loop_panels import PicturePart, in_rows
 from compoundkin.view.sketch.picture import MARGIN, Picture, checked_size
+from compoundkin.view.sketch.picture_rows import PicturePart, in_rows
 from compoundkin.view.sketch.shapes import CircleShape, Shape, ShapeGroup, Text, arrow, direction, moved, sheet
 from compoundkin.view.sketch.shown_pose import Wishes, pose_notes
 from compoundkin.view.sketch.sketch_labels import SIDE, below, lines_of_text

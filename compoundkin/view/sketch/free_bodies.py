@@ -13,8 +13,8 @@ from compoundkin.view.sketch.force_arrows import DrawnForce, drawn, force_scale,
 from compoundkin.view.sketch.force_sketch import ForcesAtPose, forces_at_pose, notes_below
 from compoundkin.view.sketch.label_places import WIDE, Label, around, placed, text_half
 from compoundkin.view.sketch.link_shapes import pins
-from compoundkin.view.sketch.loop_panels import PicturePart, in_rows
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size
+from compoundkin.view.sketch.picture_rows import PicturePart, in_rows
 from compoundkin.view.sketch.shapes import CircleShape, Shape, ShapeGroup, Text, corners, moved, sheet
 from compoundkin.view.sketch.shown_pose import Wishes
 from compoundkin.view.sketch.sketch_labels import label_shapes, letters

@@ -11,8 +11,8 @@ from compoundkin.model.pairs import Pair
 from compoundkin.structure import Structure
 from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
 from compoundkin.view.sketch.label_places import WIDE
-from compoundkin.view.sketch.loop_panels import PicturePart, in_rows
 from compoundkin.view.sketch.picture import MARGIN, Picture, checked_size
+from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_rows, legible_size
 from compoundkin.view.sketch.scene import groups_of, numbers_of
 from compoundkin.view.sketch.shapes import Polyline, Shape, ShapeGroup, Text, moved, sheet
 from compoundkin.view.sketch.sketch_labels import below, lines_of_text
@@ -39,13 +39,20 @@ def groups_in_graph(structure: Structure, size: float | None) -> Picture:
         nodes = [node(name, complex(places[name]), numbers[name], groups[name]) for name in own]
         edges = [*_edges(joined, places, driven), *_stubs(attached, places, own)]
         parts.append(_part(title, [*edges, *nodes], [complex(places[name]) for name in own], own))
-    shapes, width, height = in_rows(parts, "+")
+    shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
     notes = [f"{number} {name}" for name, number in numbers.items()]
     notes += ["loose ends: outer pairs"] if structure.groups else []
     texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
     title = f"{structure.mechanism.title}, taken apart"
     described = "; ".join(map(heading, structure.groups))
-    return Picture((sheet(width, height), *shapes, *texts), width, height, title, described, checked_size(size))
+    return Picture(
+        (sheet(width, height), *shapes, *texts),
+        width,
+        height,
+        title,
+        described,
+        legible_size(width, height, checked_size(size)),
+    )
 
 
 def _edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]) -> list[Shape]:

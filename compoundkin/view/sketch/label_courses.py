@@ -21,8 +21,8 @@ LARGER = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
-    """How places of a picture move: at each of some poses they are turned about zero, then shifted; complex (poses,).
+class LabelCourse:
+    """How places of a picture move. At each of some poses they are turned about zero, then shifted, complex (poses,).
 
     At the first pose, the one shown, they are where they are.
     """
@@ -36,31 +36,31 @@ class Course:
         return places * self.turn.reshape(shape) + self.shift.reshape(shape)
 
     def seen(self, places: Number) -> Number:
-        """Return places (poses, ...) as what takes this course sees them, that is, at the first pose."""
+        """Return places (poses, ...) as seen from what takes this course."""
         shape = (-1, *[1] * (np.ndim(places) - 1))
         return (places - self.shift.reshape(shape)) / self.turn.reshape(shape)
 
 
 @dataclass(frozen=True, eq=False)
-class Courses:
-    """The courses of what links carry, by the names of the links, and of what stays upright at points, by letters."""
+class LabelCourses:
+    """The courses of what links carry. What stays upright at points has theirs, by letters."""
 
-    of_links: Mapping[str, Course]
-    of_points: Mapping[str, Course]
-    others: Course
+    of_links: Mapping[str, LabelCourse]
+    of_points: Mapping[str, LabelCourse]
+    others: LabelCourse
 
-    def of(self, one: Laid) -> Course:
+    def of(self, one: Laid) -> LabelCourse:
         """Return the course of a shape."""
         return self.of_points.get(one.letter, self.others) if one.letter else self.of_links.get(one.link, self.others)
 
-    def of_label(self, key: str) -> Course:
+    def of_label(self, key: str) -> LabelCourse:
         """Return the course of a label: "link crank" or "point A"."""
         kind, _, name = key.partition(" ")
         return (self.of_links if kind == "link" else self.of_points).get(name, self.others)
 
 
 # Of a picture of one pose.
-STILL = Courses({}, {}, Course(np.ones(1, dtype=complex), np.zeros(1, dtype=complex)))
+STILL = LabelCourses({}, {}, LabelCourse(np.ones(1, dtype=complex), np.zeros(1, dtype=complex)))
 
 
 def poses_looked_at(shown: int, count: int, labels: int) -> Number:
@@ -70,23 +70,23 @@ def poses_looked_at(shown: int, count: int, labels: int) -> Number:
     return np.concatenate([[shown], others[others != shown]])
 
 
-def courses_of(scene: Scene, window: Window, poses: Number) -> Courses:
-    """Return how links and points move over some poses, the first of them that shown."""
+def courses_of(scene: Scene, window: Window, poses: Number) -> LabelCourses:
+    """Return how links and points move over some poses. The first of them is the one shown."""
     links, points = {}, {}
     for name, pose in scene.whole.items():
         z, u = (np.broadcast_to(np.atleast_1d(v.c[0]), (scene.count,))[poses] for v in (pose.z, pose.u))
         turn, at = np.conjugate(u / u[0]), window.at(z)
-        links[name] = Course(turn, at - at[0] * turn)
+        links[name] = LabelCourse(turn, at - at[0] * turn)
     for letter in scene.letters:
         at = window.at(np.broadcast_to(scene.places(letter), (scene.count,))[poses])
-        points[letter] = Course(np.ones_like(at), at - at[0])
-    still = Course(np.ones(len(poses), dtype=complex), np.zeros(len(poses), dtype=complex))
-    return Courses(links, points, still)
+        points[letter] = LabelCourse(np.ones_like(at), at - at[0])
+    still = LabelCourse(np.ones(len(poses), dtype=complex), np.zeros(len(poses), dtype=complex))
+    return LabelCourses(links, points, still)
 
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Lines and circles that labels should not be on, at some poses: complex (poses, count, 2)."""
+    """Lines and circles that labels should not be on. They are those of some poses, complex (poses, count, 2)."""
 
     lines: Number
     rounds: Number
@@ -94,7 +94,7 @@ class Surroundings:
     height: float
 
     @classmethod
-    def of(cls, laid: Sequence[Laid], courses: Courses, width: float, height: float) -> Surroundings:
+    def of(cls, laid: Sequence[Laid], courses: LabelCourses, width: float, height: float) -> Surroundings:
         """Return those of shapes on their courses."""
         lines, rounds = [], []
         # on a hatching a label can be read: it has paper around it
@@ -106,7 +106,7 @@ class Surroundings:
         nothing = np.zeros((len(courses.others.turn), 0, 2), dtype=complex)
         return cls(np.concatenate([nothing, *lines], axis=1), np.concatenate([nothing, *rounds], axis=1), width, height)
 
-    def costs(self, label: Label, course: Course) -> Number:
+    def costs(self, label: Label, course: LabelCourse) -> Number:
         """Return what each place costs on the average of the poses."""
         at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
         lines = course.seen(self.lines).reshape(-1, 2)
@@ -118,8 +118,8 @@ class Surroundings:
         return found + LARGER * outside.mean(axis=0)
 
 
-def placed_along(labels: Sequence[Label], courses: Courses, around: Surroundings) -> dict[str, complex]:
-    """Return a place for each label at the pose shown, each on its course over the motion."""
+def placed_along(labels: Sequence[Label], courses: LabelCourses, around: Surroundings) -> dict[str, complex]:
+    """Return a place for each label at the pose shown."""
     fixed = {label.key: around.costs(label, courses.of_label(label.key)) for label in labels}
 
     def crowding(label: Label, others: Sequence[Label], found: Mapping[str, complex]) -> Number:

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.label_courses import STILL, Courses
+from compoundkin.view.sketch.label_courses import STILL, LabelCourses
 from compoundkin.view.sketch.label_obstacles import lines_of, obstacles
 from compoundkin.view.sketch.label_places import Label
 from compoundkin.view.sketch.shapes import CircleShape, Polygon
@@ -51,7 +51,7 @@ def own_distances(at: Number, shapes: Iterable[Laid]) -> Number:
 
 
 def costs_of(own: Number, other: Number) -> Number:
-    """Return what places cost by their distances to their own link and the nearest other."""
+    """Return what places cost by their distances to their own link and another."""
     wrong = own - other > EQUAL
     unclear = np.maximum(0.0, np.minimum(own, CLEARLY) - np.maximum(0.0, other - own)) * UNCLEAR
     return np.where(wrong, WRONG + WORSE * np.minimum(np.maximum(own - other, 0.0), own), 0.0) + np.where(
@@ -59,7 +59,7 @@ def costs_of(own: Number, other: Number) -> Number:
     )
 
 
-def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid], courses: Courses = STILL) -> list[Label]:
+def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid], courses: LabelCourses = STILL) -> list[Label]:
     """Return labels, those of links with the costs of being nearer to another link. These are of all poses."""
     shown = [one for one in laid if is_of_link(one)]
     links = list(dict.fromkeys(one.link for one in shown))

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.structure import Loop
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
 from compoundkin.view.sketch.picture import MARGIN
+from compoundkin.view.sketch.picture_rows import PicturePart
 from compoundkin.view.sketch.shapes import (
     CircleShape,
     Polygon,
@@ -26,10 +27,6 @@ from compoundkin.view.sketch.shapes import (
 from compoundkin.view.sketch.sketch_labels import NARROW
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, PIN, SMALL, style_of
 
-# Parts stand side by side until they are so wide together, in picture units.
-WIDEST = 1000.0
-# Between parts, with a sign.
-GAP = 30.0
 # Panels are at least so wide, for their headings.
 NARROWEST = 230.0
 # Vectors that lie on each other, nearer than this, are drawn beside their line.
@@ -42,41 +39,6 @@ ROUND, SWEEP = 11.0, 4.9
 RINGS = (0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0)
 # What it costs the number of a loop to be a picture unit away from its middle.
 NEAR = 0.3
-
-
-@dataclass(frozen=True)
-class PicturePart:
-    """A part with its size, its upper left corner at zero."""
-
-    shapes: tuple[Shape, ...]
-    width: float
-    height: float
-
-
-def in_rows(parts: Sequence[PicturePart], sign: str = "") -> tuple[list[Shape], float, float]:
-    """Return the parts side by side, in rows, with a sign between them. And the size of them all.
-
-    >>> in_rows([PicturePart((), 300.0, 100.0)] * 4)[1:]
-    (1016.0, 245.0)
-    """
-    rows: list[list[PicturePart]] = []
-    for part in parts:
-        if rows and sum(p.width + GAP for p in rows[-1]) + part.width <= WIDEST:
-            rows[-1].append(part)
-        else:
-            rows.append([part])
-    shapes: list[Shape] = []
-    y, first = MARGIN / 2.0, True
-    for row in rows:
-        x, tall = MARGIN / 2.0 + GAP, max(part.height for part in row)
-        for part in row:
-            if not first and sign:
-                shapes.append(Text(complex(x - GAP / 2.0, y + tall / 2.0), sign, "heading"))
-            shapes += moved(part.shapes, complex(x, y + (tall - part.height) / 2.0))
-            x, first = x + part.width + GAP, False
-        y += tall + LINE
-    width = max(sum(part.width + GAP for part in row) for row in rows) + MARGIN
-    return shapes, round(width, 1), round(y, 1)
 
 
 @dataclass(frozen=True)

@@ -15,14 +15,14 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.label_courses import Surroundings, courses_of, placed_along, poses_looked_at
 from compoundkin.view.sketch.label_places import ROOM, text_half
+from compoundkin.view.sketch.moving_labels import own_place, placed_over_motion
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, leaves, moved, sheet
 from compoundkin.view.sketch.shown_pose import scene_in
-from compoundkin.view.sketch.sketch_labels import badge, labels_of
+from compoundkin.view.sketch.sketch_labels import badge
 from compoundkin.view.sketch.sketch_style import LETTER
 from compoundkin.view.sketch.sketches import in_layers, path, window_on
 from compoundkin.view.sketch.slide_shapes import Laid, Painter
@@ -198,15 +198,10 @@ def carried_parts(painter: Painter, laid: Sequence[Laid]) -> Iterator[MovingPart
 def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[MovingPart]:
     """Numbers and letters, where they are in the way of least over the whole motion."""
     scene, window = painter.scene, painter.window
-    poses = poses_looked_at(
-        int(np.searchsorted(scene.known, scene.pose[1])), scene.count, len(scene.letters) + len(scene.legend)
-    )
-    courses = courses_of(scene, window, poses)
-    around = Surroundings.of(laid, courses, window.width, window.height)
-    for key, place in placed_along(labels_of(painter, laid, labels, courses), courses, around).items():
+    for key, place in placed_over_motion(painter, laid, labels).items():
         kind, _, name = key.partition(" ")
         if kind == "link":
-            yield MovingPart(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False, "", True)
+            yield MovingPart(name, own_place(scene, window, name, place), (badge(scene, name, 0j),), False, "", True)
         else:
             link = scene.mechanism.carriers[name][0]
             at = scene.points[link][name]
@@ -214,10 +209,3 @@ def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> 
             yield MovingPart(
                 link, complex(at), (Text(off, name, "halo letter"), Text(off, name, "letter")), False, name, True
             )
-
-
-def _own(scene: Scene, window: Window, link: str, place: complex) -> complex:
-    """A place of the picture as a point in a link's own frame."""
-    world = np.conjugate(place) / window.scale + window.corner
-    pose = scene.here[link]
-    return complex((world - pose.z.c[0]) / pose.u.c[0])

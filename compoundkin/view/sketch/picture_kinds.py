@@ -11,8 +11,10 @@ from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure import Structure, decompose
+from compoundkin.structure import Structure
+from compoundkin.view.sketch.asked_values import Drawable, structure_of
 from compoundkin.view.sketch.centre_pictures import circle_diagram
+from compoundkin.view.sketch.configuration_pictures import circuits_picture, configurations_picture
 from compoundkin.view.sketch.construction import construction
 from compoundkin.view.sketch.force_polygons import force_polygons
 from compoundkin.view.sketch.force_sketch import force_sketch
@@ -21,7 +23,7 @@ from compoundkin.view.sketch.graph_picture import graph
 from compoundkin.view.sketch.groups_in_graph import groups_in_graph
 from compoundkin.view.sketch.picture import Picture
 from compoundkin.view.sketch.scene import groups_of, numbers_of
-from compoundkin.view.sketch.shown_pose import Drawable, Wishes, scene_of
+from compoundkin.view.sketch.shown_pose import Wishes, scene_of
 from compoundkin.view.sketch.sketches import sketch
 from compoundkin.view.sketch.structure_pictures import groups_picture, loops, loops_in_graph
 from compoundkin.view.sketch.vectors import vector_polygon
@@ -118,7 +120,7 @@ def _circle(what: Drawable, wishes: Wishes) -> Picture:
 
 
 def _graph(what: Drawable, wishes: Wishes) -> Picture:
-    structure = _structure(what)
+    structure = structure_of(what)
     return graph(structure, numbers_of(structure), groups_of(structure), wishes.size)
 
 
@@ -129,19 +131,13 @@ def _loops(what: Drawable, wishes: Wishes) -> Picture:
     except (InvalidInput, NotAssembled, NotDetermined):
         if wishes.others(("size",)):
             raise
-        return loops_in_graph(_structure(what), wishes.size)
+        return loops_in_graph(structure_of(what), wishes.size)
     return loops(scene, wishes.size)
-
-
-def _structure(what: Drawable) -> Structure:
-    if isinstance(what, Motion):
-        return what.structure
-    return what if isinstance(what, Structure) else decompose(what)
 
 
 def _taken_apart(what: Drawable) -> Structure:
     """The structure; raises NotDetermined where it cannot be taken apart."""
-    structure = _structure(what)
+    structure = structure_of(what)
     if structure.faults:
         problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
         raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")
@@ -158,6 +154,8 @@ KINDS: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
     "circle": (_circle, ("size",)),
     "polygon": (vector_polygon, (*POSE, "vectors", "size")),
     "construction": (construction, (*POSE, "link", "size")),
+    "configurations": (configurations_picture, (*POSE, "labels", "size")),
+    "circuits": (circuits_picture, ("at", "labels", "size")),
     "free-bodies": (_of_forces(free_bodies), (*POSE, "link", "size")),
     "force-polygon": (_of_forces(force_polygons), (*POSE, "link", "size")),
 }

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
-from compoundkin.base.argument_forms import is_finite_real
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import (
     ChangePointWarning,
@@ -18,25 +17,23 @@ from compoundkin.base.errors import (
     NotDetermined,
     Problem,
     UnassembledPoses,
-    UnknownName,
-    nearest,
 )
 from compoundkin.base.given_numbers import hold_design
-from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import alone, motion_of_design
-from compoundkin.model.attributes import RATES, after_number
+from compoundkin.model.attributes import RATES
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outlines.outline_shapes import outline_shapes
 from compoundkin.structure import Structure, decompose
+from compoundkin.view.sketch.asked_values import Drawable, by_name, ends_of, value_note
 from compoundkin.view.sketch.scene import Scene, scene_of_motion
 
 # A driver value is that of a pose if it differs by no more than this part of the driver's range.
 SAME = 1e-9
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6
-Drawable: TypeAlias = Motion | Mechanism | Structure
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +78,7 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
         return scene_in(motion, at, pose, design)
     structure = what if isinstance(what, Structure) else decompose(what)
     if at is not None:
-        return scene_in(solve(what, _by_name(structure, at)), None, None, design)
+        return scene_in(solve(what, by_name(structure, at)), None, None, design)
     return scene_as_drawn(structure)
 
 
@@ -99,8 +96,8 @@ def scene_as_drawn(structure: Structure) -> Scene:
             what = f"{name!r} is not drawn, and the mechanism cannot be solved"
             raise InvalidInput(Problem(f"links.{name}", what, "draw its points with drawn(...)"))
     points = {link: {k: complex(first_entry(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
-    ends = {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
-    return Scene(structure, here, here, points, ends, outlines=outline_shapes(structure.mechanism, points))
+    outlines = outline_shapes(structure.mechanism, points)
+    return Scene(structure, here, here, points, ends_of(structure), outlines=outlines)
 
 
 def solved_over(what: Mechanism | Structure) -> Motion | None:
@@ -125,27 +122,11 @@ def scene_in(motion: Motion, at: Any, pose: int | None, design: int) -> Scene:
     elif at is None:
         shown, index = motion, _nearest_to_drawing(motion, design, failed)
     else:
-        shown, index = _at_values(motion, _by_name(motion.structure, at), design)
+        shown, index = _at_values(motion, by_name(motion.structure, at), design)
     known = np.broadcast_to(shown.failed, (shown.inputs.designs, shown.inputs.poses)) == 0
     if not known[min(design, len(known) - 1)][index]:
         raise NotAssembled(Problem("pose", "the mechanism cannot be assembled there", "gaps() tells where and why"))
     return scene_of_motion(motion, shown, design, index)
-
-
-def _by_name(structure: Structure, at: Any) -> dict[str, float]:
-    """Driver values by name, numbers; raises for what does not fit."""
-    names = [drive.name for drive in structure.mechanism.drives]
-    if not isinstance(at, Mapping):
-        if len(names) != 1:
-            what = f"there are {len(names)} drivers" if names else "the mechanism has no driver"
-            raise InvalidInput(Problem("at", what, "name them: at={'driver': value}"))
-        at = {names[0]: at}
-    for name, value in at.items():
-        if name not in names:
-            raise UnknownName(Problem(f"at.{name}", "there is no such driver", nearest(str(name), names)))
-        if not is_finite_real(value):
-            raise InvalidInput(Problem(f"at.{name}", f"{value!r} is not a number", "give the value at one pose"))
-    return {name: float(value) for name, value in at.items()}
 
 
 def _nearest_to_drawing(motion: Motion, design: int, failed: Number) -> int:
@@ -207,14 +188,5 @@ def pose_notes(scene: Scene) -> list[str]:
     """Return the drivers' values at the pose shown."""
     if scene.shown is None:
         return []
-    found = []
-    for step in scene.driven:
-        value = scene.driver_value(step.drive.name)
-        is_angle = step.pair.free_is_angle
-        shown = f"{np.rad2deg(value):.5g}" if is_angle else f"{value:.6g}"
-        found.append(f"{step.drive.name} at {shown}{after_number(is_angle, scene.mechanism.unit)}")
-    return found
-
-
-def _first_side(value: Number) -> Number:
-    return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)
+    names = [step.drive.name for step in scene.driven]
+    return [value_note(scene.structure, name, scene.driver_value(name)) for name in names]

@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding, Wheel
 from compoundkin.view.sketch.guide_points import shown_points
-from compoundkin.view.sketch.label_courses import STILL, Courses
+from compoundkin.view.sketch.label_courses import STILL, LabelCourses
 from compoundkin.view.sketch.label_places import Label, around, text_half
 from compoundkin.view.sketch.link_nearness import beside_their_links
 from compoundkin.view.sketch.link_shapes import edges, joints, skeleton
@@ -37,7 +37,9 @@ OUTSIDE = 30.0
 ON_EDGE = 8.0
 
 
-def labels_of(painter: Painter, laid: Sequence[Laid], asked: Sequence[str], courses: Courses = STILL) -> list[Label]:
+def labels_of(
+    painter: Painter, laid: Sequence[Laid], asked: Sequence[str], courses: LabelCourses = STILL
+) -> list[Label]:
     """Return the labels that are asked for. A number of a link is nearer to it than to any other."""
     numbers = beside_their_links(numbered(painter), laid, courses) if "links" in asked else []
     return [*numbers, *(letters(painter) if "points" in asked else [])]

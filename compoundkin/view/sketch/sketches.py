@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
+from compoundkin.view.sketch.asked_values import Drawable
 from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.view.sketch.driver_shapes import drives
 from compoundkin.view.sketch.geneva_shapes import genevas
@@ -22,7 +23,7 @@ from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_siz
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.scene_extent import extent
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, ShapeGroup, corners, sheet
-from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
+from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import LINE
 from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter

@@ -14,8 +14,9 @@ from compoundkin.structure import Group, Loop, Structure, roman
 from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
 from compoundkin.view.sketch.label_places import WIDE, Label, placed
 from compoundkin.view.sketch.link_shapes import edges, skeleton
-from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, PicturePart, chain, in_rows, panel_of, parts_of
+from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, chain, panel_of, parts_of
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
+from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_rows, legible_size
 from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes, Text, corners, moved, sheet
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, labels_of, lines_of_text
@@ -47,14 +48,15 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
     ground = frozenset((FRAME, *scene.structure.ground.links))
     parts = [_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
     parts += [_part(scene, whole, frozenset(g.links), heading(g), outer_letters(g)) for g in scene.structure.groups]
-    shapes, width, height = in_rows(parts, "+")
+    shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
     notes = [f"{number} {name}" for name, number in scene.legend.items()]
     notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
     texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
     paper = sheet(width, height)
     title = f"{scene.mechanism.title}, taken apart"
     described = "; ".join(heading(group) for group in scene.structure.groups)
-    return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
+    shown = legible_size(width, height, checked_size(size))
+    return Picture((paper, *shapes, *texts), width, height, title, described, shown)
 
 
 def heading(group: Group) -> str:

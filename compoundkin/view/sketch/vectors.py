@@ -11,12 +11,13 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, readable
 from compoundkin.model.elements import FRAME
+from compoundkin.view.sketch.asked_values import Drawable
 from compoundkin.view.sketch.label_places import around, placed, text_half
 from compoundkin.view.sketch.link_shapes import outline
 from compoundkin.view.sketch.picture import NARROWEST, Picture, Window, checked_size, fitted
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, arrow, sheet
-from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
+from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import SEPARATOR, SIDE, below, width_with
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
 

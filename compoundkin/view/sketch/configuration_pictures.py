@@ -1,0 +1,185 @@
+"""All configurations of a mechanism, or all its circuits, side by side and to one scale."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arrays import degrees
+from compoundkin.base.display import counted
+from compoundkin.base.errors import InvalidInput, NotAssembled
+from compoundkin.base.poses import Pose
+from compoundkin.configurations.circuit import Circuit
+from compoundkin.configurations.circuit_search import circuits
+from compoundkin.configurations.enumeration import configurations
+from compoundkin.kinematics.configuration import BETWEEN, Configuration
+from compoundkin.model.attributes import after_number
+from compoundkin.model.outlines.outline_shapes import outline_shapes
+from compoundkin.structure import Structure
+from compoundkin.view.sketch.asked_values import Drawable, by_name, ends_of, structure_of, value_note
+from compoundkin.view.sketch.label_places import placed
+from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
+from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_rows, legible_size
+from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, sheet
+from compoundkin.view.sketch.shapes import moved as shifted
+from compoundkin.view.sketch.shown_pose import Wishes, scene_of
+from compoundkin.view.sketch.sketch_labels import NARROW, below, label_shapes, labels_of, lines_of_text
+from compoundkin.view.sketch.sketch_style import LINE, SMALL
+from compoundkin.view.sketch.sketches import asked_labels, by_links, ghost, in_layers, layered, window_on
+from compoundkin.view.sketch.slide_shapes import Painter
+
+# More panels than this nobody compares.
+MOST = 40
+# Panels are no larger than this, in picture units: up to so many of them such that two stand side by side, or three.
+LARGEST = {4: 350.0, MOST: 222.0}
+# They are at least so wide, for their headings.
+NARROWEST = 200.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Panel:
+    """One configuration with its heading, what is said of it, and others that are drawn faintly."""
+
+    heading: str
+    said: str
+    scene: Scene
+    faint: tuple[Scene, ...] = ()
+
+
+def configurations_picture(what: Drawable, wishes: Wishes) -> Picture:
+    """Draw all configurations at a value of every driver. Raises what `configurations` does."""
+    structure = structure_of(what)
+    found = configurations(structure, _values(what, structure, wishes))
+    ones = list(found)
+    scenes = _scenes(structure, ones)
+    panels = [_Panel(str(k), one.name, s) for k, (one, s) in enumerate(zip(ones, scenes, strict=True), start=1)]
+    notes = [*_drivers(structure, ones[0].values if ones else {}), found.count_in_words.rstrip(".")]
+    return _picture(structure, panels, notes, "configurations", wishes)
+
+
+def _values(what: Drawable, structure: Structure, wishes: Wishes) -> dict[str, float] | None:
+    """The values asked for; else those of the pose that a sketch would show."""
+    if wishes.at is not None:
+        return by_name(structure, wishes.at)
+    try:
+        scene = scene_of(what, None, wishes.pose, wishes.design)
+    except (InvalidInput, NotAssembled):
+        if wishes.pose is not None:
+            raise
+        # there may be other configurations than the one that is drawn
+        return None
+    return {step.drive.name: scene.driver_value(step.drive.name) for step in scene.driven} if scene.shown else None
+
+
+def circuits_picture(what: Drawable, wishes: Wishes) -> Picture:
+    """Draw all circuits. Each is in the middle of its first branch, its other branches faint.
+
+    The driver moves that `at` leaves out, the first of those; the others stand still. Raises what `circuits` does.
+    """
+    structure = structure_of(what)
+    names = [drive.name for drive in structure.mechanism.drives]
+    given = by_name(structure, wishes.at) if wishes.at is not None else {}
+    free = [name for name in names if name not in given] or names
+    values = {name: value for name, value in given.items() if name != free[0]} if free else {}
+    found = circuits(structure, free[0] if free else None, values)
+    scenes = iter(_scenes(structure, [branch.configuration for branch in found.branches]))
+    panels = []
+    for circuit in found.circuits:
+        first, *others = [next(scenes) for _ in circuit.branches]
+        said = _of_circuit(structure, found.driver, circuit)
+        panels.append(_Panel(f"circuit {circuit.number}", said, first, tuple(others)))
+    count = f"{counted(len(found.circuits), 'circuit')} of {found.driver}"
+    branches = f"{counted(len(found.branches), 'branch', 'branches')}, each in its middle"
+    return _picture(structure, panels, [count, branches, *_drivers(structure, found.fixed)], "circuits", wishes)
+
+
+def _of_circuit(structure: Structure, driver: str, circuit: Circuit) -> str:
+    """Say which branches a circuit has, and how far the driver goes."""
+    numbers = [str(branch.number) for branch in circuit.branches]
+    said = f"branch {numbers[0]}" if len(numbers) == 1 else f"branches {', '.join(numbers)}"
+    if circuit.turns_fully:
+        return f"{said}: {driver} turns fully"
+    is_angle = structure.driven_angles.get(driver, False)
+    low, high = (float(degrees(v)) if is_angle else v for v in (circuit.low, circuit.high))
+    return f"{said}: {driver} from {low:.4g} to {high:.4g}{after_number(is_angle, structure.mechanism.unit)}"
+
+
+def _scenes(structure: Structure, ones: Sequence[Configuration]) -> list[Scene]:
+    """The scenes of configurations. A guide is as long in each as any of them needs it."""
+    if not ones:
+        return []
+    first = ones[0]
+    whole = {name: _whole([one.poses[name] for one in ones]) for name in first.poses}
+    outlines = outline_shapes(structure.mechanism, first.dimensions)
+    scene = Scene(structure, whole, first.poses, first.dimensions, ends_of(structure), outlines=outlines)
+    return [scene.ghost(k) for k in range(len(ones))]
+
+
+def _whole(poses: Sequence[Pose]) -> Pose:
+    """Several poses of one link as one array."""
+    z, u = (np.array([side.c[0] for side in sides]) for sides in zip(*((p.z, p.u) for p in poses), strict=True))
+    return Pose.of(z, u)
+
+
+def _drivers(structure: Structure, values: Mapping[str, float]) -> list[str]:
+    """What the drivers' values are."""
+    return [value_note(structure, name, value) for name, value in values.items()]
+
+
+def _picture(
+    structure: Structure, panels: Sequence[_Panel], notes: Sequence[str], kind: str, wishes: Wishes
+) -> Picture:
+    """The panels in rows, and what stands below them."""
+    asked, size, mechanism = asked_labels(wishes.labels), checked_size(wishes.size), structure.mechanism
+    shown = panels[:MOST]
+    parts = _parts(shown, asked)
+    shapes, width, height = in_rows(parts, widest=PAPER_WIDTH)
+    more = [f"and {len(panels) - MOST} more"] if len(panels) > MOST else []
+    legend = shown[0].scene.legend.items() if shown and "links" in asked else ()
+    notes = [*notes, *more, *(f"{number} {name}" for name, number in legend)]
+    texts, height = below(lines_of_text(notes, width - 32.0), height)
+    described = "; ".join(f"{panel.heading}: {panel.said}" for panel in panels)
+    title = f"{mechanism.title}: {kind}"
+    return Picture(
+        (sheet(width, height), *shapes, *texts), width, height, title, described, legible_size(width, height, size)
+    )
+
+
+def _parts(panels: Sequence[_Panel], asked: Sequence[str]) -> list[PicturePart]:
+    """The panels with their headings, all in one window."""
+    scenes = [scene for panel in panels for scene in (panel.scene, *panel.faint)]
+    if not scenes:
+        return []
+    window = _window(scenes, next(size for count, size in LARGEST.items() if len(panels) <= count))
+    across = int(window.width / (SMALL * NARROW))
+    wrap = textwrap.TextWrapper(across, break_on_hyphens=False, break_long_words=False).wrap
+    said = [wrap(panel.said.replace(BETWEEN, " /\u00a0")) for panel in panels]
+    down = LINE * (1 + max(map(len, said)))
+    parts = []
+    for panel, lines in zip(panels, said, strict=True):
+        top = complex(window.width / 2.0, LINE * 0.5)
+        heads: list[Shape] = [Text(top, panel.heading, "heading")]
+        heads += [Text(top + 1j * LINE * i, line, "note") for i, line in enumerate(lines, start=1)]
+        part = ShapeGroup((*heads, *shifted(_drawn(panel, window, asked), 1j * down)))
+        parts.append(PicturePart((part,), window.width, window.height + down))
+    return parts
+
+
+def _window(scenes: Sequence[Scene], largest: float) -> Window:
+    """The one window of all scenes."""
+    first = window_on(scenes[0], scenes[1:])
+    scale = min(1.0, (largest - 2.0 * MARGIN) / max(first.width - 2.0 * MARGIN, first.height - 2.0 * MARGIN))
+    whole = Window(first.scale * scale, first.corner, 0.0, 0.0)
+    points = np.array([p for scene in scenes for p in corners(layered(Painter(scene, whole)))] or [0j])
+    return fitted(whole, points, NARROWEST)
+
+
+def _drawn(panel: _Panel, window: Window, asked: Sequence[str]) -> list[Shape]:
+    painter = Painter(panel.scene, window)
+    laid = in_layers(painter)
+    found = placed(labels_of(painter, laid, asked), [one.shape for one in laid], window.width, window.height)
+    return [*(ghost(other, window) for other in panel.faint), *by_links(laid), *label_shapes(panel.scene, found)]
