@@ -35,7 +35,7 @@ from compoundkin.view.sketch.slide_shapes import Painter
 # More panels than this nobody compares.
 MOST = 40
 # Panels are no larger than this, in picture units: up to so many of them such that two stand side by side, or three.
-LARGEST = {4: 350.0, MOST: 222.0}
+LARGEST = {8: 340.0, MOST: 222.0}
 # They are at least so wide, for their headings.
 NARROWEST = 200.0
 
