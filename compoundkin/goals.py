@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from compoundkin.studies.goals.assembly_constraint import assembles, full_turn
 from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmits
+from compoundkin.studies.goals.clearance_constraint import clearance
 from compoundkin.studies.goals.distance_constraint import distance
 from compoundkin.studies.goals.dwell_goal import dwell, even
 from compoundkin.studies.goals.function_goal import function
@@ -21,6 +22,6 @@ from compoundkin.studies.goals.target_goal import target
 from compoundkin.studies.goals.trace_goal import trace
 
 __all__ = [
-    "assembles", "at_least", "at_most", "box", "distance", "dwell", "even", "full_turn", "function",
+    "assembles", "at_least", "at_most", "box", "clearance", "distance", "dwell", "even", "full_turn", "function",
     "greatest", "least", "path", "poses", "straight_line", "target", "trace", "transmits",
 ]  # fmt: skip

@@ -229,6 +229,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "goals.at_least": {"name": "rocker.angle", "value": 0.5},
         "goals.at_most": {"name": "rocker.angle", "value": 0.5},
         "goals.box": {"point": "C", "x": (0.0, 5.0), "y": None},
+        "goals.clearance": {"at_least": 1.0, "one": "crank", "other": None},
         "goals.distance": {"one": "A", "other": "D", "at_least": 1.0, "at_most": 9.0},
         "goals.dwell": {"output": "rocker.angle", "between": (0.1, 0.5), "driver": None},
         "goals.even": {"output": "rocker.angle"},

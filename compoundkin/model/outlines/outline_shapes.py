@@ -19,7 +19,8 @@ Points: TypeAlias = Mapping[str, Mapping[str, complex]]
 class OutlineShape(PrintsShort):
     """All places nearer than `radius` to a core, in the frame of a link.
 
-    The core is one place, the line through several, or, where it is `closed`, the polygon with these corners. The
+    The core is one place, the line through several, or, where it is `closed`, the polygon with these corners; their
+    `letters` are those of points, empty for other places. The
     `body` it belongs to is the link, or "pin B"; `links` are the link that carries it and, of a pin, those it joins.
     """
 
@@ -29,6 +30,7 @@ class OutlineShape(PrintsShort):
     closed: bool
     radius: float
     layers: tuple[int, ...]
+    letters: tuple[str, ...]
 
     @property
     def link(self) -> str:
@@ -67,17 +69,23 @@ def _shapes(
 ) -> Iterator[OutlineShape]:
     """Yield the bar or plate, the disc and the polygon of an outline."""
 
-    def shape(core: tuple[complex, ...], closed: bool, radius: float) -> OutlineShape:
-        return OutlineShape(item.link, (item.link,), core, closed, radius, item.layer)
+    def shape(spots: tuple[Any, ...], closed: bool, radius: float) -> OutlineShape:
+        letters = tuple(one if isinstance(one, str) else "" for one in spots)
+        return OutlineShape(item.link, (item.link,), _places(spots, points, of), closed, radius, item.layer, letters)
 
     if item.width is not None:
-        own = _places(item.through, points, of)
-        hull = own or tuple(convex_hull(points.values()))
-        yield shape(hull, not own and len(hull) > 2, number_of_design(item.width, *of) / 2.0)
+        spots = item.through or _around(points)
+        yield shape(spots, not item.through and len(spots) > 2, number_of_design(item.width, *of) / 2.0)
     if item.radius is not None:
-        yield shape(_places((item.at,), points, of), False, number_of_design(item.radius, *of))
+        yield shape((item.at,), False, number_of_design(item.radius, *of))
     if item.polygon:
-        yield shape(_places(item.polygon, points, of), True, 0.0)
+        yield shape(item.polygon, True, 0.0)
+
+
+def _around(points: Mapping[str, complex]) -> tuple[str, ...]:
+    """Return the letters of the corners around points, or of both ends of a bar."""
+    placed = {p: letter for letter, p in reversed(list(points.items()))}
+    return tuple(placed[p] for p in convex_hull(points.values()))
 
 
 def _places(
@@ -97,6 +105,5 @@ def _pins(
         links = tuple(name for name in joined if name not in mechanism.led_links)
         layers = [one for other in mechanism.outlines.values() if other.link in links for one in other.layer]
         spanned = tuple(range(min(layers), max(layers) + 1))
-        yield OutlineShape(
-            f"pin {letter}", links, (points[letter],), False, number_of_design(item.pin, *of) / 2.0, spanned
-        )
+        radius = number_of_design(item.pin, *of) / 2.0
+        yield OutlineShape(f"pin {letter}", links, (points[letter],), False, radius, spanned, (letter,))

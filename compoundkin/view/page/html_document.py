@@ -176,6 +176,8 @@ def _badges(outcome: Outcome) -> Iterator[str]:
         yield _badge(outcome.assembled == outcome.poses, f"{outcome.assembled:,} of {outcome.poses:,} {of} assembled")
     if outcome.verified is not None:
         yield _badge(outcome.verified, outcome.verdict)
+    if outcome.touching is not None:
+        yield _badge(not outcome.touching, outcome.compared)
     if outcome.published:
         done, total = outcome.published_passed, outcome.published
         yield _badge(done == total, f"{done:,} of {total:,} published numbers reproduced")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import degrees
 
 from compoundkin.analysis.interference.interference_findings import Interference, LinkClearance, LinkTouch
@@ -10,7 +11,7 @@ from compoundkin.analysis.interference.interference_of_motion import interferenc
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
-from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed, number
 
@@ -45,11 +46,11 @@ def interference_sections(sample: Sample, found: Interference | InvalidInput | N
     return (Section(INTERFERENCE, "Interference", blocks),)
 
 
-def interference_in_short(found: Interference | InvalidInput | None) -> str:
-    """Return what it comes to, as a sentence; nothing where there are no outlines."""
-    if found is None or isinstance(found, InvalidInput):
-        return ""
-    return f" {found.verdict[:1].upper()}{found.verdict[1:]}."
+def compared(outcome: Outcome, found: Interference | InvalidInput | None) -> Outcome:
+    """Return what a report comes to, with what touches."""
+    if not isinstance(found, Interference):
+        return outcome
+    return replace(outcome, touching=len(found.touching), compared=found.verdict)
 
 
 def interference_blocks(sample: Sample, found: Interference) -> Iterator[Block]:

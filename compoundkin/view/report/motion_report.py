@@ -21,8 +21,8 @@ from compoundkin.view.report.forces_section import force_checks_sections, forces
 from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.interference_section import (
+    compared,
     found_interference,
-    interference_in_short,
     interference_sections,
     touch_sentences,
 )
@@ -63,10 +63,9 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
     forces, touching = loaded_forces(motion), found_interference(motion)
-    outcome = outcome_of(motion, with_forces(check, forces), published)
-    in_short = f"{motion_in_short(outcome)}{interference_in_short(touching)}"
+    outcome = compared(outcome_of(motion, with_forces(check, forces), published), touching)
     sections = (
-        about_section(structure, in_short, told),
+        about_section(structure, motion_in_short(outcome), told),
         *counted_sections(structure, motion=motion),
         solving_section(structure, motion),
         drivers_section(structure, sample),
@@ -114,6 +113,8 @@ def _results(outcome: Outcome) -> Iterator[str]:
         yield f"{wrong} of {counted(outcome.published, 'published number')} NOT reproduced"
     elif outcome.published:
         yield f"{outcome.published} of {counted(outcome.published, 'published number')} reproduced"
+    if outcome.compared:
+        yield outcome.compared
 
 
 def check_report(motion: Motion) -> Report:
@@ -123,15 +124,15 @@ def check_report(motion: Motion) -> Report:
     """
     sample, check, forces = Sample(motion), verify(motion), loaded_forces(motion)
     both = with_forces(check, forces)
-    outcome = outcome_of(motion, both)
     touching = found_interference(motion)
+    outcome = compared(outcome_of(motion, both), touching)
     alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in both.findings if not f.passed)
     alerts += tuple(Alert(f"{sentence}.") for sentence in touch_sentences(motion, touching))
     failed = (Section("failed", "What failed", alerts),) if alerts else ()
-    about = Section("about", "", (Paragraph(motion_in_short(outcome) + interference_in_short(touching)),))
+    about = Section("about", "", (Paragraph(motion_in_short(outcome)),))
     of_forces = force_checks_sections(sample, forces)
-    compared = interference_sections(sample, touching)
-    sections = (about, *_missing(sample), checks_section(sample, check), *of_forces, *compared, *failed)
+    outlines = interference_sections(sample, touching)
+    sections = (about, *_missing(sample), checks_section(sample, check), *of_forces, *outlines, *failed)
     return Report(motion.mechanism.title, sections, outcome, motion)
 
 

@@ -156,6 +156,7 @@ class Outcome:
     """What a report comes to, for those who only ask that. `passed` covers checks and published numbers.
 
     `verified` is whether `verify` passed, None where nothing was to be verified, and `verdict` its words.
+    `touching` is how many pairs of links touch, None where no outlines were compared, and `compared` that in words.
     """
 
     solvable: bool
@@ -167,11 +168,13 @@ class Outcome:
     published_passed: int
     verified: bool | None = None
     verdict: str = ""
+    touching: int | None = None
+    compared: str = ""
 
     @property
     def passed(self) -> bool:
-        """Whether what was to be verified passed, and every published number was reproduced."""
-        return self.verified is not False and self.published == self.published_passed
+        """Whether what was verified passed, published numbers were reproduced, no links touch."""
+        return self.verified is not False and self.published == self.published_passed and not self.touching
 
 
 # What a report comes to that solves nothing.

@@ -12,6 +12,7 @@ from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
+from compoundkin.model.outlines.outline_shapes import outline_shapes
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
@@ -39,7 +40,8 @@ def noted_scene(scene: Scene, motion: Motion, free: Sequence[FreeDimension]) -> 
     }
     sides = {name: _sides(graph, own, ends.get(name, own)) for name, own in scene.ends.items()}
     whole = {name: _along(graph, name, pose) for name, pose in scene.whole.items()}
-    return replace(scene, points=points, ends=sides, whole=whole), graph
+    own = outline_shapes(motion.mechanism, points, motion.shape)
+    return replace(scene, points=points, ends=sides, whole=whole, outlines=own), graph
 
 
 def _noted(graph: OperationGraph, value: Number, recorded: Any) -> Any:

@@ -1,0 +1,134 @@
+"""Links that are to keep clear of each other by their outlines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.analysis.interference.compared_bodies import ComparedBodies, comparison_of
+from compoundkin.analysis.interference.outline_places import geometries, nearest_places
+from compoundkin.analysis.interference.shapely_library import shapely
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.design_numbers import number_of_design
+from compoundkin.model.outlines.outline_shapes import Points, outline_shapes
+from compoundkin.studies.goals.contract import DesignConstraint
+from compoundkin.studies.goals.design_trial import DesignTrial
+from compoundkin.studies.goals.outline_vertices import OutlineVertices, nearest_weights
+
+
+@dataclass(frozen=True)
+class ClearanceConstraint(DesignConstraint):
+    """The least clearance of the outlines of links at all poses.
+
+    It is that of two links, of one and all others, or of all.
+    """
+
+    value: float
+    links: tuple[str, ...]
+
+    @property
+    def told(self) -> str:
+        """The links and the least clearance."""
+        return f"{' and '.join(self.links) or 'links'} at least {self.value:g} clear"
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return the places of all corners. Raises InvalidInput where nothing is compared."""
+        shapely("goals.clearance")
+        bodies = [*self._compared(motion)]
+        known = {name for one in _all(motion) for name in (one.one, one.other)}
+        for name in self.links:
+            if name not in known:
+                what = "no outline of it is compared with another"
+                raise UnknownName(Problem(f"goals.clearance.{name}", what, nearest(name, sorted(known))))
+        if not bodies:
+            what, remedy = "no two links with outlines share a layer", 'write some: outline("crank", 8)'
+            raise InvalidInput(Problem("goals.clearance", what, remedy))
+        points = _points(motion)
+        corners = (OutlineVertices.of(shape, points) for one in bodies for two in one.shapes for shape in two)
+        return tuple(dict.fromkeys(name for one in corners for name in one.outputs()))
+
+    def _compared(self, motion: Motion) -> Iterator[ComparedBodies]:
+        for one in _all(motion):
+            if set(self.links) <= {one.one, one.other}:
+                yield one
+
+    def margins(self, trial: DesignTrial) -> Number:
+        """Return how far each two bodies are beyond the clearance wanted."""
+        return np.stack([clearances.min(axis=(1, 2)) for clearances, _ in self._found(trial)], axis=1) - self.value
+
+    def _found(self, trial: DesignTrial) -> Iterator[tuple[Number, ComparedBodies]]:
+        """Yield the clearances of each two bodies, (designs, shapes, poses)."""
+        there, motion = trial.closely, trial.designs.path.reference
+        for bodies in self._compared(motion):
+            yield np.stack([_clearances(there, _points(motion), two) for two in bodies.shapes], axis=1), bodies
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of those, at the poses that have them. Where cores cross they are not known, and zero."""
+        there, points = trial.closely, _points(trial.designs.path.reference)
+        found = []
+        for clearances, bodies in self._found(trial):
+            flat = clearances.reshape(len(clearances), -1)
+            best, pose = np.divmod(np.where(np.isnan(flat).any(axis=1), 0, flat.argmin(axis=1)), clearances.shape[2])
+            slopes = np.full((len(clearances), len(trial.coordinates)), np.nan)
+            for k, two in enumerate(bodies.shapes):
+                rows = np.flatnonzero((best == k) & np.isfinite(flat).all(axis=1))
+                both = [OutlineVertices.of(shape, points) for shape in two]
+                slopes[rows] = _slopes(there, both, rows, pose[rows])
+            found.append(slopes)
+        return np.stack(found, axis=1)
+
+
+def _all(motion: Motion) -> tuple[ComparedBodies, ...]:
+    """Return all bodies that are compared in the mechanism as it stands."""
+    points = _points(motion)
+    shapes = outline_shapes(motion.mechanism, points, motion.shape)
+    return comparison_of(motion.mechanism, shapes, points).compared
+
+
+def _points(motion: Motion) -> Points:
+    points: Points = number_of_design(motion.mechanism.geometry.points, motion.shape, 0)
+    return points
+
+
+def _clearances(trial: DesignTrial, points: Points, two: tuple[object, object]) -> Number:
+    """Return the clearance of two shapes, (designs, poses); NaN where a design is not assembled."""
+    one, other = (OutlineVertices.of(shape, points) for shape in two)  # type: ignore[arg-type]
+    a, b = one.values(trial), other.values(trial)
+    known = np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1)
+    found = np.full(known.shape, np.nan)
+    cores = geometries(a[known], one.shape.closed), geometries(b[known], other.shape.closed)
+    found[known] = shapely().distance(*cores) - (one.shape.radius + other.shape.radius)
+    return found
+
+
+def _slopes(trial: DesignTrial, both: list[OutlineVertices], rows: Number, pose: Number) -> Number:
+    """Return the slopes of the clearance of two shapes at one pose of each of some designs."""
+    vertices = [one.values(trial)[rows, pose] for one in both]
+    first, second = (geometries(own, one.shape.closed) for one, own in zip(both, vertices, strict=True))
+    ends = nearest_places((first, second))
+    apart = ends[:, 1] - ends[:, 0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        unit = np.where(apart == 0.0, 0.0, np.conjugate(apart) / np.abs(apart))
+    moved = [np.einsum("nv,nvc->nc", nearest_weights(own, one.shape.closed, ends[:, k]), one.slopes(trial)[rows, pose])
+             for k, (one, own) in enumerate(zip(both, vertices, strict=True))]  # fmt: skip
+    return np.asarray((unit[:, None] * (moved[1] - moved[0])).real)
+
+
+@checked
+def clearance(at_least: float, one: str | None = None, other: str | None = None) -> DesignConstraint:
+    """Return the constraint that links keep clear of each other by their outlines.
+
+    Of two links, of `one` and all others on its layers, or of all links. It is looked at along the motion at every ten
+    degrees at most, with what `interference` compares. Raises InvalidInput for what is no clearance.
+
+    >>> clearance(2.0, "crank", "frame").told
+    'crank and frame at least 2 clear'
+    """
+    if not np.isfinite(at_least) or at_least < 0.0:
+        raise InvalidInput(Problem("goals.clearance", f"{at_least} is no clearance", "give 0 or more"))
+    return ClearanceConstraint(float(at_least), tuple(name for name in (one, other) if name is not None))
