@@ -5,7 +5,9 @@ Widths and sizes are in picture units; a picture of many links has more of them 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from operator import itemgetter
+from typing import TypeAlias
 
 from compoundkin.model.attributes import ACCELERATION, VELOCITY
 from compoundkin.view.sketch.shapes import (
@@ -19,6 +21,9 @@ from compoundkin.view.sketch.shapes import (
     Strokes,
     Text,
 )
+
+# A colour on light and on dark paper.
+Colours: TypeAlias = tuple[str, str]
 
 # Sizes that shapes are made with, in picture units.
 PIN = 4.5
@@ -36,7 +41,7 @@ PAPER = "#ffffff", "#14171c"
 INK = "#1b1f24", "#e6e9ee"
 FRAME = "#5b6470", "#a3adba"
 FAINT = "#8d96a2", "#78828f"
-COLOURS: tuple[tuple[str, str], ...] = (
+COLOURS: tuple[Colours, ...] = (
     ("#343a43", "#d5dae1"),  # frame and driven links
     ("#0067b1", "#5db1f2"),
     ("#c04a00", "#ff9450"),
@@ -50,7 +55,7 @@ OF_VELOCITIES = "#b3261e", "#ff8a80"
 OF_ACCELERATIONS = "#5b4bc4", "#a79bff"
 # What acts on links: forces in pairs and of drivers, loads and weights, what inertia does.
 REACTION, LOAD, INERTIA = "reaction", "load", "inertia"
-OF_FORCES: Mapping[str, tuple[str, str]] = {
+OF_FORCES: Mapping[str, Colours] = {
     REACTION: ("#c2001a", "#ff7b7b"),
     LOAD: ("#0047ab", "#82b4ff"),
     INERTIA: ("#7a4fa3", "#c9a6ee"),
@@ -60,7 +65,7 @@ _ROUND = "stroke-linecap:round;stroke-linejoin:round"
 _LINE = f"fill:none;{_ROUND}"
 
 # What each class looks like: its rules, `{}` standing for its colour.
-CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
+CLASSES: Mapping[str, tuple[str, Colours]] = {
     "paper": ("fill:{}", PAPER),
     "pin": ("fill:{};stroke-width:2", PAPER),
     "knock": (f"{_LINE};stroke:{{}};stroke-width:7", PAPER),
@@ -134,30 +139,40 @@ def css(shapes: Iterable[Shape]) -> str:
 
 
 def page_css() -> str:
-    """Return the style sheet of all pictures of a page. Its root may say `data-theme="light"` or "dark"."""
+    """Return the style sheet of all pictures of a page. Its root may say `data-theme="light"` or "dark".
+
+    Rules name their colours, so that they are written once and not for each paper.
+    """
+    found: dict[Colours, str] = {}
     grouped = [f"{kind}{k}" for kind in GROUPED for k in range(len(COLOURS))]
-    light, dark = _sheets(["ghost", *CLASSES, *grouped])
-    asked = "\n".join(f":root[data-theme=dark] {rule}" for rule in dark.splitlines())
-    system = "\n".join(f":root:not([data-theme=light]) {rule}" for rule in dark.splitlines())
-    return f"{light}\n@media screen {{\n{asked}\n}}\n@media screen and (prefers-color-scheme: dark) {{\n{system}\n}}"
+    names = sorted(["ghost", *CLASSES, *grouped])
+    rules = [_rule(name, lambda pair: f"var({found.setdefault(pair, f'--k{len(found)}')})") for name in names]
+    light, dark = ("".join(f"{name}:{pair[paper]};" for pair, name in found.items()) for paper in (0, 1))
+    asked = f"@media screen{{:root[data-theme=dark]{{{dark}}}}}"
+    system = f"@media screen and (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{dark}}}}}"
+    return "\n".join((f":root{{{light}}}", asked, system, *rules))
 
 
 def _sheets(names: Iterable[str]) -> tuple[str, str]:
     """The rules of classes on light paper, and those that differ on dark."""
-    both = [(_rule(name, 0), _rule(name, 1)) for name in sorted(names)]
+    both = [(_rule(name, itemgetter(0)), _rule(name, itemgetter(1))) for name in sorted(names)]
     return "\n".join(light for light, _ in both), "\n".join(dark for light, dark in both if light != dark)
 
 
-def _rule(name: str, paper: int) -> str:
+def _rule(name: str, painted: Callable[[Colours], str]) -> str:
+    """The rule of a class; `painted` is how a colour is written."""
     if name == "ghost":
         return ".ck-ghost{opacity:.22}"
     if name in CLASSES:
-        rules, colour = CLASSES[name]
-        return f".ck-{name}{{{rules.replace('{}', colour[paper])}}}"
+        rules, colours = CLASSES[name]
+        return f".ck-{name}{{{rules.replace('{}', painted(colours))}}}"
     kind, number = name.rstrip("0123456789"), int(name[len(name.rstrip("0123456789")) :])
-    rules = GROUPED[kind].replace("{}", COLOURS[number][paper])
+    own = COLOURS[number]
+    rules = GROUPED[kind].replace("{}", painted(own)) if "{}" in GROUPED[kind] else GROUPED[kind]
     for word, part in MIXED.items():
-        rules = rules.replace(f"{{{word}}}", mixed(COLOURS[number][paper], PAPER[paper], part))
+        if f"{{{word}}}" in rules:
+            light, dark = (mixed(one, paper, part) for one, paper in zip(own, PAPER, strict=True))
+            rules = rules.replace(f"{{{word}}}", painted((light, dark)))
     return f".ck-{name}{{{rules}}}"
 
 
