@@ -160,6 +160,21 @@ def test_the_range_in_which_it_assembles_is_that_of_the_four_bar(whole: Any) -> 
     assert numbers(whole) == {}
 
 
+def test_on_a_narrow_screen_the_sketch_comes_along(whole: Any) -> None:
+    whole.set_viewport_size({"width": 360, "height": 740})
+    field(whole, "length from D to C of plate").press("ArrowUp")
+    small = whole.locator(".miniature")
+    whole.wait_for_function("(one) => one.querySelectorAll('.parts > g.lit').length > 1", arg=small.element_handle())
+    assert small.bounding_box()["y"] == 0
+    assert field(whole, "length from D to C of plate").bounding_box()["y"] > small.bounding_box()["height"]
+    assert whole.evaluate("document.scrollingElement.scrollWidth") == 360
+    whole.get_by_role("button", name="Reset length from D to C of plate").click()
+    whole.set_viewport_size({"width": 1440, "height": 900})
+    whole.evaluate("document.activeElement.blur()")
+    assert small.is_hidden()
+    assert numbers(whole) == {}
+
+
 def test_the_address_restores_what_was_changed(whole: Any) -> None:
     values = {"crank.D.x": 15.25, "plate.C.y": 8.7, "slot.angle": float(np.deg2rad(5.0)), "frame.F.x": -0.1}
     whole.evaluate("(values) => compoundkin.design.load(values, 'test')", values)

@@ -29,7 +29,8 @@ FIGURES = ("live/course.js", "live/figures.js")
 STYLES = ("live/live.css",)
 # What a page with a panel of dimensions has after all others, which hear of the dimensions in its address.
 PANEL_SCRIPTS = (
-    "live/rows.js", "live/assembled_range.js", "live/fragment.js", "live/panel.js", "live/exported.js", "live/share.js",
+    "live/rows.js", "live/assembled_range.js", "live/fragment.js", "live/panel.js", "live/miniature.js",
+    "live/exported.js", "live/share.js",
 )  # fmt: skip
 PANEL_STYLES = ("live/panel.css",)
 

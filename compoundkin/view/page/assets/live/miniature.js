@@ -1,0 +1,46 @@
+// On a narrow screen the sketch is far above the field that changes it: a small one then stands at the top edge.
+(() => {
+  "use strict";
+  const page = window.compoundkin;
+  const NARROW = matchMedia("(max-width: 67.99rem)"); // where the sketch does not stay beside the text
+
+  class Miniature {
+    // shows the sketch of a player again while a field in `place` is focused and the sketch itself is out of sight
+    constructor(player, place) {
+      Object.assign(this, { player, waits: 0 });
+      this.root = document.createElement("div");
+      this.root.className = "miniature";
+      this.root.ariaHidden = "true";
+      this.root.hidden = true;
+      document.body.append(this.root);
+      place.addEventListener("focusin", (event) => this.show(event.target));
+      place.addEventListener("focusout", () => this.hide());
+      player.listeners.push(() => this.soon());
+      player.design.on("change", () => this.soon());
+      document.addEventListener("compoundkin:light", () => this.soon());
+    }
+    show(field) {
+      if (!NARROW.matches || !field.matches("input") || this.player.svg.getBoundingClientRect().bottom > innerHeight / 4) return;
+      this.root.hidden = false;
+      this.draw();
+      // what is typed stays in sight below it
+      const covered = this.root.getBoundingClientRect().bottom + 8 - field.getBoundingClientRect().top;
+      if (covered > 0) scrollBy(0, -covered);
+    }
+    hide() {
+      this.root.hidden = true;
+      this.root.replaceChildren();
+    }
+    soon() {
+      if (!this.root.hidden && !this.waits) this.waits = requestAnimationFrame(() => this.draw());
+    }
+    // a copy, since what is only referred to does not get the colours of dark pages
+    draw() {
+      this.waits = 0;
+      if (!this.root.hidden) this.root.replaceChildren(this.player.svg.cloneNode(true));
+    }
+  }
+
+  const place = document.querySelector("#dimensions .dimensions");
+  if (place && page.design) page.miniature = new Miniature(page.design.player, place);
+})();
