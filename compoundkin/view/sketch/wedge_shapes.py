@@ -11,7 +11,7 @@ from compoundkin.model.pairs.symbols import Sliding
 from compoundkin.view.sketch.slide_shapes import Painter, guide_line
 
 # A guide that leaves a point at less than this angle from a bar, radians, makes a wedge of both; and at more than this.
-SHARP, FLAT = 0.8, 0.03
+SHARP, FLAT = 0.8, 0.1
 # A plate goes on by this much around its groove, in picture units.
 AROUND = 16.0
 # Points that are nearer to each other than this are one.
@@ -19,7 +19,7 @@ ONE = 1.0
 
 
 def slopes(painter: Painter, link: str) -> tuple[complex, ...]:
-    """Return the ends of the guides of a link that make it a wedge."""
+    """Return the ends of the guides of a bar that make it a wedge. They begin at one of its two points."""
     found: list[complex] = []
     for seen in painter.scene.seen:
         if isinstance(seen.mark, Sliding) and seen.members[0] == link != FRAME and not painter.is_rod(seen):
@@ -28,7 +28,7 @@ def slopes(painter: Painter, link: str) -> tuple[complex, ...]:
             far = max(ends, key=lambda end: abs(end - foot))
             others = [p - foot for p in own if abs(p - foot) > ONE]
             angles = [abs(np.angle((far - foot) / way)) for way in others]
-            if len(others) < len(own) and angles and FLAT < min(angles) < SHARP:
+            if len(others) == 1 and len(own) == 2 and FLAT < angles[0] < SHARP:
                 found += ends
     return tuple(found)
 

@@ -166,3 +166,8 @@ def test_a_knife_edge_points_at_its_profile() -> None:
     away = [min(abs(p - q) for q in profile.points) for p in edge.points]
     assert away[0] == min(away)
     assert edge.points[0].imag > max(p.imag for p in edge.points[1:])
+
+
+def test_an_angle_that_is_zero_but_for_rounding_is_zero_below_a_sketch() -> None:
+    picture = ck.draw(ck.solve(slider_crank(0.6 + 0.1j), {"crank": [-7e-15]}))
+    assert any(getattr(s, "text", "").startswith("crank at 0°") for s in leaves(picture.shapes))
