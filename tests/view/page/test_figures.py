@@ -20,7 +20,6 @@ from compoundkin.view.report.report_data import Cell, TableBlock
 # What is changed of each: enough to be seen, and it still goes round.
 CHANGED: dict[str, dict[str, float]] = {
     "six-bar": {"plate.C.x": 0.4, "frame.E.y": 0.3},
-    "crank-rocker": {"frame.D.x": 0.2, "coupler.C.x": -0.1},
     "whitworth-quick-return": {"crank.A.x": 3.0, "rod.R.x": 7.0},
 }
 # All rows of figures, and of the outputs at poses: texts of cells, with all digits where these are more.

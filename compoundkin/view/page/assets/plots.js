@@ -67,5 +67,5 @@
   matchMedia("print").addEventListener("change", paint);
   addEventListener("beforeprint", paint);
   addEventListener("afterprint", paint);
-  page.plots = { panels, add: (name) => add(name, true), refresh: () => panels.forEach((panel) => panel.refresh()) };
+  page.plots = { panels, add: (name) => add(name, true), settle: () => panels.filter(({ isBehind }) => isBehind).forEach((panel) => panel.refresh()) };
 })();

@@ -237,7 +237,8 @@
           if (!ends) return;
           const [first, second] = NEAR_LIMIT.map((t) => this.at(side ? b - t * t * (b - a) : a + t * t * (b - a)));
           if (!(Math.abs(second) > GROWTH * Math.abs(first) + high.slack)) return;
-          Object.assign(second > 0 ? high : low, { value: second > 0 ? Infinity : -Infinity, at: side ? b : a });
+          const end = second > 0 ? high : low;
+          if (Number.isFinite(end.value)) Object.assign(end, { value: second > 0 ? Infinity : -Infinity, at: side ? b : a });
         });
       }
     }
@@ -251,7 +252,7 @@
       const sign = (value) => (Math.abs(value) <= zero ? 0 : Math.sign(value));
       for (const { low, high } of whole.stretches) {
         let [a, b] = [low, high], [fa, fb] = [this.at(a), this.at(b)];
-        if (sign(fa) * sign(fb) >= 0) continue;
+        if (!(sign(fa) * sign(fb) < 0)) continue; // not known at a limit position either
         found.push(root((s) => this.at(s), a, b, fa, fb));
       }
       for (let k = 0; k <= last; k++) {

@@ -79,7 +79,7 @@
     const found = course.range(order, kind ? courses.scale(kind, order) : 1);
     if (found.none) return found;
     const [low, high] = [found.low, found.high].map(({ value, at }) => ({ value: value * by, at }));
-    return { low, high, isConstant: found.isConstant };
+    return { low, high, isConstant: found.isConstant, rounding: (kind ? courses.scale(kind, order) : 1) * ROUNDING };
   };
   // as the extremes of outputs are told, and as other ranges are
   const extremes = ({ low, high }, floor) => {
@@ -88,9 +88,9 @@
     if (Number.isFinite(slack) && ends[1] - ends[0] <= slack) return [ends[0], ALWAYS, ends[1], ALWAYS];
     return [low, high].flatMap(({ at }, k) => [Number.isFinite(ends[k]) ? ends[k] : LIMITLESS, place(at, ROUNDING)]);
   };
-  const varied = ({ low, high, isConstant }) => {
+  const varied = ({ low, high, isConstant, rounding = 0 }) => {
     const size = Math.max(Math.abs(low.value), Math.abs(high.value)), far = high.value - low.value;
-    const floor = Number.isFinite(size) ? FLOOR * size : 0;
+    const floor = Number.isFinite(size) ? FLOOR * size : rounding;
     if (isConstant || far <= floor) {
       const value = far > floor ? 0 : low.value;
       return [value, ALWAYS, value, ALWAYS];
@@ -206,6 +206,7 @@
     ...posed.filter((row) => !indices.has(Number(row.dataset.pose))),
   ];
   const follow = () => {
+    page.plots?.settle();
     if (!design.isChanged) return restore();
     const courses = new page.Courses(design);
     for (const { tr, kind, names, cells, unit } of rows.filter((row) => row.kind !== "dead")) {
@@ -223,7 +224,7 @@
   };
   const notes = [...document.querySelectorAll("#outputs, #performance")].map((section) => {
     const note = document.createElement("p");
-    Object.assign(note, { className: "original", hidden: true, textContent: "What is in italics is of the original dimensions." });
+    Object.assign(note, { className: "italics", hidden: true, textContent: "What is in italics is of the original dimensions." });
     section.append(note);
     return [section, note];
   });
