@@ -45,7 +45,7 @@ def by_name(structure: Structure, at: Any) -> dict[str, float]:
 def value_note(structure: Structure, name: str, value: float) -> str:
     """Say which value a driver has."""
     is_angle = structure.driven_angles.get(name, False)
-    shown = f"{round(degrees(value), 9) + 0.0:.5g}" if is_angle else f"{value:.6g}"
+    shown = f"{round(float(degrees(value)), 9) + 0.0:.5g}" if is_angle else f"{value:.6g}"
     return f"{name} at {shown}{after_number(is_angle, structure.mechanism.unit)}"
 
 
