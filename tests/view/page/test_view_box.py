@@ -52,7 +52,5 @@ def test_the_view_is_enlarged_moved_and_fitted_again(made: Any, opened: Any) -> 
 def test_text_in_the_sketch_is_legible_at_any_width(width: int, made: Any, opened: Any) -> None:
     view = opened(made("six-bar"), size=(width, 740))
     assert view.value(SMALLEST) >= 11.99
-    wide = view.value(
-        "() => { const p = document.querySelector('.player'), s = p.querySelector('.sketch'); return s.clientWidth / p.clientWidth; }"
-    )
-    assert wide > 0.99
+    player = "compoundkin.players[0]"
+    assert view.value(f"{player}.svg.clientWidth / {player}.root.clientWidth") > 0.99

@@ -4,6 +4,8 @@
   "use strict";
   const page = window.compoundkin;
   const MARGIN = 26; // around the places of points, as in every picture
+  const EDGE = 6; // around lines that reach farther than points
+  const SAMPLED = 40; // so many poses tell how far these reach
   const SETTLED = 0.5; // picture units: nearer than this two views are one
 
   const text = (value) => String(Math.round(value * 100) / 100);
@@ -68,19 +70,19 @@
       this.least = new Float64Array(data.least.length);
       const index = new Map(player.links.map((link, k) => [link.name, k]));
       this.poses = data.poses.map(([name, part]) => [player.links[index.get(name)], part]);
-      this.shapes = player.parts.flatMap((part, k) => this.of(part, data.parts[k][1]));
+      this.shapes = player.parts.flatMap((part, k) => this.of(part, k, data.parts[k][1]));
       this.extent = null;
       design.on("change", () => this.follow());
       design.on("commit", () => this.settle());
     }
     // the shapes of a part that change: their elements, and what stays of them
-    of(part, shapes) {
+    of(part, index, shapes) {
       if (!shapes.length) return [];
       const elements = part.querySelectorAll("path, circle, text");
       return shapes.map(([k, kind, lines]) => {
         const element = elements[k], d = element.getAttribute("d") || "";
         const sweep = kind === "bow" ? d.match(/0 0 ([01])/)[1] : "";
-        return { element, kind, lines, style: element.getAttribute("class") || "", end: d.endsWith("Z") ? "Z" : "", sweep, shown: {} };
+        return { element, index, kind, lines, points: [], style: element.getAttribute("class") || "", end: d.endsWith("Z") ? "Z" : "", sweep, shown: {} };
       });
     }
 
@@ -121,6 +123,7 @@
         const lines = shape.lines.map((line) => line.map((place) => numbers[place]));
         if (!lines.every((line) => line.every(Number.isFinite))) continue;
         const drawn = DRAWN[shape.kind](lines, shape, data.outline);
+        shape.points = shape.kind === "lines" || shape.kind === "outline" ? lines.flat() : [];
         for (const name in drawn) {
           if (drawn[name] === shape.shown[name]) continue;
           shape.shown[name] = drawn[name];
@@ -137,12 +140,12 @@
 
     // --- the view: it grows while something changes, and settles with the step ----------------------------------------
     grow() {
-      const found = this.reach();
+      // under a pointer that drags, the picture stays where it is
+      const found = this.player.root.querySelector(".handle.held") ? null : this.reach();
       if (!found) return;
       const { extent } = this;
       this.extent = extent ? extent.map((edge, k) => (k < 2 ? Math.min : Math.max)(edge, found[k])) : found;
-      // under a pointer that drags, the picture stays where it is
-      if (!this.player.root.querySelector(".handle.held")) this.show();
+      this.show();
     }
     settle() {
       this.extent = this.design.isChanged ? this.reach() : null;
@@ -157,17 +160,28 @@
     // left, top, right and bottom of all places of points on the picture
     reach() {
       const { player } = this, box = [Infinity, Infinity, -Infinity, -Infinity];
+      const holds = (x, y, room) => {
+        if (x - room < box[0]) box[0] = x - room;
+        if (y - room < box[1]) box[1] = y - room;
+        if (x + room > box[2]) box[2] = x + room;
+        if (y + room > box[3]) box[3] = y + room;
+      };
       for (const letter in player.points) {
         for (let k = 0; k < player.poses; k++) {
-          if (player.assembled[k] !== 1) continue;
-          const [x, y] = player.paper(player.place(letter, k));
-          if (x < box[0]) box[0] = x;
-          if (y < box[1]) box[1] = y;
-          if (x > box[2]) box[2] = x;
-          if (y > box[3]) box[3] = y;
+          if (player.assembled[k] === 1) holds(...player.paper(player.place(letter, k)), MARGIN);
         }
       }
-      return box.every(Number.isFinite) ? box.map((edge, k) => edge + (k < 2 ? -MARGIN : MARGIN)) : null;
+      const step = Math.max(1, Math.ceil(player.poses / SAMPLED));
+      for (const { index, points } of this.shapes) {
+        const [link, px, py, turns] = player.data.parts[index], { angle } = player.links[link];
+        for (let k = 0; points.length && k < player.poses; k += step) {
+          if (player.assembled[k] !== 1) continue;
+          const [x, y] = player.paper(player.at(link, px, py, k)), by = turns ? angle[k] - player.upright[link] : 0;
+          const c = Math.cos(by), s = -Math.sin(by); // y points downward on paper
+          for (let j = 0; j < points.length; j += 2) holds(x + c * points[j] - s * points[j + 1], y + s * points[j] + c * points[j + 1], EDGE);
+        }
+      }
+      return box.every(Number.isFinite) ? box : null;
     }
   }
 
