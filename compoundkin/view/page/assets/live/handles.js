@@ -70,9 +70,9 @@
     place() {
       if (!this.map) return;
       for (const one of this.all) {
-        one.at = one.kind === "point" ? this.toScreen(this.player.place(one.name)) : this.besideDriver(one.data);
+        one.at = one.kind === "point" ? this.toScreen(this.player.place(one.name)) : this.besideDriver(one);
         const [x, y] = one.at;
-        const drawn = this.isSeen(x, y) ? `translate(${x.toFixed(1)}px,${y.toFixed(1)}px)` : "";
+        const drawn = this.isSeen(x, y) || (this.isHeld(one) && Number.isFinite(x + y)) ? `translate(${x.toFixed(1)}px,${y.toFixed(1)}px)` : "";
         if (drawn === one.drawn) continue;
         one.button.style.transform = drawn;
         if (!drawn !== !one.drawn || one.button.hidden) one.button.hidden = !drawn;
@@ -85,18 +85,31 @@
       return x >= left && x <= right && y >= top && y <= bottom;
     }
     // beyond the farthest point of a link that is turned, beside a slide; on the other side where that is out of the picture
-    besideDriver({ link, at, turns }) {
-      const { player } = this, pivot = this.toScreen(player.place(at));
-      const angle = player.links[link].angle[player.pose];
-      let [dx, dy] = [Math.cos(angle), -Math.sin(angle)], far = 0;
+    besideDriver(one) {
+      const { player } = this, { link, at, turns } = one.data, pivot = this.toScreen(player.place(at));
+      let [dx, dy] = turns ? this.onScreen(player.links[link].angle[player.pose]) : this.across(one), far = 0;
       for (const point of turns ? page.pointsOf(player, link) : []) {
         const [x, y] = this.toScreen(player.at(link, point.x, point.y, player.pose)), away = Math.hypot(x - pivot[0], y - pivot[1]);
         if (away > far + 1) [far, dx, dy] = [away, (x - pivot[0]) / away, (y - pivot[1]) / away];
       }
-      const place = (by) => [pivot[0] + dx * by, pivot[1] + dy * by];
-      if (!turns) [dx, dy] = [dy, -dx];
-      const out = place(far + OUT);
-      return this.isSeen(...out) ? out : place(-OUT);
+      const place = (by) => [pivot[0] + dx * by, pivot[1] + dy * by], out = place(far + OUT);
+      // under a pointer it does not jump
+      return this.isSeen(...out) || this.isHeld(one) ? out : place(-OUT);
+    }
+    onScreen(angle) {
+      return [Math.cos(angle), -Math.sin(angle)];
+    }
+    // at right angles to the guide of a driven slide, which keeps its direction on the link that carries it
+    across(one) {
+      const { player } = this, { link, on, at } = one.data, k = player.pose, carrier = player.links[on].angle;
+      if (!Number.isFinite(one.along)) {
+        const found = page.guideOf(player, on, at, k), along = found ? Math.atan2(found.along[1], found.along[0]) : player.links[link].angle[k];
+        one.along = along - carrier[k];
+      }
+      return this.onScreen(one.along + carrier[k] + Math.PI / 2);
+    }
+    isHeld(one) {
+      return Boolean(this.hold.held) && this.hold.held.one === one;
     }
     nearest(clientX, clientY, kind) {
       const box = this.layer.getBoundingClientRect(), x = clientX - box.left, y = clientY - box.top;

@@ -3,7 +3,7 @@
   "use strict";
   const page = window.compoundkin;
   const TYPED = "input:not([type=range], [type=checkbox], [type=radio], [type=button]), textarea, select, [contenteditable]";
-  const HINT = "Drag a point of the sketch to change the mechanism, a driver to move it. By keyboard: Tab to a point, Enter takes it, arrows move it.";
+  const HINT = "Drag a point to change the mechanism, a driver to move it (by keyboard: Tab, Enter, arrows).";
   const FORCES = "Forces are of the original dimensions; they are not shown while these are changed.";
 
   class History {
