@@ -114,7 +114,7 @@ def test_a_point_is_dragged_and_there_is_a_way_back(made: Any, opened: Any) -> N
         assert abs(complex(*view.value(f"{PLAYER}.drawn('{letter}')")) - place) < 1e-4, letter
         assert abs(complex(*view.value(f"{PLAYER}.drawn('{letter}')")) - solved.points[letter].position[k]) < 1e-9
     # the original stands behind, where it was
-    ghost = view.value("document.querySelector('.sketch .original').childElementCount")
+    ghost = view.value("document.querySelector('.sketch .former').childElementCount")
     assert ghost == view.locator(".parts > g:not(.name)").count()
     # rates are the new ones, and so are instant centres
     np.testing.assert_allclose(
@@ -143,7 +143,7 @@ def test_a_point_is_dragged_and_there_is_a_way_back(made: Any, opened: Any) -> N
     assert view.value(VALUES) == first
     view.keyboard.press("Control+z")
     assert not is_changed(view)
-    assert view.locator(".sketch .original").count() == 0
+    assert view.locator(".sketch .former").count() == 0
     view.keyboard.press("Control+y")
     view.keyboard.press("Control+Shift+z")
     assert view.value(VALUES) == second
@@ -174,8 +174,11 @@ def test_the_keyboard_alone_changes_a_dimension(made: Any, opened: Any) -> None:
     assert (x, y) == pytest.approx((14 + 0.9 * step, 10 * step))
     view.keyboard.press("Space")
     view.keyboard.press("ArrowUp")
-    view.wait_for_timeout(250)
-    assert view.text_content(".spoken").startswith("D ")
+    for _ in range(40):
+        view.wait_for_timeout(50)
+        if view.text_content(".spoken").startswith("D "):
+            break
+    assert "crank ED" in view.text_content(".spoken")
     view.keyboard.press("Escape")
     assert view.value(f"{PLAYER}.design.value('crank.D.y')") == y
     view.keyboard.press("Control+z")

@@ -8,7 +8,7 @@
       this.player = player;
       // copied before anything is changed; names would stand in the way
       const kept = player.parts.map((part, index) => ({ part, place: [...player.data.parts[index]] })).filter(({ part }) => !part.classList.contains("name"));
-      this.layer = page.drawn("g", { class: "original ck-ghost", "aria-hidden": "true", "data-tool": "" });
+      this.layer = page.drawn("g", { class: "former ck-ghost", "aria-hidden": "true", "data-tool": "" });
       this.parts = kept.map(({ part, place }) => {
         const own = part.cloneNode(true);
         for (const key of ["data-links", "data-letter"]) own.removeAttribute(key);
