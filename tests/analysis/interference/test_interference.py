@@ -212,6 +212,21 @@ def test_poses_that_are_not_assembled_are_left_out() -> None:
     assert f"{found.missing} poses that cannot be assembled are left out" in found._repr_html_()
 
 
+def test_the_jaws_of_the_crusher_come_to_their_gap() -> None:
+    """The faces of both jaws as segments, over poses ten times as fine."""
+    crusher = ck.catalog.load_named("jaw-crusher")
+    found = ck.interference(ck.solve(crusher))
+    assert found.passed
+    assert found.least is not None
+    assert (found.least.one, found.least.other) == ("frame", "jaw")
+    fine = ck.solve(crusher, ck.deg(np.arange(0, 360, 0.5)), order=0)
+    above, corner = (np.asarray(fine.links["jaw"].at(place).position) for place in ((-45, -40), (930, -75)))
+    face = (np.full(len(corner), place) for place in (-620 + 190j, -415 - 800j))
+    gap = segments_apart(above, corner, *face)
+    assert 0.0 <= gap.min() - found.least.clearance < 1e-3
+    assert abs(np.rad2deg(found.least.drives["eccentric"]) - 0.5 * gap.argmin()) < 0.5
+
+
 def test_a_single_pose_is_looked_at() -> None:
     stopped = BARE.replace(ck.outline("crank", 2), ck.outline("frame", at=(0, 8), radius=1))
     assert ck.interference(ck.solve(stopped, {"crank": [np.pi / 2]})).touching == (("crank", "frame"),)

@@ -16,7 +16,7 @@ from compoundkin.files import shipped_mechanisms
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.centre_pictures import TOGETHER
-from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, Strokes
+from compoundkin.view.sketch.shapes import ArcShape, Band, CircleShape, Polygon, Polyline, Shape, Strokes
 from compoundkin.view.sketch.shapes import leaves as shapes_in
 from tests import catalog
 
@@ -85,7 +85,7 @@ def path(d: str) -> np.ndarray:
 
 def made_of(shape: Shape) -> list[complex]:
     """The same of a shape."""
-    if isinstance(shape, Polyline | Polygon):
+    if isinstance(shape, Polyline | Polygon | Band):
         return list(shape.points)
     if isinstance(shape, Strokes):
         return [point for line in shape.lines for point in line]
