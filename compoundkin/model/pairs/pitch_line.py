@@ -183,9 +183,8 @@ class OnLine(TurnCounting):
         across = self.side * rng.uniform(0.5, 2.0)
         return End(start, along, travel), End(start + along * (travel + 1j * across), None, across)
 
-    @property
-    def pitch(self) -> float:
-        """The distance of teeth along the line; 0 where there are none."""
+    def pitch(self, radius: Number) -> Number:
+        """Return the distance of teeth for a wheel of a radius. It is 0 where there are none."""
         return 0.0
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
@@ -193,6 +192,7 @@ class OnLine(TurnCounting):
         line, wheel = ends
         low, high = reach(self.coordinate(ends, poses).c[0])
         radius = abs(wheel.measure)
-        track = Track(0, line.point, line.along.c[0], low, high, float(self.side), self.pitch)
-        teeth = round(2.0 * np.pi * radius / self.pitch) if self.pitch else 0
+        pitch = self.pitch(radius)
+        track = Track(0, line.point, line.along.c[0], low, high, float(self.side), pitch)
+        teeth = round(float(2.0 * np.pi * radius / pitch)) if pitch else 0
         return track, Wheel(1, wheel.point, radius, teeth)

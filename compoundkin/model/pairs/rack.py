@@ -158,12 +158,11 @@ class Rack(OnLine, Accompanied):
             return lower.free == ("displacement",) and lower.is_simple
         return isinstance(lower, Revolute) and own == 1 and lower.at == self.at and self.pinion in lower.members
 
-    @property
-    def pitch(self) -> float:
-        """The distance of teeth. Without a module it is that of a gear whose teeth are unknown."""
+    def pitch(self, radius: Number) -> Number:
+        """Return the distance of teeth. Without a module it is that of a gear whose teeth are unknown."""
         if self.module is not None:
             return float(np.pi * first_entry(self.module))
-        return float(2.0 * np.pi * first_entry(self.size) / UNCOUNTED)
+        return 2.0 * np.pi * radius / UNCOUNTED
 
 
 rack = word("rack", Rack)
