@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
-OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
+OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels", "dimensions")
 # What is drawn instead of the sketch: options, and the names of their values.
 ASSEMBLED = ("configurations", "circuits")
 INSTEAD = {
@@ -39,6 +39,7 @@ Examples:
   compoundkin draw jansen-leg --at 35 --ghosts 6 --path foot -o leg.svg
   compoundkin draw six-bar --at 35 --vectors velocity -o vectors.png
   compoundkin draw six-bar --at 35 --centres -o centres.pdf
+  compoundkin draw slider-crank-offset --dimensions -o dimensions.svg
   compoundkin draw six-bar --at 35 --polygon velocity -o polygon.svg
   compoundkin draw six-bar --at 35 --construction plate -o circles.svg
   compoundkin draw six-bar --structure groups -o apart.svg
@@ -79,6 +80,7 @@ Examples:
 )
 @force_options
 @pose_options
+@click.option("--dimensions", is_flag=True, help="Add lengths, angles, radii, offsets of pivots and guides.")
 @LABELS
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
 @to_file(f"Write an {alternatives('picture')} file; else SVG to stdout.")

@@ -422,6 +422,8 @@ def test_new_writes_toml_only(run: Run) -> None:
         (("solve", "six-bar", "--step", "1e-9"), "more than 1,000,000 values"),
         (("solve", "six-bar", "--step", "inf"), "steps of inf"),
         (("solve", "six-bar", "--at", "1", "--from", "2"), "it does not go with --from"),
+        (("draw", "six-bar", "--configurations", "--ghosts", "3"), "it does not go with --configurations"),
+        (("draw", "six-bar", "--circuits", "--dimensions"), "it does not go with --circuits"),
         (("solve", "six-bar", "--at", "1", "--drive", "crank=2"), "given twice"),
         (("solve", "six-bar", "--drive", "crnk=2"), "did you mean 'crank'?"),
         (("solve", "six-bar", "--speed", "crnk=2"), "did you mean 'crank'?"),

@@ -163,7 +163,9 @@ def _parts(panels: Sequence[_Panel], asked: Sequence[str]) -> list[PicturePart]:
     for panel, lines in zip(panels, said, strict=True):
         top = complex(window.width / 2.0, LINE * 0.5)
         heads: list[Shape] = [Text(top, panel.heading, "heading")]
-        heads += [Text(top + 1j * LINE * i, line, "note") for i, line in enumerate(lines, start=1)]
+        heads += [
+            Text(top + 1j * LINE * i, line.replace("\u00a0", " "), "note") for i, line in enumerate(lines, start=1)
+        ]
         part = ShapeGroup((*heads, *shifted(_drawn(panel, window, asked), 1j * down)))
         parts.append(PicturePart((part,), window.width, window.height + down))
     return parts

@@ -44,6 +44,7 @@ def draw(
     labels: bool | str | Sequence[str] = True,
     size: float | None = None,
     link: str | None = None,
+    dimensions: bool = False,
 ) -> Picture:
     """Draw a mechanism at one pose, in the conventions of textbooks.
 
@@ -52,16 +53,19 @@ def draw(
     polygons of vectors; "graph", the kinematic graph of links and pairs; "circle", the circle diagram of the instant
     centres; "polygon", the polygon of the velocities of all points (`vectors="acceleration"`: of their accelerations)
     with the images of the links; "construction", how the dyad with a `link` (the first one if left out) is drawn
-    with circles and lines, its other mode dashed; "free-bodies", each link or one `link` alone with all that acts on
-    it; or "force-polygon", the forces on each link or one head to tail. The last two are of forces, or find them; the
-    sketch of forces has them as arrows, that in each pair on its second link, or all those on one `link`.
+    with circles and lines, its other mode dashed; "configurations", all of them at the pose, or "circuits", all those
+    of the driver that `at` leaves out, side by side on one scale; "free-bodies", each link or one `link` alone with all
+    that acts on it; or "force-polygon", the forces on each link or one head to tail. The last two are of forces, or
+    find them; the sketch of forces has them as arrows, that in each pair on its second link, or all those on one
+    `link`.
 
     The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
     the index `pose`; else the one nearest to the mechanism's drawing. Graph and circle diagram have none. In a sketch,
     `ghosts` so many other poses are drawn faintly; `paths` names points whose paths along the motion are drawn (True
     for all that are on one link only); `centres` adds the instant centres and the lines that give them; `vectors`
-    "velocity", "acceleration" or both. `labels` is True, False, or some of "points", "links". `size` is the longer side
-    in pixels, such that texts are legible if left out.
+    "velocity", "acceleration" or both. `labels` is True, False, or some of "points", "links". `dimensions` adds
+    lengths, angles, radii, offsets of pivots and guides. `size` is the longer side in pixels, such that texts are
+    legible if left out.
 
     A mechanism is solved first; one that cannot be solved is shown as drawn. Raises InvalidInput, UnknownName for
     what does not fit it or the kind of picture, NotAssembled for a pose that does not close, NotDetermined where a
@@ -78,7 +82,7 @@ def draw(
     """
     if kind not in KINDS:
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(kind, list(KINDS))))
-    wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size, link)
+    wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
     drawn, known = KINDS[kind]
     if isinstance(what, Forces) and kind in OF_FORCES:
         drawn, known = OF_FORCES[kind]
@@ -147,7 +151,7 @@ def _taken_apart(what: Drawable) -> Structure:
 POSE = ("at", "pose", "design")
 # Each kind of picture: what draws it, and which of the wishes it knows.
 KINDS: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
-    "sketch": (sketch, (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size")),
+    "sketch": (sketch, (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size", "dimensions")),
     "groups": (_groups, (*POSE, "size")),
     "loops": (_loops, (*POSE, "size")),
     "graph": (_graph, ("size",)),

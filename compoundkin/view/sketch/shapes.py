@@ -71,12 +71,16 @@ class ArcShape:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text with its middle at a place. With an `anchor`, its start or end is there."""
+    """A line of text with its middle at a place. With an `anchor`, its start or end is there.
+
+    It is turned by an `angle` about there, clockwise on paper, degrees.
+    """
 
     at: complex
     text: str
     style: str
     anchor: str = "middle"
+    angle: float = 0.0
 
 
 @dataclass(frozen=True)

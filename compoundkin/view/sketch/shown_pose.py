@@ -50,6 +50,7 @@ class Wishes:
     labels: bool | str | Sequence[str] = True
     size: float | None = None
     link: str | None = None
+    dimensions: bool = False
 
     def others(self, known: Sequence[str]) -> tuple[str, ...]:
         """Return the names of those that are given and not among some.

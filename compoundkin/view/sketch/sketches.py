@@ -13,7 +13,9 @@ from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.view.sketch.asked_values import Drawable
 from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
+from compoundkin.view.sketch.dimension_shapes import dimension_shapes
 from compoundkin.view.sketch.driver_shapes import drives
+from compoundkin.view.sketch.frame_dimensions import offset_shapes, room_for_offsets
 from compoundkin.view.sketch.geneva_shapes import genevas
 from compoundkin.view.sketch.label_places import placed
 from compoundkin.view.sketch.link_contours import contours
@@ -118,9 +120,15 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
     others = _ghosts(scene, wishes.ghosts)
     places = centre_places(scene) if wishes.centres else []
     window, scales = _scaled(scene, window_on(scene, others, traced, places), wanted_vectors)
+    window = room_for_offsets(scene, window) if wishes.dimensions else window
     painter = Painter(scene, window)
     laid = in_layers(painter)
-    sketch = [*(line for letter in traced for line in path(scene, window, letter)), *(one.shape for one in laid)]
+    behind = offset_shapes(scene, window) if wishes.dimensions else []
+    sketch = [
+        *behind,
+        *(line for letter in traced for line in path(scene, window, letter)),
+        *(one.shape for one in laid),
+    ]
     named = labels_of(painter, laid, asked)
     notes = pose_notes(scene) if asked else []
     notes += [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
@@ -130,7 +138,9 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
         named += centre_labels(found)
         notes += found.notes
     sketch += _arrows(scene, window, scales)
-    names = label_shapes(scene, placed(named, sketch, window.width, window.height))
+    at = placed(named, sketch, window.width, window.height)
+    names = dimension_shapes(painter, sketch, named, at) if wishes.dimensions else []
+    names += label_shapes(scene, at)
     faint = [ghost(other, window) for other in others]
     return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(wishes.size))
 

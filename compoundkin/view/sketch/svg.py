@@ -119,7 +119,8 @@ def _element(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape
     if isinstance(shape, Text):
         x, y = number(shape.at.real), number(shape.at.imag)
         anchor = f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else ""
-        return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}>{escape(shape.text)}</text>'
+        turn = f' transform="rotate({number(shape.angle)} {x} {y})"' if shape.angle else ""
+        return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}{turn}>{escape(shape.text)}</text>'
     if isinstance(shape, CircleShape):
         x, y = number(shape.centre.real), number(shape.centre.imag)
         return f'<circle{style} cx="{x}" cy="{y}" r="{number(shape.radius)}"/>'

@@ -1,0 +1,120 @@
+"""Numbers beside the links they name, labels out of the way over the whole motion, pictures of several panels."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.view.sketch.label_places import text_half
+from compoundkin.view.sketch.moving_sketch import moving_sketch
+from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
+from compoundkin.view.sketch.shown_pose import scene_of
+from compoundkin.view.sketch.sketch_style import LETTER, SMALL
+from compoundkin.view.sketch.sketches import in_layers
+from compoundkin.view.sketch.slide_shapes import Layer, Painter
+from tests.catalog import mechanism, motion
+
+# A sheet of A4 has 180 mm between its margins; a point is 1/72 of an inch.
+A4_POINTS = 180.0 / 25.4 * 72.0
+
+
+def dense(line: tuple[complex, ...]) -> np.ndarray:
+    """Points along a line, nearer to each other than a picture unit."""
+    return np.concatenate([a + (b - a) * np.linspace(0.0, 1.0, int(abs(b - a)) + 2) for a, b in pairwise(line)])
+
+
+@pytest.mark.parametrize("name", ["v8-engine", "roberts-cognates", "scissor-lift"])
+def test_numbers_are_nearer_to_their_own_link_than_to_any_other(name: str) -> None:
+    picture, scene = ck.draw(mechanism(name)), scene_of(mechanism(name), None, None, 0)
+    points: dict[str, list[np.ndarray]] = {}
+    for one in in_layers(Painter(scene, picture.window)):
+        if one.link != "frame" and Layer.FRAME < one.layer < Layer.PIN and hasattr(one.shape, "points"):
+            closed = () if isinstance(one.shape, Polyline) else one.shape.points[:1]
+            points.setdefault(one.link, []).append(dense((*one.shape.points, *closed)))
+            if closed:
+                points[one.link].append(np.array([np.mean(one.shape.points)]))
+    badges = [s for s in picture.shapes if isinstance(s, ShapeGroup) and isinstance(s.shapes[-1], Text)]
+    assert len(badges) == len(scene.legend) - 1
+    for badge in badges:
+        at, own = badge.shapes[0].centre, badge.links[0]
+        far = {link: min(np.abs(np.concatenate(lines) - at)) for link, lines in points.items()}
+        if far[own] > 9.0:  # on its own link, or inside its plate, it is beside no other
+            assert far[own] <= min(far.values()) + 1.0, (own, far[own])
+
+
+@pytest.mark.parametrize("name", ["six-bar", "jansen-leg"])
+def test_letters_avoid_bars_over_the_whole_motion(name: str) -> None:
+    """Of all letters at all poses few are on a bar, and all are on the picture."""
+    sketch = moving_sketch(motion(name))
+    labels = [part for part in sketch.parts if part.is_label and part.letter]
+    covered = []
+    for k in range(0, sketch.scene.count, max(1, sketch.scene.count // 24)):
+        shapes = [s for p, s in zip(sketch.parts, sketch.shapes(k)[len(sketch.still) :], strict=True) if not p.is_label]
+        bars = [s for s in leaves(shapes) if isinstance(s, Polyline) and s.style.startswith("bar")]
+        along = np.concatenate([dense(bar.points) for bar in bars])
+        for part in labels:
+            middle, half = sketch.places(part)[k] + part.shapes[0].at, text_half(part.letter, LETTER)
+            gap = along - middle
+            covered.append(np.any((np.abs(gap.real) < half.real) & (np.abs(gap.imag) < half.imag)))
+            assert sketch.window.holds(middle - half)
+            assert sketch.window.holds(middle + half)
+    assert np.mean(covered) < 0.08
+
+
+def test_all_configurations_stand_on_one_scale_by_their_names() -> None:
+    six_bar, found = mechanism("six-bar"), ck.configurations(mechanism("six-bar"), {"crank": 0.6})
+    picture = ck.draw(six_bar, at=0.6, kind="configurations")
+    texts = [s.text for s in leaves(picture.shapes) if isinstance(s, Text)]
+    assert [text for text in texts if "RRR" in text] == list(found.names)
+    assert any(text.startswith("crank at 34.377") and "4 real of 4" in text for text in texts)
+    # the bars of the driven link are of one length and direction in all panels: one scale, one pose
+    bars = [s.points for s in leaves(picture.shapes) if isinstance(s, Polyline) and s.style == "bar0"]
+    ways = np.array([b - a for a, b in bars])
+    assert len(bars) == len(found)
+    assert np.ptp(np.abs(ways)) < 1e-9
+    assert np.angle(np.conjugate(ways[0])) == pytest.approx(0.6, abs=1e-9)
+    # the pins are where the configurations have them: the distance of A and D in each panel
+    scale = abs(ways[0]) / abs(six_bar.geometry.points["crank"]["D"] - six_bar.geometry.points["crank"]["E"])
+    panels = [s for s in picture.shapes if isinstance(s, ShapeGroup)]
+    for one, panel in zip(found, panels, strict=True):
+        pins = [s.centre for s in leaves([panel]) if isinstance(s, CircleShape) and s.radius < 5.0]
+        away = np.abs(np.subtract.outer(pins, pins))
+        assert np.min(np.abs(away - abs(one.points["B"] - one.points["D"]) * scale)) < 1e-6
+
+
+def test_all_circuits_are_named_with_their_branches() -> None:
+    found = ck.circuits(mechanism("stephenson-iii"))
+    picture = ck.draw(mechanism("stephenson-iii"), kind="circuits")
+    texts = [s.text for s in leaves(picture.shapes) if isinstance(s, Text)]
+    assert [t for t in texts if t.startswith("circuit ")] == [f"circuit {c.number}" for c in found.circuits]
+    ghosts = [s for s in leaves_of_groups(picture.shapes) if s.style == "ghost"]
+    assert len(ghosts) == len(found.branches) - len(found.circuits)
+
+
+def leaves_of_groups(shapes: tuple[object, ...]) -> list[ShapeGroup]:
+    """All groups, those inside others too."""
+    groups = [s for s in shapes if isinstance(s, ShapeGroup)]
+    return [*groups, *(inner for group in groups for inner in leaves_of_groups(group.shapes))]
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        ({"kind": "configurations", "at": 3.0}, ck.errors.NotAssembled),
+        ({"kind": "circuits", "at": {"nobody": 1.0}}, ck.errors.UnknownName),
+        ({"kind": "circuits", "pose": 3}, ck.errors.InvalidInput),
+        ({"kind": "graph", "dimensions": True}, ck.errors.InvalidInput),
+    ],
+)
+def test_what_cannot_be_drawn_is_told(words: dict[str, object], error: type[Exception]) -> None:
+    with pytest.raises(error):
+        ck.draw(mechanism("triple-rocker"), **words)
+
+
+@pytest.mark.parametrize("name", ["v8-engine", "jansen-leg", "roberts-cognates"])
+def test_groups_are_legible_on_a_sheet_of_paper(name: str) -> None:
+    picture = ck.draw(mechanism(name), kind="groups")
+    assert SMALL * A4_POINTS / picture.width >= 7.0
