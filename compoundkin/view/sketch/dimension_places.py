@@ -43,7 +43,7 @@ class Dimension(NamedTuple):
 
 
 def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
-    """Return a length or an angle in degrees as it is written, with its unit.
+    """Return a length or an angle (degrees) as it is written.
 
     >>> number_text(123.456, "mm"), number_text(0.1 + 0.2, "m"), number_text(45.0, "", is_angle=True)
     ('123.5 mm', '0.3 m', '45°')

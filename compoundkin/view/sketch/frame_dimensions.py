@@ -47,7 +47,7 @@ class Offset(NamedTuple):
 
 
 def room_for_offsets(scene: Scene, window: Window) -> Window:
-    """Return the window with room below and at the left for the offsets of the frame."""
+    """Return the window with room for the offsets of the frame."""
     across, down = _offsets(scene, window, 0), _offsets(scene, window, 1)
     left, below = (FIRST + ROW * _rows(rows) if rows else 0.0 for rows in (down, across))
     # the number of a short one may stand beyond all that is drawn
@@ -146,7 +146,7 @@ def _meet(one: tuple[float, float], other: tuple[float, float]) -> bool:
 
 
 def guide_dimensions(painter: Painter) -> list[Dimension]:
-    """Return the angles of inclined guides on the frame, and how far they are from the first pivot."""
+    """Return angles of inclined guides on the frame, and their distances from a pivot."""
     scene, found = painter.scene, []
     nothing = NOTHING * float(scene.mechanism.geometry.size)
     pivots = [complex(p) for k, p in scene.carried.items() if FRAME in scene.mechanism.carriers[k]]
@@ -170,7 +170,7 @@ def guide_dimensions(painter: Painter) -> list[Dimension]:
 
 def _off(way: complex, e: complex) -> float:
     """How far a way leads off a direction."""
-    return abs((np.conjugate(e) * way).imag)
+    return float(abs((np.conjugate(e) * way).imag))
 
 
 def _inclination(painter: Painter, mark: Sliding) -> list[Dimension]:

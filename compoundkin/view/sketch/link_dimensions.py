@@ -96,7 +96,7 @@ def _side(painter: Painter, name: str, p: complex, q: complex, sides: Sequence[t
 def length_dimension(
     painter: Painter, a: complex, b: complex, length: float, shapes: tuple[Shape, ...] = (), sign: str = ""
 ) -> Dimension:
-    """Return the dimension of a length, its number along the line from a place to another of the picture."""
+    """Return the dimension of a length. Its number is along the line from place to place."""
     text = f"{sign}{number_text(length, painter.scene.mechanism.unit)}"
     e, across = upright(b - a), 1j * upright(b - a)
     places = []
