@@ -143,36 +143,6 @@
     }
   }
 
-  // A driver at the pose shown; another value goes to the nearest pose.
-  class DriverRow {
-    constructor(panel, _, driver) {
-      Object.assign(this, { panel, driver, values: driver.parts[""], owner: "the driver", label: driver.name, spoken: `value of ${driver.name}` });
-      Object.assign(this, { late: false, positive: false, isAngle: driver.unit === "deg", unit: driver.unit === "deg" ? "°" : page.raised(driver.unit) });
-      this.low = Math.min(...this.values);
-      this.high = Math.max(...this.values);
-      this.step = (this.high - this.low) / Math.max(1, this.values.length - 1) || 1;
-    }
-    get() { return this.values[this.panel.player.pose]; }
-    value(text) { return page.NumberRow.prototype.value.call(this, text); }
-    told() { return `from ${page.written(this.low)} to ${page.withUnit(this.high, this.driver.unit)}`; }
-    wrong(text) {
-      if (!text.trim()) return "Write a number.";
-      const value = this.value(text), slack = 1e-9 * (this.high - this.low);
-      if (!Number.isFinite(value)) return `“${text.trim().slice(0, 20)}” is not a number.`;
-      return value < this.low - slack || value > this.high + slack ? `It goes ${this.told()}.` : "";
-    }
-    // the pose whose value is nearest; of several the one nearest to the pose shown
-    nearest(value) {
-      const { pose } = this.panel.player;
-      let best = pose;
-      this.values.forEach((one, k) => {
-        const nearer = Math.abs(one - value) - Math.abs(this.values[best] - value);
-        if (nearer < -1e-9 * this.step || (nearer <= 1e-9 * this.step && Math.abs(k - pose) < Math.abs(best - pose))) best = k;
-      });
-      return best;
-    }
-  }
-
   class Panel {
     constructor(root, player) {
       const { live } = player.data;
@@ -192,13 +162,14 @@
         ...pairs.map(({ name, rows, links: members }) => ({ name, rows, links: members, Kind: page.NumberRow })),
       ];
       const all = groups.reduce((sum, group) => sum + shown(group), 0);
-      if (player.drivers.length) groups.unshift({ name: "Drivers", rows: player.drivers, links: [], Kind: DriverRow });
+      if (player.drivers.length) groups.unshift({ name: "Drivers", rows: player.drivers, links: [], Kind: page.DriverRow });
       // two columns about as high as each other, which stay as they are when rows come and go
-      const height = (group) => (shown(group) ? 1 + shown(group) : 0), half = groups.reduce((sum, group) => sum + height(group), 0) / 2;
+      const height = (group) => (shown(group) ? 1 + (all > MANY ? 0 : shown(group)) : 0);
+      const half = groups.reduce((sum, group) => sum + height(group), 0) / 2;
       const columns = [0, 1].map(() => make("div", "", "", this.root.querySelector(".dimensions")));
       let above = 0;
       for (const { name, rows, links: about, Kind, link } of groups) {
-        const place = this.group(columns[above < half ? 0 : 1], name, link, Kind === DriverRow || all <= MANY);
+        const place = this.group(columns[above < half ? 0 : 1], name, link, Kind === page.DriverRow || all <= MANY);
         for (const row of rows) this.field(new Kind(this, name, row), about, place);
         above += height({ rows });
       }
@@ -215,14 +186,14 @@
       return group;
     }
     field(row, links, group) {
-      if (!(row instanceof DriverRow)) row.original = () => row.get(this.own);
+      if (!(row instanceof page.DriverRow)) row.original = () => row.get(this.own);
       this.fields.push(new Field(this, row, links, group));
     }
 
     // --- changes ----------------------------------------------------------------------------------------------------------
     apply({ row }, value, atOnce) {
       const { player, design } = this;
-      if (row instanceof DriverRow) {
+      if (row instanceof page.DriverRow) {
         player.stop();
         return player.show(row.nearest(value));
       }

@@ -125,5 +125,34 @@
     set(value) { return this.changes({ [this.name]: this.isAngle ? value * DEGREE : value }); }
   }
 
-  Object.assign(page, { PointRow, NumberRow, sizeOf, round });
+  // A driver at the pose shown; another value goes to the nearest pose.
+  class DriverRow extends Row {
+    constructor(panel, _, driver) {
+      super(panel, "the driver");
+      Object.assign(this, { driver, values: driver.parts[""], label: driver.name, spoken: `value of ${driver.name}`, isAngle: driver.unit === "deg" });
+      this.low = Math.min(...this.values);
+      this.high = Math.max(...this.values);
+    }
+    get unit() { return this.isAngle ? "°" : page.raised(this.driver.unit); }
+    get most() { return Infinity; }
+    get step() { return (this.high - this.low) / Math.max(1, this.values.length - 1) || 1; }
+    get() { return this.values[this.panel.player.pose]; }
+    told() { return `from ${page.written(this.low)} to ${page.withUnit(this.high, this.driver.unit)}`; }
+    wrong(text) {
+      const value = this.value(text), slack = 1e-9 * (this.high - this.low);
+      return value < this.low - slack || value > this.high + slack ? `It goes ${this.told()}.` : super.wrong(text);
+    }
+    // the pose whose value is nearest; of several the one nearest to the pose shown
+    nearest(value) {
+      const { pose } = this.panel.player, slack = 1e-9 * this.step;
+      let best = pose;
+      this.values.forEach((one, k) => {
+        const nearer = Math.abs(one - value) - Math.abs(this.values[best] - value);
+        if (nearer < -slack || (nearer <= slack && Math.abs(k - pose) < Math.abs(best - pose))) best = k;
+      });
+      return best;
+    }
+  }
+
+  Object.assign(page, { PointRow, NumberRow, DriverRow, sizeOf, round });
 })();
