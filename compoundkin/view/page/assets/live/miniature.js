@@ -37,7 +37,10 @@
     // a copy, since what is only referred to does not get the colours of dark pages
     draw() {
       this.waits = 0;
-      if (!this.root.hidden) this.root.replaceChildren(this.player.svg.cloneNode(true));
+      if (this.root.hidden) return;
+      const copy = this.player.svg.cloneNode(true);
+      for (const one of [copy, ...copy.querySelectorAll("[tabindex]")]) one.removeAttribute("tabindex");
+      this.root.replaceChildren(copy);
     }
   }
 
