@@ -195,7 +195,7 @@
       const { player, design } = this;
       if (row instanceof page.DriverRow) {
         player.stop();
-        return player.show(row.nearest(value));
+        return row.move(value);
       }
       design.change(row.set(value, this.now));
       this.words = `${row.label} of ${row.owner}: ${page.written(value)} ${row.unit}`.trim();

@@ -125,7 +125,7 @@
     set(value) { return this.changes({ [this.name]: this.isAngle ? value * DEGREE : value }); }
   }
 
-  // A driver at the pose shown; another value goes to the nearest pose.
+  // A driver at the pose shown. Another value goes to the nearest pose; of several drivers this one alone goes there.
   class DriverRow extends Row {
     constructor(panel, _, driver) {
       super(panel, "the driver");
@@ -141,6 +141,12 @@
     wrong(text) {
       const value = this.value(text), slack = 1e-9 * (this.high - this.low);
       return value < this.low - slack || value > this.high + slack ? `It goes ${this.told()}.` : super.wrong(text);
+    }
+    move(value) {
+      const { player } = this.panel, free = player.drivers.length > 1 && player.drag && player.drag.free;
+      const index = player.data.live.drives.findIndex(({ name }) => name === this.driver.name);
+      if (free && index >= 0) free.move(index, (value - this.get()) * (this.isAngle ? DEGREE : 1));
+      else player.show(this.nearest(value));
     }
     // the pose whose value is nearest; of several the one nearest to the pose shown
     nearest(value) {

@@ -37,7 +37,15 @@
   const acts = {
     toml: (button) => copy(button, page.tomlOf(design), "Mechanism file"),
     link: (button) => copy(button, address(), design.isChanged ? "Link to these dimensions" : "Link to the original dimensions"),
-    csv: () => save(page.csvOf(player), "csv", "text/csv;charset=utf-8"),
+    csv: () => {
+      // the poses of the motion, not one beside it
+      const free = player.drag && player.drag.free;
+      if (free && free.kept) {
+        free.leave();
+        player.showAgain();
+      }
+      save(page.csvOf(player), "csv", "text/csv;charset=utf-8");
+    },
     svg: () => save(page.svgOf(player), "svg", "image/svg+xml"),
   };
   for (const button of root.querySelectorAll("[data-share]")) button.addEventListener("click", () => acts[button.dataset.share](button));
