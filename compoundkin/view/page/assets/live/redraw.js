@@ -149,13 +149,19 @@
     }
     settle() {
       this.extent = this.design.isChanged ? this.reach() : null;
-      this.show();
+      this.player.extent = this.extent;
+      this.room();
     }
     show() {
       const { extent, player } = this, before = player.extent;
       if (before === extent || (before && extent && before.every((edge, k) => Math.abs(edge - extent[k]) < SETTLED))) return;
       player.extent = extent;
-      player.makeRoom();
+      this.room();
+    }
+    // the scales of vectors stand at the lower edge of it
+    room() {
+      this.player.makeRoom();
+      this.player.overlay();
     }
     // left, top, right and bottom of all places of points on the picture
     reach() {
