@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.programs.graph.operation_graph import OperationGraph
+from compoundkin.programs.graph.operations import CONSTANT
 from compoundkin.programs.recording.numpy_answers import NumpyAnswers
 
 
@@ -60,6 +61,11 @@ class RecordedNumber(NumpyAnswers):
     def part(self, index: int) -> int:
         """Return the node of the real (0) or imaginary (1) part."""
         return (self.x, self.graph.constant(0.0) if self.y is None else self.y)[index]
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is a number that nothing changes."""
+        return all(node is None or self.graph.nodes[node].operation == CONSTANT for node in (self.x, self.y))
 
     # --- arithmetic ---
 

@@ -84,7 +84,10 @@ def _binary(name: str, swapped: bool = False) -> Callable[[Any, Any], Any]:
         if not isinstance(other, int | float | complex | np.number | NotedLength):
             return NotImplemented
         one, two = (other, self) if swapped else (self, other)
-        return noted(operation(plain(one), plain(two)), operation(_note(one), _note(two)))
+        value = operation(plain(one), plain(two))
+        # numbers that cannot change are not worked out again
+        fixed = self.note.is_constant and (not isinstance(other, Noted) or other.note.is_constant)
+        return noted(value, self.note.like(value) if fixed else operation(_note(one), _note(two)))
 
     return method
 
@@ -207,11 +210,7 @@ def plain(value: Any) -> Any:
 
 
 def as_place(value: Number) -> complex:
-    """Return a place as a complex number. Its note stays with it, where it has one.
-
-    >>> as_place(np.float64(2.0))
-    (2+0j)
-    """
+    """Return a place as a complex number. Its note stays with it, where it has one."""
     return value if isinstance(value, NotedPlace) else complex(value)
 
 

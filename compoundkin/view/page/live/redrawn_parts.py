@@ -9,7 +9,6 @@ from typing import Any
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.one_design import motion_of_design
-from compoundkin.programs.dimensions.named_dimensions import free_dimensions
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT
@@ -29,7 +28,8 @@ LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
 def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
     """Return what draws the parts of a sketch anew. `names` are those of the dimensions that change."""
     motion = motion_of_design(sketch.motion, sketch.design)
-    free = free_dimensions(StatedDimensions(motion.mechanism, motion.inputs.ends), names)
+    known = StatedDimensions(motion.mechanism, motion.inputs.ends).known
+    free = tuple(known[name] for name in names)
     scene, graph = noted_scene(sketch.scene, motion, free)
     painter = Painter(scene, sketch.window)
     parts = [*carried_parts(painter, carried_shapes(painter))]
