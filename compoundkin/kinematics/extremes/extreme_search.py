@@ -165,11 +165,13 @@ class ExtremeSearch(PrintsShort):
         samples = np.fmax.reduce(BOTH * windows.values[:, None], axis=-1)
         high = np.fmax((BOTH * windows.fine[:, None]).max(axis=-1), samples)
         rows = np.full((*high.shape[:2], len(self.stretches)), -np.inf)
-        rows[..., windows.which] = high
+        # what a polynomial tells that is not right is no value to be reached
+        sure = np.where(windows.trusted[:, None], high, samples)
+        rows[..., windows.which] = sure
         group = self.group[windows.which]
         best = self._by_group(np.fmax(rows, (BOTH * self.ends[:, None]).max(axis=-1)))[..., group]
         varies = ~self._constant(best, self._slack[:, None, group])
-        m, s, w = np.nonzero(varies & (high >= best - ALIKE * windows.span[:, None]))
+        m, s, w = np.nonzero(varies & (sure >= best - ALIKE * windows.span[:, None]))
         _, earliest = np.unique(self._kinds(m, s, windows.which[w]), return_index=True)
         chosen = varies & ~windows.trusted[:, None] & (high + windows.doubt[:, None] >= best)
         chosen[m[earliest], s[earliest], w[earliest]] = True

@@ -37,11 +37,12 @@ class Windows(PrintsShort):
     """Windows of stretches with samples of quantities.
 
     They go from `low` to `high` in the stretches' own t. `values` (quantities, windows, samples) are NaN where there
-    are none. `design` (windows,) says of which design each is.
+    are none. `design` (windows,) says of which design each is, `limited` which of them end at a limit position.
     """
 
     which: Number
     design: Number
+    limited: Number
     low: Number
     high: Number
     places: Number
@@ -115,8 +116,11 @@ class Windows(PrintsShort):
         _, own = np.unique(self.design, return_inverse=True)
         in_order = np.argsort(own, kind="stable")
         starts = np.flatnonzero(np.append(True, np.diff(own[in_order]) != 0))
-        found: Number = reduce.reduceat(reduce.reduce(values, axis=-1)[:, in_order], starts, axis=1)
-        return found[:, own]
+        rows = reduce.reduce(values, axis=-1)
+        # what grows without limit tells nothing of the range elsewhere
+        known = np.where(self.limited, np.nan, rows)
+        inside, found = (reduce.reduceat(row[:, in_order], starts, axis=1)[:, own] for row in (known, rows))
+        return np.where(np.isnan(inside), found, inside)
 
 
 def sampled(
@@ -131,7 +135,8 @@ def sampled(
     ends = (t == -1.0) & stretches.limits[which, :1], (t == 1.0) & stretches.limits[which, 1:]
     rates = np.array([one.order > 0 for one in measures], dtype=bool)[:, None, None]
     values = np.where(rates & (ends[0] | ends[1]), np.nan, values)
-    return Windows(which, stretches.design[which], low, high, places, values, tuple(measures))
+    limited = stretches.limits[which].any(axis=1)
+    return Windows(which, stretches.design[which], limited, low, high, places, values, tuple(measures))
 
 
 def solved(motion: Motion, measures: Sequence[Measure], designs: Number, places: Number) -> Number:

@@ -161,3 +161,15 @@ def test_a_pole_exactly_at_a_pose_is_without_limit_on_both_sides() -> None:
     (found,) = extremes(solved("slider-crank"), "stroke.advantage")
     assert found.least.value == -np.inf
     assert found.greatest.value == np.inf
+
+
+def test_beside_a_gap_ranges_are_those_between_the_poses_too() -> None:
+    """What grows without limit at the ends of a gap does not hide the least value elsewhere."""
+    path = ck.compile(mechanism("six-bar"), ["bar.angle"], free=["frame.B.x"])
+    with pytest.warns(ck.errors.UnassembledPoses):
+        motion = ck.solve(path.mechanism({"frame.B.x": 24.0}))
+    speed, turning = extremes(motion, "G.velocity.length", "slot.coriolis.length")
+    (place,) = zeros(motion, "bar.angular_velocity").at.place
+    for found in (speed, turning):
+        assert found.least.value[0] == pytest.approx(0.0, abs=1e-6)
+    assert speed.least.at.place[0] == pytest.approx(place, abs=1e-6)
