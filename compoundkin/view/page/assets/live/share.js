@@ -73,18 +73,18 @@
     made.className = "original";
     made.textContent = "Of the original dimensions.";
     place(made);
+    return made;
   };
+  // that among the badges has its room from the beginning: what is being dragged must not move
+  const heads = [...document.querySelectorAll(".badges")].map((badges) => note("li", (made) => badges.append(made)));
   const noted = () => {
-    if (design.isChanged === isNoted) return;
     isNoted = design.isChanged;
-    for (const old of document.querySelectorAll(".original")) old.remove();
-    if (!isNoted) return;
-    // among the badges, so that nothing below moves
-    for (const badges of document.querySelectorAll(".badges")) note("li", (made) => badges.append(made));
-    for (const section of document.querySelectorAll("section[data-depends]:not([data-follows])")) {
+    for (const head of heads) head.style.visibility = isNoted ? "" : "hidden";
+    for (const old of document.querySelectorAll("section > .original")) old.remove();
+    for (const section of isNoted ? document.querySelectorAll("section[data-depends]:not([data-follows])") : []) {
       note("p", (made) => section.querySelector("h2").after(made));
     }
   };
-  design.on("change", noted);
+  design.on("change", () => { if (design.isChanged !== isNoted) noted(); });
   noted();
 })();
