@@ -12,7 +12,7 @@ from sphinx.application import Sphinx
 CONTENTS: dict[str, tuple[str, ...]] = {
     "Start": (
         *("Quickstart <self>", "notebooks/first*", "notebooks/*"),
-        *("press-drive", "loads", "machine", "simulation"),
+        *("press-drive", "outlines", "loads", "machine", "simulation"),
     ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
