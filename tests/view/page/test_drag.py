@@ -129,6 +129,18 @@ def test_a_point_is_dragged_and_there_is_a_way_back(made: Any, opened: Any) -> N
             assert w == 0
         else:
             assert abs(complex(x, y) / w - centre.point[k]) < 1e-6
+    # a crank is turned by its bar; pressed without that, it lights up its link for good
+    x, y = (sum(pair) / 2 for pair in zip(middle(view, "Point E"), middle(view, "Point D"), strict=True))
+    view.mouse.click(x + 3, y)
+    assert view.locator(".pinned").is_visible()
+    view.keyboard.press("Escape")
+    view.mouse.down()
+    view.mouse.move(x - 20, y - 20)
+    view.mouse.move(x - 40, y - 20)
+    view.mouse.up()
+    assert view.value(f"{PLAYER}.pose") > 9
+    assert not view.locator(".pinned").is_visible()
+    view.value(f"{PLAYER}.show(9)")
     first = view.value(VALUES)
     drag(view, "Point B", (4.0, 20.0))
     view.keyboard.press("Escape")

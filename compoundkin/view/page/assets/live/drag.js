@@ -61,10 +61,15 @@
       const on = (kind, act) => target.addEventListener(kind, (told) => { if (told.pointerId === event.pointerId) act(told); }, { signal });
       const isMine = () => this.held && this.held.one === one;
       let moved = false;
-      target.setPointerCapture(event.pointerId);
+      // of a link not before it moves: a click shall be one on the link that is pressed
+      const capture = () => target.setPointerCapture(event.pointerId);
+      if (target === one.button) capture();
       on("pointermove", (told) => {
         if (!moved && Math.hypot(told.clientX - begun[0], told.clientY - begun[1]) < MOVED) return;
-        if (!moved) this.take(one, "pointer");
+        if (!moved) {
+          capture();
+          this.take(one, "pointer");
+        }
         moved = true;
         if (isMine()) this.soon({ x: told.clientX + off[0], y: told.clientY + off[1], free: told.altKey || told.ctrlKey });
       });
