@@ -13,6 +13,7 @@ SCRIPTS = (
     "live/path.js",
     "live/design.js",
     "live/redraw.js",
+    "live/vector_scales.js",
     "live/poles.js",
     "live/snapping.js",
     "live/handles.js",

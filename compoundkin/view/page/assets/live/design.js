@@ -155,8 +155,6 @@
   for (const player of page.players) {
     const { live } = player.data;
     player.design = live && !live.why ? new Design(player, new page.Path(player.data)) : null;
-    // vectors may be longer than they were; not while something is dragged, which would move under the pointer
-    if (player.design) player.design.on("commit", () => player.makeRoom());
   }
   page.design = page.players.length ? page.players[0].design : null;
 })();
