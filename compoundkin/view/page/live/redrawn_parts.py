@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from compoundkin.base.arrays import cross
 from compoundkin.base.series import Number
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
@@ -18,11 +19,24 @@ from compoundkin.view.page.live.noted_scene import POSE, noted_scene
 from compoundkin.view.sketch.link_shapes import ON_LINE, SAME
 from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
 from compoundkin.view.sketch.noted_numbers import LEAST, Noted, plain
-from compoundkin.view.sketch.shapes import ArcShape, Band, CircleShape, Polygon, Polyline, Shape, Strokes, leaves
+from compoundkin.view.sketch.shapes import (
+    ArcShape,
+    Band,
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    Strokes,
+    direction,
+    leaves,
+)
 from compoundkin.view.sketch.slide_shapes import Painter
 
 # What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
 LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
+
+# Points of a link that are less than this off a line, in parts of its length, are a bar.
+FLAT = 0.02
 
 
 def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
@@ -38,17 +52,24 @@ def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
 
 
 def _label(painter: Painter, part: MovingPart) -> MovingPart:
-    """A label at the point that it is seen from; a number keeps its place on the longest line of its link."""
+    """A label at the point that it is seen from; a number keeps its place on its bar or plate."""
     own = painter.scene.points[part.link]
-    if part.letter or not own:
-        return MovingPart(part.link, own[part.letter] if part.letter else part.at, (), False)
-    one, other = max(
-        ((p, q) for p in own.values() for q in own.values()), key=lambda ends: abs(plain(ends[1] - ends[0]))
-    )
-    at: Any = one + (part.at - plain(one))
-    if abs(plain(other - one)) > 0:
-        at = one + (other - one) * ((part.at - plain(one)) / plain(other - one))
+    at = own[part.letter] if part.letter else _among([*own.values()], part.at) if own else part.at
     return MovingPart(part.link, at, (), False)
+
+
+def _among(points: Sequence[Any], at: complex) -> Any:
+    """A place by the points of its link: by three of a plate, else along and beside the line of two."""
+    one, other = max(((p, q) for p in points for q in points), key=lambda ends: abs(plain(ends[1] - ends[0])))
+    line, off = plain(other - one), at - plain(one)
+    if not abs(line) > 0:
+        return one + off
+    third = max(points, key=lambda p: abs(cross(line, plain(p - one))))
+    area = cross(line, plain(third - one))
+    if abs(area) > FLAT * abs(line) ** 2:
+        return one + (other - one) * (cross(off, plain(third - one)) / area) + (third - one) * (cross(line, off) / area)
+    share = off / line
+    return one + (other - one) * share.real + direction(other - one) * (share.imag * abs(line) * 1j)
 
 
 @dataclass(frozen=True, eq=False)
