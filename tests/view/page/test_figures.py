@@ -59,7 +59,7 @@ def test_changed_figures_are_those_of_the_changed_mechanism(name: str, made: Any
         _agree(motion, json.loads(figure), cells, row)
     poses = {float(cells[0]): cells for figure, cells in told if not figure}
     for _, row in (one for one in wanted if not one[0]):
-        for text, cell in zip(poses[float(row[0])], row, strict=True):
+        for text, cell in zip(poses[float(str(row[0]))], row, strict=True):
             assert float(text) == pytest.approx(cell, rel=1e-7, abs=1e-6)
     view.value("() => { compoundkin.design.reset(); compoundkin.figures.follow(); }")
     assert view.value(CELLS) == before
