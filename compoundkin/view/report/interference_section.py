@@ -13,7 +13,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.wording import counted, listed, number
+from compoundkin.view.report.wording import counted, joined, listed, number
 
 # So many clearances are listed, the least first.
 MOST = 12
@@ -70,7 +70,7 @@ def interference_blocks(sample: Sample, found: Interference) -> Iterator[Block]:
     if len(clearances) > MOST:
         yield Paragraph(f"... and {counted(len(clearances) - MOST, 'pair')} of links farther apart.")
     if found.neighbours:
-        names = listed(f"{one} and {other}" for one, other in found.neighbours[:MOST])
+        names = ", ".join(joined(two) for two in found.neighbours[:MOST])
         more = f", {len(found.neighbours) - MOST} more" if len(found.neighbours) > MOST else ""
         yield Paragraph(f"Neighbours whose shapes about their joint are not compared: {names}{more}.")
 
