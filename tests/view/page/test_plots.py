@@ -75,6 +75,6 @@ def _follows(view: Any, motion: ck.results.Motion) -> None:
     row = view.value("""() => [...document.querySelectorAll("tr[data-figure]")]
         .find((row) => row.dataset.figure.includes("range") && row.dataset.figure.includes("arm.angular_acc"))
         .innerHTML.match(/data-sort="[^"]*"/g).map((text) => Number(text.slice(11, -1)))""")
-    wanted = [v for end in (found.least, found.greatest) for v in (end.value[0], np.ravel(end.at.time)[0])]
+    wanted = [float(v) for end in (found.least, found.greatest) for v in (end.value[0], np.array(end.at.time)[0])]
     assert row[:4] == pytest.approx(wanted, abs=1e-5)
     view.value("() => { compoundkin.design.reset(); compoundkin.figures.follow(); }")
