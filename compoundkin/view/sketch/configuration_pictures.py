@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +13,6 @@ from compoundkin.base.arrays import degrees
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.base.poses import Pose
-from compoundkin.configurations.circuit import Circuit
-from compoundkin.configurations.circuit_search import circuits
-from compoundkin.configurations.enumeration import configurations
 from compoundkin.kinematics.configuration import BETWEEN, Configuration
 from compoundkin.model.attributes import after_number
 from compoundkin.model.outlines.outline_shapes import outline_shapes
@@ -31,6 +29,9 @@ from compoundkin.view.sketch.sketch_labels import NARROW, below, label_shapes, l
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
 from compoundkin.view.sketch.sketches import asked_labels, by_links, ghost, in_layers, layered, window_on
 from compoundkin.view.sketch.slide_shapes import Painter
+
+if TYPE_CHECKING:
+    from compoundkin.configurations.circuit import Circuit
 
 # More panels than this nobody compares.
 MOST = 40
@@ -52,6 +53,9 @@ class _Panel:
 
 def configurations_picture(what: Drawable, wishes: Wishes) -> Picture:
     """Draw all configurations at a value of every driver. Raises what `configurations` does."""
+    # late: other pictures need none of this
+    from compoundkin.configurations.enumeration import configurations
+
     structure = structure_of(what)
     found = configurations(structure, _values(what, structure, wishes))
     ones = list(found)
@@ -80,6 +84,8 @@ def circuits_picture(what: Drawable, wishes: Wishes) -> Picture:
 
     The driver moves that `at` leaves out, the first of those; the others stand still. Raises what `circuits` does.
     """
+    from compoundkin.configurations.circuit_search import circuits
+
     structure = structure_of(what)
     names = [drive.name for drive in structure.mechanism.drives]
     given = by_name(structure, wishes.at) if wishes.at is not None else {}
