@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,10 +15,10 @@ from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.input_kinds import DRIVE
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS
+from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.sources.carried_states import CarriedState
+from compoundkin.programs.tables.node_values import node_values
 
 # By which part of the size, or of itself, a dimension is changed: what opens in the second order opens by 1e-4, and no
 # number of teeth becomes another one.
@@ -78,9 +78,9 @@ def consistent_dimensions(
     given = dict(_given(motion, mechanism, stated, dimensions))
     given |= _own_states(motion, states)
     for _ in range(STEPS if states else 0):
-        now = _values(mechanism.graph, [one.now.x for one in states], given)
+        now = node_values(mechanism.graph, [one.now.x for one in states], given)
         given |= {one.given: value for one, value in zip(states, now, strict=True)}
-    (found,) = _values(mechanism.graph, [opened], given)
+    (found,) = node_values(mechanism.graph, [opened], given)
     rows = np.broadcast_to(found, (len(dimensions), np.shape(found)[-1] if np.ndim(found) else 1))
     stays = np.any(rows <= OPEN**2, axis=1) & ~np.any(rows > OPEN**2, axis=1)
     return tuple(one for one, good in zip(dimensions, stays, strict=True) if good)
@@ -108,19 +108,3 @@ def _given(
     for name, values in motion.inputs.drives.items():
         for k, value in enumerate(values):
             yield InputNumber(DRIVE, name, str(k)), np.broadcast_to(value, motion.failed.shape)[:, at]
-
-
-def _values(graph: OperationGraph, wanted: Sequence[int], given: Mapping[InputNumber, Number]) -> list[Number]:
-    """Return the values of some nodes, which broadcast with those given."""
-    found: dict[int, Number] = {}
-    with np.errstate(all="ignore"):
-        for k in graph.needed(wanted):
-            node = graph.nodes[k]
-            if node.operation == INPUT:
-                assert node.given is not None
-                found[k] = given[node.given]
-            elif node.operation == CONSTANT:
-                found[k] = np.float64(node.value)
-            else:
-                found[k] = OPERATIONS[node.operation].compute(*(found[n] for n in node.operands))
-    return [found[k] for k in wanted]

@@ -11,9 +11,11 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
 from compoundkin.kinematics.groups.reasons import Reason
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import OF_LINKS
+from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.input_kinds import DRIVE, SEED
@@ -26,6 +28,7 @@ from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recor
 from compoundkin.programs.sources.carried_states import CarriedState, carried_states
 from compoundkin.programs.sources.told_configuration import changed_modes
 from compoundkin.programs.tables.changeable_dimensions import buildable_dimensions, consistent_dimensions
+from compoundkin.programs.tables.node_values import node_values
 from compoundkin.programs.tables.operation_table import OperationTable, operation_table
 
 # Pages show positions, velocities and accelerations.
@@ -152,6 +155,16 @@ class PageProgram(PrintsShort):
         """What becomes of its seeds in their order; sides of singularities."""
         found = carried_states(self.mechanism, [k for part in self._results for k in part])
         return found[: len(self.seeds)], found[len(self.seeds) :]
+
+    def own(self, nodes: Sequence[int], poses: Number) -> list[Number]:
+        """Return values of nodes with the mechanism's own dimensions at some poses of its motion."""
+        motion, given = self.motion, seed_values(self.seeds, self.motion)
+        for one in self.drives:
+            given[one] = np.broadcast_to(motion.inputs.drives[one.name][int(one.part)], motion.failed.shape)
+        numbers: dict[InputNumber, Number] = {one: values[0, poses] for one, values in given.items()}
+        for free in self.mechanism.recording.free:
+            numbers[free.inputs[0]] = float(np.ravel(self.stated.own(free))[0])
+        return node_values(self.mechanism.graph, nodes, numbers)
 
     @cached_property
     def table(self) -> OperationTable:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
 from math import isfinite
+
+import numpy as np
 
 from compoundkin.model.attributes import readable
 from compoundkin.view.page.markup import safe
@@ -36,6 +39,28 @@ def _exact(column: Column, cell: Cell, text: str) -> Iterator[str]:
         yield f' data-sort="{digits[0]}"'
     if len(digits) > 1:
         yield f' data-copy="{", ".join(digits)}"'
+
+
+def packed_cells(columns: Sequence[Column], row: Sequence[Cell], texts: Sequence[str]) -> tuple[str, str] | None:
+    """Return the attribute of a row of numbers with all their digits, and its cells without them.
+
+    A script gives each cell what `cell_html` writes. None for a row of anything else.
+    """
+    numbers = [_number(column, cell) for column, cell in zip(columns, row, strict=True)]
+    known = [number for number in numbers if number is not None]
+    if len(known) < len(numbers):
+        return None
+    packed = b64encode(np.array(known, "<f8").tobytes()).decode("ascii")
+    return f' data-n="{packed}"', "".join(f"<td>{safe(text)}</td>" for text in texts)
+
+
+def _number(column: Column, cell: Cell) -> float | None:
+    """A cell as a number, NaN where it is not known; None where it is something else."""
+    if not column.is_number or isinstance(cell, bool | str | tuple):
+        return None
+    if cell is None or not isfinite(cell):
+        return float("nan")
+    return float(cell) if abs(cell) > column.floor else 0.0
 
 
 def _digits(column: Column, value: Cell) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -36,6 +37,13 @@ ICON = (
     "%3Cpath d='M3 12L6 4L13 7' fill='none' stroke='%230067b1' stroke-width='2'/%3E"
     "%3Ccircle cx='3' cy='12' r='2'/%3E%3Ccircle cx='6' cy='4' r='2'/%3E%3Ccircle cx='13' cy='7' r='2'/%3E%3C/svg%3E"
 )
+# Lines with patterns or templates stay as they are. Spaces say nothing elsewhere but beside signs, as in "a - -b".
+PLAIN, TEXT = re.compile(r"['`/\\]"), re.compile('("[^"]*")')
+SPACES, STOPS = re.compile(r" ?(=>|[=,:;?*{}()\[\]&|]) ?"), re.compile(r"(?<=[:;,{}]) | (?=[{}])")
+# A line of comment.
+REMARK = re.compile(r"//.*|/\*[^*]*\*/")
+# What is said of a line at its end, where nothing can be a text.
+TOLD = re.compile(r" +// [^\"'`]*$")
 SCRIPTS = ("tables.js", "light.js")
 THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
 
@@ -50,8 +58,22 @@ def asset(name: str) -> str:
     text = (ASSETS / name).read_text(encoding="utf-8").strip()
     if name.startswith("vendor/"):
         return text
-    kept = (line.strip() for line in text.splitlines())
-    return "\n".join(line for line in kept if line and not line.startswith("//"))
+    kept = (TOLD.sub("", line.strip()) for line in text.splitlines())
+    told = (line for line in kept if line and not REMARK.fullmatch(line))
+    return "\n".join(map(_narrow_script if name.endswith(".js") else _narrow_style, told))
+
+
+def _narrow_script(line: str) -> str:
+    """Return a line of a script without spaces that say nothing. Texts and patterns stay as they are."""
+    if PLAIN.search(line):
+        return line
+    parts = TEXT.split(line)
+    return "".join(part if k % 2 else SPACES.sub(r"\1", part) for k, part in enumerate(parts))
+
+
+def _narrow_style(line: str) -> str:
+    """Return a line of a style sheet without spaces that say nothing."""
+    return line if PLAIN.search(line) or '"' in line else STOPS.sub("", line)
 
 
 def vendored(name: str, licence: str, gives: str = "") -> str:

@@ -10,7 +10,7 @@ from functools import cached_property
 
 from compoundkin.model.attributes import readable
 from compoundkin.structure import Structure, roman
-from compoundkin.view.page.html_cells import cell_html, of_kind
+from compoundkin.view.page.html_cells import cell_html, of_kind, packed_cells
 from compoundkin.view.page.markup import broken, element, hidden, lines, safe
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
 from compoundkin.view.report.wording import listed, written
@@ -154,6 +154,9 @@ def _row(shown: ShownTable, k: int, texts: Sequence[str], needed: set[int] | Non
     kind = "more" if needed is not None and k not in needed else None
     pose = f' data-pose="{shown.poses[k]}"' if shown.poses else ""
     figure = f' data-figure="{safe(json.dumps(table.figures[k]))}"' if k < len(table.figures) else ""
+    packed = packed_cells(table.columns, row, texts) if pose and not figure and not links else None
+    if packed is not None:
+        return f"<tr{of_kind(kind)}{pose}{packed[0]}>{packed[1]}</tr>"
     cells = [cell_html(column, cell, text) for column, cell, text in zip(table.columns, row, texts, strict=True)]
     cells[0] = _first(shown, row[0], texts[0], links) or cells[0]
     return f"<tr{of_kind(kind)}{_links(links)}{pose}{figure}>{''.join(cells)}</tr>"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from compoundkin.view.page.html_document import Document, asset, vendored
+from compoundkin.view.page.live.lean_data import lean
 from compoundkin.view.page.live.live_assets import FIGURES, PANEL_SCRIPTS, PANEL_STYLES, is_live, scripts_of, styles_of
 from compoundkin.view.page.live.panel_section import KEY, TITLE, panel_section
 from compoundkin.view.page.markup import data_script
@@ -22,7 +23,7 @@ def with_viewer(document: Document, moving: Viewer) -> Document:
     live = is_live(moving.data)
     first = ((KEY, TITLE, panel_section()),) if live else ()
     first = (*first, ("motion", "Motion", moving.section)) if moving.plots else first
-    data = (*document.data, data_script("ck-motion", moving.data))
+    data = (*document.data, data_script("ck-motion", lean(moving.data)))
     library = vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
     last, style = ((*FIGURES, *PANEL_SCRIPTS), PANEL_STYLES) if live else ((), ())
     scripts = *map(asset, scripts_of(moving.data)), library, *map(asset, (*PLOTS, *last))

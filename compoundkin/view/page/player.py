@@ -6,6 +6,7 @@ from typing import Any
 
 from compoundkin.kinematics import Motion
 from compoundkin.view.page.html_document import POLICY, asset, palette
+from compoundkin.view.page.live.lean_data import lean
 from compoundkin.view.page.live.live_assets import is_live, scripts_of, styles_of, without_panel
 from compoundkin.view.page.markup import data_script, element, lines, safe
 from compoundkin.view.page.moving_data import MotionData
@@ -48,7 +49,7 @@ def _document(moving: MotionData, data: dict[str, Any]) -> str:
     body = [
         scripted,
         player_html(moving, data),
-        data_script("ck-motion", without_panel(data)),
+        data_script("ck-motion", lean(without_panel(data))),
         *(f"<script>{asset(name)}</script>" for name in scripts_of(data)),
     ]
     return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'

@@ -209,7 +209,7 @@ def test_all_poses_of_the_outputs_are_there_and_those_of_the_report_shown(six_ba
     table = next(block for block in section.blocks if isinstance(block, TableBlock))
     body = html[html.index('id="outputs-table-1"') :]
     body = body[: body.index("</table>")]
-    rows = re.findall(r'<tr( class="more")? data-pose="(\d+)">', body)
+    rows = re.findall(r'<tr( class="more")? data-pose="(\d+)" data-n=', body)
     assert [int(pose) for _, pose in rows] == list(range(73))
     assert sum(not folded for folded, _ in rows) == len(table.rows) == 25
     assert "Show all 73 rows" in html

@@ -24,6 +24,10 @@
   const unpacked = (text, count) => {
     if (text === null) return new Float64Array(count).fill(NaN);
     if (typeof text === "number") return new Float64Array(count).fill(text);
+    if (text[0] === "r") {
+      const [first, step] = text.slice(2).split(",").map(Number);
+      return Float64Array.from({ length: count }, (_, k) => first + step * k);
+    }
     const bytes = Uint8Array.from(atob(text.slice(2)), (c) => c.charCodeAt(0));
     return text[0] === "d" ? new Float64Array(bytes.buffer) : Float64Array.from(new Float32Array(bytes.buffer));
   };
@@ -77,7 +81,10 @@
       this.assembled = open(data.assembled);
       this.along = { ...data.along, values: open(data.along.values) };
       this.indices = open(data.indices);
-      this.links = data.links.map((link) => ({
+      // what its program finds by itself a live page does not hold
+      this.path = data.live && !data.live.why ? new page.Path(data) : null;
+      const found = this.path && this.path.solved(this.path.own);
+      this.links = data.links.map((link, k) => (link.x === undefined ? { ...link, ...found.links[k] } : {
         ...link, x: open(link.x), y: open(link.y), angle: open(link.angle),
         v: link.v && link.v.map(open), a: link.a && link.a.map(open),
       }));
@@ -87,7 +94,14 @@
       });
       this.drivers = data.drivers.map(quantity);
       this.outputs = data.outputs.map(quantity);
-      this.centres = data.centres.map((centre) => ({ ...centre, at: centre.at.map(open) }));
+      const known = new Set(found ? data.live.program.outputs.filter(({ own }) => own).map(({ name }) => name) : []);
+      for (const output of this.outputs.filter(({ name }) => known.has(name))) {
+        for (const part in output.parts) {
+          output.parts[part].set(found.outputs[output.name][part]);
+          cleaned(output.parts[part], output);
+        }
+      }
+      this.centres = data.centres.map((centre) => ({ ...centre, at: centre.at && centre.at.map(open) }));
       if (data.forces) {
         this.forces = data.forces.arrows.map((one) => ({ ...one, force: one.force.map(open), at: one.at && one.at.map(open) }));
       }
@@ -427,7 +441,7 @@
     centred() {
       const { width, height } = this.data.window;
       const places = this.centres.map((centre) => {
-        const [x, y, w] = this.isChanged ? this.pole(centre) : centre.at.map((values) => values[this.pose]);
+        const [x, y, w] = this.isChanged || !centre.at ? this.pole(centre) : centre.at.map((values) => values[this.pose]);
         if (!Number.isFinite(x + y + w)) return null;
         const [px, py] = this.paper([x / w, y / w]);
         const near = Math.abs(px) < FAR && Math.abs(py) < FAR;
@@ -458,7 +472,7 @@
     }
     // the centre of a changed mechanism, one that does not depend on how quick the drivers are
     pole({ links, at }) {
-      if (!at.some((values) => values.some(Number.isFinite))) return [NaN, NaN, NaN];
+      if (at && !at.some((values) => values.some(Number.isFinite))) return [NaN, NaN, NaN];
       const [i, j] = links.map((name) => this.data.links.findIndex((link) => link.name === name));
       const { width, scale } = this.data.window;
       return page.pole(this.links, i, j, this.pose, width / scale);

@@ -4,6 +4,17 @@
   const page = window.compoundkin;
   const plain = (text) => text.replace(/\s+/g, " ").trim();
 
+  // --- rows that are folded have their digits packed: each cell gets its own, as it is written elsewhere -----------------
+  for (const row of document.querySelectorAll("tr[data-n]")) {
+    const bytes = Uint8Array.from(atob(row.dataset.n), (c) => c.charCodeAt(0));
+    new Float64Array(bytes.buffer).forEach((value, k) => {
+      const cell = row.cells[k], digits = Number.isNaN(value) ? "" : String(value);
+      cell.className = "number";
+      if (digits !== cell.textContent) cell.dataset.sort = digits;
+    });
+    delete row.dataset.n;
+  }
+
   // --- copying ---------------------------------------------------------------------------------------------------
   const exact = (cell) => plain(cell.dataset.copy ?? cell.dataset.sort ?? cell.textContent);
   const heads = (table) => [...table.tHead.rows[0].cells].map((cell) => plain(cell.textContent));

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 PLAYER_SCRIPTS, PLAYER_STYLE = ("player.js", "view_box.js"), "player.css"
+# Before the player, which asks the path for what a live page does not hold.
+PATH_SCRIPTS = ("live/machine.js", "live/states.js", "live/path.js")
 # In this order: each uses those before it.
 SCRIPTS = (
-    "live/machine.js",
-    "live/states.js",
-    "live/path.js",
     "live/design.js",
     "live/redraw.js",
     "live/vector_scales.js",
@@ -52,7 +51,7 @@ def scripts_of(data: Mapping[str, Any]) -> tuple[str, ...]:
     >>> scripts_of({"live": None})
     ('player.js', 'view_box.js')
     """
-    return (*PLAYER_SCRIPTS, *(SCRIPTS if is_live(data) else ()))
+    return (*PATH_SCRIPTS, *PLAYER_SCRIPTS, *SCRIPTS) if is_live(data) else PLAYER_SCRIPTS
 
 
 def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from compoundkin.programs.recording.recorded_outputs import ProgramOutput, outpu
 from compoundkin.programs.tables.operation_table import CODES
 from compoundkin.programs.tables.page_program import PageProgram, RecordedReason
 from compoundkin.view.page.live.followed_quantities import followed_quantities
+from compoundkin.view.page.live.own_values import OwnValues
 from compoundkin.view.page.live.panel_data import panel_data, template_data
 from compoundkin.view.page.markup import exact
 from compoundkin.view.report.shown_poses import Sample
@@ -148,13 +149,19 @@ class LiveData:
 
     def _link(self, name: str) -> dict[str, Any]:
         at = [[self.places[node] for node in nodes] for nodes in self.program.links[name]]
-        return {"at": at, "wrapped": self.program.mechanism.block.world[name].theta is None}
+        wrapped = self.program.mechanism.block.world[name].theta is None
+        return {"at": at, "wrapped": wrapped, "own": self._own.has_link(name)}
+
+    @cached_property
+    def _own(self) -> OwnValues:
+        return OwnValues(self.program, self.chosen)
 
     def _outputs(self) -> Iterator[dict[str, Any]]:
         for output, number in zip(self.program.outputs, self.program.recorded, strict=True):
             nodes = {"": number.x} if number.y is None else {"x": number.x, "y": number.y}
             parts = {part: self.places[node] for part, node in nodes.items()}
-            yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped}
+            own = self._own.has_output(output, [*nodes.values()])
+            yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped, "own": own}
 
 
 def _number(value: float) -> float | str:

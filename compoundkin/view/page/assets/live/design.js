@@ -154,7 +154,7 @@
   page.Design = Design;
   for (const player of page.players) {
     const { live } = player.data;
-    player.design = live && !live.why ? new Design(player, new page.Path(player.data)) : null;
+    player.design = live && !live.why ? new Design(player, player.path) : null;
   }
   page.design = page.players.length ? page.players[0].design : null;
 })();

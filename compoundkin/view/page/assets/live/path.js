@@ -8,6 +8,10 @@
   const unpacked = (text, count) => {
     if (text === null) return new Float64Array(count).fill(NaN);
     if (typeof text === "number") return new Float64Array(count).fill(text);
+    if (text[0] === "r") {
+      const [first, step] = text.slice(2).split(",").map(Number);
+      return Float64Array.from({ length: count }, (_, k) => first + step * k);
+    }
     return new Float64Array(Uint8Array.from(atob(text.slice(2)), (c) => c.charCodeAt(0)).buffer);
   };
   // makes an angle continuous along the motion, over gaps too

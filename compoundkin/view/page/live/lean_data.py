@@ -1,0 +1,97 @@
+"""The data of a live page without what its program finds by itself."""
+
+from __future__ import annotations
+
+from base64 import b64decode
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.view.page.live.live_assets import is_live
+
+# What is written of a link at every pose.
+OF_POSES = ("x", "y", "angle", "v", "a")
+# What often goes on by equal steps.
+EVEN = ("indices", "along", "drivers")
+# Directions that differ by less are one: rates have seven digits.
+SAME = 1e-4
+
+
+def lean(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a motion for a script. Those of one that is not live are all there.
+
+    >>> lean({"live": None, "links": []})
+    {'live': None, 'links': []}
+    """
+    if not is_live(data):
+        return dict(data)
+    program = data["live"]["program"]
+    links = [
+        _without(link, OF_POSES) if told["own"] else link
+        for link, told in zip(data["links"], program["links"], strict=True)
+    ]
+    own = {told["name"] for told in program["outputs"] if told["own"]}
+    outputs = [{**one, "parts": dict.fromkeys(one["parts"])} if one["name"] in own else one for one in data["outputs"]]
+    found = {**data, "links": links, "outputs": outputs, "centres": [_centre(data, one) for one in data["centres"]]}
+    kept = {key: _even(data[key], data["poses"]) for key in EVEN}
+    return {**found, **kept}
+
+
+def _even(value: Any, poses: int) -> Any:
+    """Return data with numbers that go on by equal steps written as the first and the step."""
+    if isinstance(value, Mapping):
+        return {key: _even(one, poses) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_even(one, poses) for one in value]
+    if not isinstance(value, str) or not value.startswith("d:"):
+        return value
+    numbers = unpacked(value, poses)
+    first, step = float(numbers[0]), float(numbers[1] - numbers[0])
+    return f"r:{first!r},{step!r}" if np.array_equal(first + step * np.arange(poses), numbers) else value
+
+
+def _without(whole: Mapping[str, Any], keys: tuple[str, ...]) -> dict[str, Any]:
+    return {key: value for key, value in whole.items() if key not in keys}
+
+
+def _centre(data: Mapping[str, Any], centre: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an instant centre without its places, where these follow from velocities at every pose."""
+    links = {link["name"]: link for link in data["links"]}
+    if any("v" not in links[name] for name in centre["links"]):
+        return dict(centre)
+    one, other = (_rate(links[name], data["poses"]) for name in centre["links"])
+    ax, ay, w = other - one
+    found = np.stack([-ay, ax, w]) * _weights(data)
+    known = np.stack([unpacked(part, data["poses"]) for part in centre["at"]]) * _weights(data)
+    with np.errstate(all="ignore"):
+        found, known = found / np.linalg.norm(found, axis=0), known / np.linalg.norm(known, axis=0)
+        apart = np.minimum(np.abs(found - known), np.abs(found + known)).max(axis=0)
+    follows = bool(np.all(apart[unpacked(data["assembled"], data["poses"]) == 1.0] < SAME))
+    return _without(centre, ("at",)) if follows else dict(centre)
+
+
+def _rate(link: Mapping[str, Any], poses: int) -> Number:
+    """The velocity of what is at the origin, and the rate of turning."""
+    x, y = (unpacked(link[key], poses) for key in ("x", "y"))
+    vx, vy, w = (unpacked(part, poses) for part in link["v"])
+    return np.stack([vx + w * y, vy - w * x, w])
+
+
+def _weights(data: Mapping[str, Any]) -> Number:
+    """Lengths in parts of the size."""
+    size = data["live"]["size"]
+    return np.array([[1.0 / size], [1.0 / size], [1.0]])
+
+
+def unpacked(text: str | float | None, poses: int) -> Number:
+    """Return numbers as they were packed.
+
+    >>> unpacked(3.0, 2)
+    array([3., 3.])
+    """
+    if not isinstance(text, str):
+        return np.full(poses, np.nan if text is None else text)
+    form = "<f8" if text.startswith("d:") else "<f4"
+    return np.frombuffer(b64decode(text[2:]), form).astype(float)
