@@ -157,7 +157,7 @@ class PageProgram(PrintsShort):
         return found[: len(self.seeds)], found[len(self.seeds) :]
 
     def own(self, nodes: Sequence[int], poses: Number) -> list[Number]:
-        """Return values of nodes with the mechanism's own dimensions at some poses of its motion."""
+        """Return values of nodes, with the mechanism's own dimensions, at some poses."""
         motion, given = self.motion, seed_values(self.seeds, self.motion)
         for one in self.drives:
             given[one] = np.broadcast_to(motion.inputs.drives[one.name][int(one.part)], motion.failed.shape)

@@ -42,9 +42,9 @@ def _exact(column: Column, cell: Cell, text: str) -> Iterator[str]:
 
 
 def packed_cells(columns: Sequence[Column], row: Sequence[Cell], texts: Sequence[str]) -> tuple[str, str] | None:
-    """Return the attribute of a row of numbers with all their digits, and its cells without them.
+    """Return the attribute of a row of numbers, and its cells.
 
-    A script gives each cell what `cell_html` writes. None for a row of anything else.
+    The attribute has all digits. A script gives each cell what `cell_html` writes. None for a row of anything else.
     """
     numbers = [_number(column, cell) for column, cell in zip(columns, row, strict=True)]
     known = [number for number in numbers if number is not None]

@@ -60,7 +60,7 @@ def asset(name: str) -> str:
         return text
     kept = (TOLD.sub("", line.strip()) for line in text.splitlines())
     told = (line for line in kept if line and not REMARK.fullmatch(line))
-    return "\n".join(map(_narrow_script if name.endswith(".js") else _narrow_style, told))
+    return "\n".join(map(_narrow_script if name.endswith("js") else _narrow_style, told))
 
 
 def _narrow_script(line: str) -> str:
