@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,14 +115,14 @@ def _of_circuit(structure: Structure, driver: str, circuit: Circuit) -> str:
 
 
 def _scenes(structure: Structure, ones: Sequence[Configuration]) -> list[Scene]:
-    """The scenes of configurations. A guide is as long in each as any of them needs it."""
+    """The scenes of configurations. A guide is as long in each as that one needs it."""
     if not ones:
         return []
     first = ones[0]
     whole = {name: _whole([one.poses[name] for one in ones]) for name in first.poses}
     outlines = outline_shapes(structure.mechanism, first.dimensions)
     scene = Scene(structure, whole, first.poses, first.dimensions, ends_of(structure), outlines=outlines)
-    return [scene.ghost(k) for k in range(len(ones))]
+    return [replace(one, whole=one.here) for one in (scene.ghost(k) for k in range(len(ones)))]
 
 
 def _whole(poses: Sequence[Pose]) -> Pose:
