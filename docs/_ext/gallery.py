@@ -1,27 +1,44 @@
-"""The gallery: a page for each mechanism of the catalog, written when the site is built."""
+"""The gallery: for each mechanism of the catalog a page to read and one to play with, written with the site."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator, Mapping
 from html import escape
+from math import tau
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from sphinx.application import Sphinx
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs.symbols import Outline, Strap, Track, Wheel
 from compoundkin.structure import roman
 from compoundkin.synthesis.chains import structure_name
-from compoundkin.view.sketch.shown_pose import solved_over
+from compoundkin.view.sketch.shown_pose import scene_in, solved_over
 
 FOLDER = "gallery"
+# So many turns of a driver, in so many poses each, are tried for a path to close.
+TURNS, POSES = 12, 121
+# Ends of a path nearer to each other than this part of the mechanism's size are one.
+NEAR = 1e-6
+# The longer side of the small pictures, in pixels: pivots are seen on them.
+SMALL = 300
 
 INDEX = """\
 # Gallery
 
-All mechanisms of the [catalog](../catalog.md), drawn by the program. Each has a page with its picture at full size,
-where it comes from, what it is made of, and the command to try it.
+All mechanisms of the [catalog](../catalog.md), drawn by the program. Each has a page with its picture at full
+size, where it comes from, what it is made of, and the command to try it; and a live page, where its points can be
+dragged and its dimensions changed.
+{parts}
+"""
+
+PART = """
+## {title}
 
 :::{{container}} gallery
 {cells}
@@ -44,7 +61,7 @@ orphan: true
 * **Source:** {source}
 * **File:** [{name}.toml](../../catalog/{name}.toml)
 
-[All mechanisms](index.md)
+{live}[All mechanisms](index.md)
 
 ## Try it
 
@@ -59,37 +76,102 @@ motion = ck.solve(ck.catalog.load_named("{name}"))
 ```
 """
 
+LIVE = '<a href="{name}-live.html">Live page: drag its points, change its dimensions</a>\n\n'
+
 APART = """
 ## Taken apart
 
 ![{title}, taken apart into frame, drivers and Assur groups]({name}-apart.svg)
 """
 
+# Kinds, in the order of the gallery.
+CAMS, GEARS, CYLINDERS, HIGHER, SPECIAL, SEVERAL = (
+    "Cams",
+    "Gears, racks, belts and rolling wheels",
+    "Cylinders",
+    "Groups of class III and higher",
+    "Mobile by special dimensions",
+    "Several drivers",
+)
+FOUR, SLIDES, PINS, MORE = (
+    "Four-bars",
+    "Up to four links, with slides and slots",
+    "Six links and more, with pins alone",
+    "Six links and more, with slides",
+)
+KINDS = (FOUR, SLIDES, PINS, MORE, HIGHER, GEARS, CAMS, CYLINDERS, SPECIAL, SEVERAL)
 
-def files() -> dict[str, str]:
+
+def kind_of(mechanism: ck.Mechanism, structure: ck.results.Structure) -> str:
+    """Where a mechanism stands in the gallery: by what is particular about it."""
+    marks = marks_of(mechanism)
+    if Outline in marks:
+        return CAMS
+    if marks & {Wheel, Track, Strap}:
+        return GEARS
+    driven = structure.driven.items() if not mechanism.led_links else ()
+    lines = (step.pair.members for name, step in driven if not structure.driven_angles[name])
+    if mechanism.cylinders or any(FRAME not in members for members in lines):
+        return CYLINDERS
+    if any(group.class_ > 2 for group in structure.groups):
+        return HIGHER
+    if structure.relaxation:
+        return SPECIAL
+    if len(mechanism.drives) > 1:
+        return SEVERAL
+    pins = len(mechanism.written_pairs) == 0
+    if len(mechanism.links) <= 4:
+        return FOUR if pins else SLIDES
+    return PINS if pins else MORE
+
+
+def marks_of(mechanism: ck.Mechanism) -> set[type]:
+    """The kinds of marks that a mechanism's pairs are drawn with."""
+    shown = solved_over(mechanism)
+    if shown is None:
+        return set()
+    return {type(seen.mark) for seen in scene_in(shown, None, None, 0).seen}
+
+
+def chosen(names: str) -> dict[str, ck.Mechanism]:
+    """The mechanisms of the gallery by name: those that are named, or all."""
+    wanted = names.split(",") if names else shipped_mechanisms.names()
+    return {name: shipped_mechanisms.load_named(name) for name in wanted}
+
+
+def files(mechanisms: Mapping[str, ck.Mechanism]) -> dict[str, str]:
     """All files of the gallery by name."""
-    mechanisms = {name: shipped_mechanisms.load_named(name) for name in shipped_mechanisms.names()}
     found: dict[str, str] = {}
+    parts: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for name, mechanism in mechanisms.items():
-        found |= files_of(name, mechanism)
-    cells = "\n".join(cell(name, mechanism.title) for name, mechanism in mechanisms.items())
-    return {**found, "index.md": INDEX.format(cells=cells)}
+        structure = ck.decompose(mechanism)
+        found |= files_of(name, mechanism, structure)
+        parts[kind_of(mechanism, structure)].append(cell(name, mechanism.title))
+    return {**found, "index.md": INDEX.format(parts="".join(parts_of(parts)))}
 
 
-def files_of(name: str, mechanism: ck.Mechanism) -> dict[str, str]:
+def parts_of(parts: Mapping[str, Iterable[str]]) -> Iterator[str]:
+    """The kinds that have mechanisms, with their small pictures."""
+    for title, cells in parts.items():
+        if cells:
+            yield PART.format(title=title, cells="\n".join(cells))
+
+
+def files_of(name: str, mechanism: ck.Mechanism, structure: ck.results.Structure) -> dict[str, str]:
     """A mechanism's page and its pictures; one that cannot be solved is shown as drawn."""
-    shown = solved_over(mechanism) or mechanism
+    shown = whole_motion(mechanism) or mechanism
     picture, apart = drawn(shown, True), taken_apart(shown)
     page = PAGE.format(
         name=name,
         title=plain(mechanism.title),
         alt=plain(picture.description),
         description=plain(mechanism.description),
-        structure=plain(structure_of(mechanism)),
+        structure=plain(structure_of(structure)),
         source=plain(mechanism.source),
+        live=LIVE.format(name=name) if isinstance(shown, ck.results.Motion) else "",
         forces=f"\ncompoundkin forces {name}" if mechanism.units else "",
     )
-    small = drawn(shown, False)
+    small = drawn(shown, False, SMALL)
     found = {f"{name}.md": page, f"{name}.svg": picture.svg, f"{name}-small.svg": small.svg}
     if apart is not None:
         found[f"{name}.md"] += APART.format(name=name, title=plain(mechanism.title))
@@ -97,11 +179,41 @@ def files_of(name: str, mechanism: ck.Mechanism) -> dict[str, str]:
     return found
 
 
-def drawn(shown: ck.results.Motion | ck.Mechanism, labels: bool) -> ck.results.Picture:
+def whole_motion(mechanism: ck.Mechanism) -> ck.results.Motion | None:
+    """The motion over the drivers' own ranges; over so many turns that paths close, where one turn is not enough."""
+    shown = solved_over(mechanism)
+    if shown is None or len(mechanism.drives) != 1 or not turns(shown) or closes(shown):
+        return shown
+    first = float(np.ravel(next(iter(shown.drives.values())).value)[0])
+    for count in range(2, TURNS + 1):
+        longer = ck.solve(mechanism, np.linspace(first, first + tau * count, count * (POSES - 1) + 1))
+        if longer.assembled.all() and closes(longer):
+            return longer
+    return shown
+
+
+def closes(motion: ck.results.Motion) -> bool:
+    """Tell whether all paths close. Points of links on a pivot of the frame go round it, however far they turn."""
+    scene, mechanism = scene_in(motion, None, None, 0), motion.mechanism
+    pivots = set(mechanism.links[FRAME].points)
+    turned = {name for name, link in mechanism.links.items() if pivots & set(link.points)}
+    ends = [scene.places(k)[[0, -1]] for k in scene.letters if turned.isdisjoint(mechanism.carriers[k])]
+    return all(abs(last - first) < NEAR * motion.size for first, last in ends)
+
+
+def turns(motion: ck.results.Motion) -> bool:
+    """Tell whether the only driver makes whole turns, and all of them are assembled."""
+    name, drive = next(iter(motion.drives.items()))
+    way = np.ptp(np.ravel(drive.value)) / tau
+    is_whole = bool(way > 0.5 and np.isclose(way, round(way)))
+    return motion.structure.driven_angles[name] and bool(motion.assembled.all()) and is_whole
+
+
+def drawn(shown: ck.results.Motion | ck.Mechanism, labels: bool, size: float | None = None) -> ck.results.Picture:
     """The sketch with its paths; of a mechanism with masses and loads with its forces."""
-    if isinstance(shown, ck.results.Motion) and shown.mechanism.units:
+    if isinstance(shown, ck.results.Motion) and shown.mechanism.units and size is None:
         return ck.draw(shown.forces, labels=labels)
-    return ck.draw(shown, paths=True, labels=labels)
+    return ck.draw(shown, paths=True, labels=labels, size=size)
 
 
 def taken_apart(shown: ck.results.Motion | ck.Mechanism) -> ck.results.Picture | None:
@@ -117,13 +229,12 @@ def cell(name: str, title: str) -> str:
     return f"* [![{plain(title)}]({name}-small.svg) {plain(title)}]({name}.md)"
 
 
-def structure_of(mechanism: ck.Mechanism) -> str:
+def structure_of(structure: ck.results.Structure) -> str:
     """What a mechanism is made of, in one line: links, mobility, groups in solving order, the name of its chain."""
-    structure = ck.decompose(mechanism)
     groups = [f"{group.name} (class {roman(group.class_)})" for group in structure.groups]
     name = structure_name(structure).title
     many = "Assur group" if len(groups) == 1 else "Assur groups"
-    return f"{len(mechanism.links)} links; {mobility_of(structure)}; {many} {', '.join(groups)}; {name}"
+    return f"{len(structure.mechanism.links)} links; {mobility_of(structure)}; {many} {', '.join(groups)}; {name}"
 
 
 def mobility_of(structure: ck.results.Structure) -> str:
@@ -141,7 +252,7 @@ def plain(text: str) -> str:
 
 def write(app: Sphinx) -> None:
     """Write what differs from what is there, and remove what belongs to mechanisms that are no more."""
-    folder, wanted = Path(app.srcdir) / FOLDER, files()
+    folder, wanted = Path(app.srcdir) / FOLDER, files(chosen(app.config.gallery_mechanisms))
     folder.mkdir(exist_ok=True)
     for old in folder.iterdir():
         if old.name not in wanted:
@@ -152,13 +263,24 @@ def write(app: Sphinx) -> None:
             path.write_text(text, encoding="utf-8")
 
 
+def write_live_pages(app: Sphinx, exception: Exception | None) -> None:
+    """Write the page of each mechanism beside the one that links to it."""
+    for name, mechanism in chosen(app.config.gallery_mechanisms).items() if exception is None else ():
+        shown = solved_over(mechanism)
+        if shown is not None:
+            ck.page(shown).save(Path(app.outdir) / FOLDER / f"{name}-live.html")
+
+
 def lead_here(app: Sphinx, docname: str, source: list[str]) -> None:
     """Where no site is built, links to the gallery lead to one large picture."""
     source[0] = source[0].replace("](gallery.svg)", f"]({FOLDER}/index.md)")
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Write the pages before any is read."""
+    """Write the pages before any is read, and the live ones when all others are there."""
+    app.add_config_value("gallery_mechanisms", "", "env", str)
     app.connect("builder-inited", write)
+    app.connect("build-finished", write_live_pages)
     app.connect("source-read", lead_here)
+    app.add_js_file("gallery.js", loading_method="defer")
     return {"parallel_read_safe": True}

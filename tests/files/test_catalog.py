@@ -459,7 +459,7 @@ def page() -> str:
         "The groups are those of the solving order; *numbers* counts the published or independently computed",
         "values in the file that the tests hold the solution to. The source of each is in its file.",
         "",
-        "This page is written by `python tests/files/test_catalog.py`; a test asserts that it is up to date.",
+        "<!-- written by `python tests/files/test_catalog.py`; a test asserts that it is up to date -->",
         "",
         "| name | mechanism | groups | numbers | what to look at |",
         "|---|---|---|---|---|",
