@@ -84,6 +84,21 @@ class Opened:
         """What a script in the page gives."""
         return self.view.evaluate(script, *arguments)
 
+    def drawn(self, *letters: str) -> dict[str, complex]:
+        """Where the sketch shows points, read back from the picture."""
+        found = self.value(
+            """letters => {
+              const player = compoundkin.players[0], { scale, x, y } = player.data.window;
+              return letters.map((letter) => {
+                const part = player.parts.find((one) => one.dataset.letter === letter);
+                const at = part.getAttribute("transform").match(/-?[\\d.]+(e[+-]?\\d+)?/g).map(Number);
+                return [at[0] / scale + x, y - at[1] / scale];
+              });
+            }""",
+            list(letters),
+        )
+        return {letter: complex(*place) for letter, place in zip(letters, found, strict=True)}
+
     def __getattr__(self, name: str) -> Any:
         return getattr(self.view, name)
 

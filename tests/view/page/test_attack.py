@@ -32,7 +32,7 @@ OUT = f"""() => {{
 def test_names_that_grow_on_a_phone_stay_in_the_sketch(made: Any, opened: Any) -> None:
     for name in ("ackermann-steering", "jansen-leg"):
         view = opened(made(name), size=(360, 740))
-        assert view.value(f"{PLAYER}.letters") > 1.2
+        assert view.value(f"{PLAYER}.letters.size") > 1.2
         assert view.value(OUT) < 1.0, name
 
 

@@ -111,8 +111,8 @@ def test_a_point_is_dragged_and_there_is_a_way_back(made: Any, opened: Any) -> N
     # the point is where it was put, the pins of the sketch too, and all other points are where they were
     for letter in "ABCDEFG":
         place = motion.points[letter].position[k] if letter != "D" else complex(*at)
-        assert abs(complex(*view.value(f"{PLAYER}.drawn('{letter}')")) - place) < 1e-4, letter
-        assert abs(complex(*view.value(f"{PLAYER}.drawn('{letter}')")) - solved.points[letter].position[k]) < 1e-9
+        assert abs(view.drawn(letter)[letter] - place) < 1e-4, letter
+        assert abs(view.drawn(letter)[letter] - solved.points[letter].position[k]) < 1e-9
     # the original stands behind, where it was
     ghost = view.value("document.querySelector('.sketch .former').childElementCount")
     assert ghost == view.locator(".parts > g:not(.name)").count()
@@ -123,7 +123,7 @@ def test_a_point_is_dragged_and_there_is_a_way_back(made: Any, opened: Any) -> N
     centres = ck.instant_centres(solved)
     for links in [("plate", "rocker"), ("crank", "rocker"), ("bar", "block"), ("bar", "plate")]:
         own = "centres.find((one) => links.every((name) => one.links.includes(name)))"
-        x, y, w = view.value(f"links => {PLAYER}.pole({PLAYER}.{own})", list(links))
+        x, y, w = view.value(f"links => {PLAYER}.overlays.centres.pole({PLAYER}.{own})", list(links))
         centre = centres[links]
         if centre.at_infinity[k]:
             assert w == 0
@@ -241,9 +241,9 @@ def test_of_two_drivers_each_is_dragged_on_its_own(opened: Any, tmp_path: Path) 
     assert view.value(f"{PLAYER}.drivers[1].parts[''][{k}]") == right
     alone = ck.solve(motion.mechanism, {"left": ck.deg(moved), "right": ck.deg(right)})
     for letter in "BPD":
-        assert abs(complex(*view.value(f"{PLAYER}.drawn('{letter}')")) - complex(alone.points[letter].position)) < 1e-9
+        assert abs(view.drawn(letter)[letter] - complex(alone.points[letter].position)) < 1e-9
     view.click(".forth")
     view.click(".back")
     assert view.value(f"{PLAYER}.drivers[0].parts[''][{k}]") == left
-    assert abs(complex(*view.value(f"{PLAYER}.drawn('P')")) - motion.points["P"].position[k]) < 1e-9
+    assert abs(view.drawn("P")["P"] - motion.points["P"].position[k]) < 1e-9
     assert view.complaints == []

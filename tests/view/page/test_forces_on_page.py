@@ -28,7 +28,7 @@ def test_arrows_follow_the_slider(loaded_page: Path, opened: Any) -> None:
     view.check('[data-show="forces"]')
     for k in (0, 40):
         view.value(f"k => {PLAYER}.show(k)", k)
-        found = view.value(f"""() => {PLAYER}.forces.map((one) => [one.told, ...{PLAYER}.acts(one),
+        found = view.value(f"""() => {PLAYER}.forces.map((one) => [one.told, ...{PLAYER}.overlays.acts(one),
             ...one.force.map((c) => c[{PLAYER}.pose])])""")  # fmt: skip
         told = {name: (complex(x, y), complex(fx, fy)) for name, x, y, fx, fy in found}
         place, force = told["pair A on rocker by plate"]

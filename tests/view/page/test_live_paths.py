@@ -19,7 +19,7 @@ from compoundkin.view.page.html_document import asset
 from compoundkin.view.page.live.live_data import live_data
 from compoundkin.view.report.shown_poses import Sample
 
-SCRIPTS = ("live/machine.js", "live/states.js", "live/path.js")
+SCRIPTS = ("numbers.js", "live/machine.js", "live/states.js", "live/path.js")
 # Dyads of all kinds, gears, belts, racks, rolling, slots with ends, cylinders, several drivers, a group of class III.
 MECHANISMS = (
     "six-bar", "slider-crank-offset", "elliptic-trammel", "scotch-yoke", "oscillating-guide", "geared-five-bar",

@@ -40,9 +40,8 @@ def test_the_slider_takes_every_point_where_the_solver_has_it(name: str, made: A
     assert letters
     for k in np.linspace(0, motion.inputs.poses - 1, 9).round().astype(int):
         set_slider(view, int(k))
-        drawn = view.value(f"names => names.map(name => {PLAYER}.drawn(name))", letters)
-        for letter, (x, y) in zip(letters, drawn, strict=True):
-            assert abs(x + 1j * y - motion.points[letter].position[k]) < 1e-6
+        for letter, place in view.drawn(*letters).items():
+            assert abs(place - motion.points[letter].position[k]) < 1e-6
     assert view.complaints == []
 
 
@@ -279,8 +278,7 @@ def test_the_player_of_a_notebook_plays(opened: Callable[..., Any], tmp_path: Pa
     (tmp_path / "alone.html").write_text(player(motion), encoding="utf-8")
     view = opened(tmp_path / "alone.html")
     set_slider(view, 30)
-    x, y = view.value(f"{PLAYER}.drawn('G')")
-    assert abs(x + 1j * y - motion.points["G"].position[30]) < 1e-6
+    assert abs(view.drawn("G")["G"] - motion.points["G"].position[30]) < 1e-6
     framed = motion._repr_html_()
     assert framed is not None
     (tmp_path / "notebook.html").write_text(f"<!DOCTYPE html><title>n</title>{framed}", encoding="utf-8")

@@ -114,7 +114,7 @@
       this.plot.over.style.touchAction = "pan-y";
       const take = (event) => {
         const left = event.clientX - this.plot.over.getBoundingClientRect().left;
-        this.player.stop();
+        this.player.transport.stop();
         this.player.show(this.axis.order[this.plot.valToIdx(this.plot.posToVal(left, "x"))]);
       };
       this.plot.over.addEventListener("pointerdown", (event) => {

@@ -5,7 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-PLAYER_SCRIPTS, PLAYER_STYLE = ("player.js", "view_box.js"), "player.css"
+# What all others use.
+FIRST_SCRIPTS = ("numbers.js", "elements.js")
+PLAYER_SCRIPTS = (
+    "letters.js",
+    "centre_overlay.js",
+    "overlays.js",
+    "reading.js",
+    "transport.js",
+    "player.js",
+    "view_box.js",
+)
+PLAYER_STYLE = "player.css"
 # Before the player, which asks the path for what a live page does not hold.
 PATH_SCRIPTS = ("live/machine.js", "live/states.js", "live/path.js")
 # In this order: each uses those before it.
@@ -48,10 +59,11 @@ def is_live(data: Mapping[str, Any]) -> bool:
 def scripts_of(data: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the names of the scripts of a motion's data.
 
-    >>> scripts_of({"live": None})
-    ('player.js', 'view_box.js')
+    >>> "player.js" in scripts_of({"live": None}), "live/path.js" in scripts_of({"live": None})
+    (True, False)
     """
-    return (*PATH_SCRIPTS, *PLAYER_SCRIPTS, *SCRIPTS) if is_live(data) else PLAYER_SCRIPTS
+    live = is_live(data)
+    return (*FIRST_SCRIPTS, *(PATH_SCRIPTS if live else ()), *PLAYER_SCRIPTS, *(SCRIPTS if live else ()))
 
 
 def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:

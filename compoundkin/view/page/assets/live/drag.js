@@ -21,7 +21,7 @@
     // --- taken and let go ---------------------------------------------------------------------------------------------
     take(one, by) {
       if (this.held) this.drop();
-      this.player.stop();
+      this.player.transport.stop();
       this.held = one.kind === "point" ? new page.PointHold(this, one) : new page.DriverHold(this, one);
       this.by = by;
       this.waits = null;

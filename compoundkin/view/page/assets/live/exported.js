@@ -48,7 +48,6 @@
   };
 
   // --- its picture, with every style written at what has it ----------------------------------------------------------------------
-  const SVG = "http://www.w3.org/2000/svg";
   const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity", "stroke-dasharray", "stroke-linecap", "stroke-linejoin",
     "opacity", "paint-order", "vector-effect"];
   const OF_TEXT = ["font-family", "font-size", "font-style", "font-weight", "text-anchor", "dominant-baseline"];
@@ -61,7 +60,7 @@
   // handles and the like are tools, no part of the picture
   const isPicture = (element) => !("tool" in element.dataset) && getComputedStyle(element).display !== "none";
   const drawn = (from) => {
-    const to = document.createElementNS(SVG, from.localName), style = getComputedStyle(from);
+    const to = page.drawn(from.localName, {}), style = getComputedStyle(from);
     for (const name of PLACES) if (from.hasAttribute(name)) to.setAttribute(name, from.getAttribute(name));
     const named = isGroup(from) ? ["opacity"] : [...STYLES, ...(/^(text|tspan)$/.test(from.localName) ? OF_TEXT : [])];
     for (const name of named) {
@@ -85,16 +84,10 @@
     return "white";
   };
   const svg = ({ svg: sketch, data }) => {
-    const { x, y, width, height } = sketch.viewBox.baseVal, whole = document.createElementNS(SVG, "svg");
-    const made = (name, attributes) => {
-      const element = document.createElementNS(SVG, name);
-      for (const key in attributes) element.setAttribute(key, attributes[key]);
-      return element;
-    };
-    Object.entries({ viewBox: `${x} ${y} ${width} ${height}`, width, height }).forEach(([key, value]) => whole.setAttribute(key, value));
-    const title = made("title", {});
+    const { x, y, width, height } = sketch.viewBox.baseVal, whole = page.drawn("svg", { viewBox: `${x} ${y} ${width} ${height}`, width, height });
+    const title = page.drawn("title", {});
     title.textContent = data.title;
-    whole.append(title, made("rect", { x, y, width, height, fill: paper(sketch) }), drawn(sketch));
+    whole.append(title, page.drawn("rect", { x, y, width, height, fill: paper(sketch) }), drawn(sketch));
     const inner = whole.lastChild;
     inner.replaceWith(...inner.childNodes);
     return `${new XMLSerializer().serializeToString(whole)}\n`;

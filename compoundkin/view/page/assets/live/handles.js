@@ -5,20 +5,13 @@
   const REACH = 20, OF_FINGERS = 30; // pixels around a handle within which it is meant
   const OUT = 34; // pixels from a driven link's farthest point, or from a driven slide, to the driver's handle
 
-  const made = (name, attributes, parent) => {
-    const element = document.createElement(name);
-    for (const key in attributes) element.setAttribute(key, attributes[key]);
-    parent.append(element);
-    return element;
-  };
-
   class Handles {
     constructor(player, hold) {
       this.player = player;
       this.hold = hold; // what happens to a handle that is taken: drag.js
       const figure = player.svg.closest("figure");
       figure.classList.add("live");
-      this.layer = made("div", { class: "handles", role: "toolbar", "aria-label": "Points and drivers to drag" }, figure);
+      this.layer = page.made("div", { class: "handles", role: "toolbar", "aria-label": "Points and drivers to drag" }, figure);
       const { points, drivers } = player.data.live.handles;
       this.all = [
         ...points.filter((point) => this.isFree(point)).map((point) => this.handle("point", point, `Point ${point.name}`)),
@@ -38,7 +31,7 @@
       return links.length > 0 && links.every((link) => ["x", "y"].every((part) => design.index.has(`${data.links[link].name}.${name}.${part}`)));
     }
     handle(kind, data, label) {
-      const button = made("button", { type: "button", class: `handle ${kind}`, tabindex: -1, "aria-label": label, "aria-pressed": "false" }, this.layer);
+      const button = page.made("button", { type: "button", class: `handle ${kind}`, tabindex: -1, "aria-label": label, "aria-pressed": "false" }, this.layer);
       return { kind, data, label, button, name: data.name, at: null, drawn: "" };
     }
     of(button) {
@@ -171,6 +164,5 @@
     }
     return found;
   };
-  page.made = made;
   page.Handles = Handles;
 })();

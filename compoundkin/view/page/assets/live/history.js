@@ -49,7 +49,7 @@
       put(this.undo, !(design.canUndo || isChanged));
       put(this.redo, !design.canRedo);
       put(this.reset, !isChanged);
-      const told = isChanged ? ["Dimensions are changed.", ...(player.forces ? [FORCES] : [])].join(" ") : HINT;
+      const told = isChanged ? ["Dimensions are changed.", ...(player.forces.length ? [FORCES] : [])].join(" ") : HINT;
       if (this.words.textContent !== told) this.words.textContent = told;
       this.ghost.follow();
     }

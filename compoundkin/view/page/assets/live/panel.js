@@ -194,7 +194,7 @@
     apply({ row }, value, atOnce) {
       const { player, design } = this;
       if (row instanceof page.DriverRow) {
-        player.stop();
+        player.transport.stop();
         return row.move(value);
       }
       design.change(row.set(value, this.now));

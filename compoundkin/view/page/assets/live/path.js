@@ -4,16 +4,6 @@
   const page = (window.compoundkin = window.compoundkin || {});
   const TURN = 2 * Math.PI;
 
-  // numbers as markup.py packs them, one for all poses or one for each
-  const unpacked = (text, count) => {
-    if (text === null) return new Float64Array(count).fill(NaN);
-    if (typeof text === "number") return new Float64Array(count).fill(text);
-    if (text[0] === "r") {
-      const [first, step] = text.slice(2).split(",").map(Number);
-      return Float64Array.from({ length: count }, (_, k) => first + step * k);
-    }
-    return new Float64Array(Uint8Array.from(atob(text.slice(2)), (c) => c.charCodeAt(0)).buffer);
-  };
   // makes an angle continuous along the motion, over gaps too
   const unwrap = (angle) => {
     let before = NaN, turns = 0;
@@ -50,7 +40,7 @@
       this.program = { ...live.program, before: page.wholes(live.program.before), along: page.wholes(live.program.along) };
       this.names = live.dimensions.map(({ name }) => name);
       this.own = Float64Array.from(live.dimensions, ({ value }) => value);
-      this.drives = live.drives.map((one) => [one.value, ...one.rates].map((text) => unpacked(text, data.poses)));
+      this.drives = live.drives.map((one) => [one.value, ...one.rates].map((text) => page.unpacked(text, data.poses)));
       this.whole = new page.Machine(this.program, data.poses);
       this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
@@ -61,7 +51,7 @@
         drives: (k) => this.drives.map(([values]) => values[k]),
         drive: (values) => values.forEach((value, index) => { this.one.rows[3 * index][0] = value; }),
       });
-      this.home = { numbers: this.own, values: live.states.map(({ own }) => unpacked(own, data.poses)), sides: null };
+      this.home = { numbers: this.own, values: live.states.map(({ own }) => page.unpacked(own, data.poses)), sides: null };
     }
     driven(machine, drives) {
       drives.forEach((values, index) => values.forEach((value, order) => { machine.rows[3 * index + order][0] = value; }));

@@ -161,7 +161,7 @@
     // the scales of vectors stand at the lower edge of it
     room() {
       this.player.makeRoom();
-      this.player.overlay();
+      this.player.overlays.draw();
     }
     // left, top, right and bottom of all places of points on the picture
     reach() {

@@ -39,7 +39,7 @@
         player.data.vectors[kind] = fits ? own[kind] : this.scaled(kind, this.reach / longest, roundBelow(longest));
       }
       player.makeRoom();
-      player.overlay();
+      player.overlays.draw();
     }
     scaled(kind, scale, amount) {
       const { text } = this.own[kind];
