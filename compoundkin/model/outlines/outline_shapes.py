@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.convex_hull import convex_hull
 from compoundkin.base.display import PrintsShort
 from compoundkin.model.design_numbers import number_of_design
@@ -44,9 +45,11 @@ class OutlineShape(PrintsShort):
 
 
 def outline_shapes(
-    mechanism: Mechanism, points: Points, shape: tuple[int, ...] = (1,), design: int = 0
+    mechanism: Mechanism, points: Points, shape: tuple[int, ...] = (), design: int = 0
 ) -> tuple[OutlineShape, ...]:
-    """Return all outlines of one design of a mechanism, in the order written. The shape is that of its motion.
+    """Return all outlines of one design of a mechanism, in the order written.
+
+    The shape is that of its motion; the first design is taken where there is none.
 
     `points` are those of all links, numbers.
 
@@ -75,9 +78,9 @@ def _shapes(
 
     if item.width is not None:
         spots = item.through or _around(points)
-        yield shape(spots, not item.through and len(spots) > 2, number_of_design(item.width, *of) / 2.0)
+        yield shape(spots, not item.through and len(spots) > 2, _number(item.width, of) / 2.0)
     if item.radius is not None:
-        yield shape((item.at,), False, number_of_design(item.radius, *of))
+        yield shape((item.at,), False, _number(item.radius, of))
     if item.polygon:
         yield shape(item.polygon, True, 0.0)
 
@@ -91,7 +94,11 @@ def _around(points: Mapping[str, complex]) -> tuple[str, ...]:
 def _places(
     spots: tuple[Any, ...], points: Mapping[str, complex], of: tuple[tuple[int, ...], int]
 ) -> tuple[complex, ...]:
-    return tuple(points[one] if isinstance(one, str) else complex(number_of_design(one, *of)) for one in spots)
+    return tuple(points[one] if isinstance(one, str) else complex(_number(one, of)) for one in spots)
+
+
+def _number(value: Any, of: tuple[tuple[int, ...], int]) -> Any:
+    return number_of_design(value, *of) if of[0] else first_entry(value)
 
 
 def _pins(
@@ -99,11 +106,13 @@ def _pins(
 ) -> Iterator[OutlineShape]:
     """Yield the pins of an outline, each on the layers of all links that it joins, and those between."""
     own = [letter for letter in points if letter in mechanism.real_pins]
+    every = sorted({layer for other in mechanism.outlines.values() for layer in other.layer})
     for letter in () if item.pin is None else own if item.at is None else (item.at,):
         used = (pair.members for pair in mechanism.real_pairs if letter in pair.letters)
         joined = dict.fromkeys([item.link, *mechanism.carriers[letter], *(name for two in used for name in two)])
         links = tuple(name for name in joined if name not in mechanism.led_links)
         layers = [one for other in mechanism.outlines.values() if other.link in links for one in other.layer]
-        spanned = tuple(range(min(layers), max(layers) + 1))
-        radius = number_of_design(item.pin, *of) / 2.0
+        # layers between on which nothing lies are in nobody's way
+        spanned = tuple(layer for layer in every if min(layers) <= layer <= max(layers))
+        radius = _number(item.pin, of) / 2.0
         yield OutlineShape(f"pin {letter}", links, (points[letter],), False, radius, spanned, (letter,))

@@ -24,7 +24,7 @@ from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_ro
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, sheet
 from compoundkin.view.sketch.shapes import moved as shifted
-from compoundkin.view.sketch.shown_pose import Wishes, scene_of
+from compoundkin.view.sketch.shown_pose import Wishes, one_design, scene_of
 from compoundkin.view.sketch.sketch_labels import NARROW, below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
 from compoundkin.view.sketch.sketches import asked_labels, by_links, ghost, in_layers, layered, window_on
@@ -56,6 +56,8 @@ def configurations_picture(what: Drawable, wishes: Wishes) -> Picture:
     # late: other pictures need none of this
     from compoundkin.configurations.enumeration import configurations
 
+    what, design = one_design(what, wishes.design)
+    wishes = replace(wishes, design=design)
     structure = structure_of(what)
     found = configurations(structure, _values(what, structure, wishes))
     ones = list(found)
@@ -86,7 +88,7 @@ def circuits_picture(what: Drawable, wishes: Wishes) -> Picture:
     """
     from compoundkin.configurations.circuit_search import circuits
 
-    structure = structure_of(what)
+    structure = structure_of(one_design(what, wishes.design)[0])
     names = [drive.name for drive in structure.mechanism.drives]
     given = by_name(structure, wishes.at) if wishes.at is not None else {}
     free = [name for name in names if name not in given] or names

@@ -17,6 +17,9 @@ from compoundkin.view.sketch.sketch_style import SMALL
 
 # A number has so many digits, and no zeros at its end.
 SIGNIFICANT = 4
+# What has more places than these before or behind its point is written with a power of ten.
+GREATEST, LEAST = 6, -4
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Half the height of a number with the room around it, in picture units; and how far it stands beside its line.
 HALF = 6.0
 BESIDE = 10.5
@@ -43,15 +46,21 @@ class Dimension(NamedTuple):
 
 
 def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
-    """Return a length or an angle (degrees) as it is written.
+    """Return a length or an angle (degrees) as it is written, far from 1 with a power of ten.
 
     >>> number_text(123.456, "mm"), number_text(0.1 + 0.2, "m"), number_text(45.0, "", is_angle=True)
     ('123.5 mm', '0.3 m', '45°')
+    >>> number_text(2.5e-05, "km")
+    '2.5·10⁻⁵ km'
     """
-    places = max(0, SIGNIFICANT - 1 - int(np.floor(np.log10(abs(value))))) if value else 0
-    text = f"{value:.{places}f}"
+    power = int(np.floor(np.log10(abs(value)))) if value else SIGNIFICANT
+    if LEAST <= power <= GREATEST:
+        text, raised = f"{value:.{max(0, SIGNIFICANT - 1 - power)}f}", ""
+    else:
+        text, _, exponent = f"{value:.{SIGNIFICANT - 1}e}".partition("e")
+        raised = f"·10{str(int(exponent)).translate(RAISED)}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
-    return f"{text}{after_number(is_angle, unit)}"
+    return f"{text}{raised}{after_number(is_angle, unit)}"
 
 
 def text_width(text: str) -> float:

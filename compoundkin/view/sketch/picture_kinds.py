@@ -159,7 +159,7 @@ KINDS: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
     "polygon": (vector_polygon, (*POSE, "vectors", "size")),
     "construction": (construction, (*POSE, "link", "size")),
     "configurations": (configurations_picture, (*POSE, "labels", "size")),
-    "circuits": (circuits_picture, ("at", "labels", "size")),
+    "circuits": (circuits_picture, ("at", "design", "labels", "size")),
     "free-bodies": (_of_forces(free_bodies), (*POSE, "link", "size")),
     "force-polygon": (_of_forces(force_polygons), (*POSE, "link", "size")),
 }

@@ -70,10 +70,9 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
     """Return the scene that is asked for. Raises InvalidInput, UnknownName or NotAssembled where there is none."""
     if at is not None and pose is not None:
         raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
+    what, design = one_design(what, design)
     if isinstance(what, Motion):
-        hold_design(design, what.inputs.designs)
-        return scene_in(motion_of_design(what, design), at, pose, 0)
-    what, design = alone(what, design)
+        return scene_in(what, at, pose, design)
     motion = solved_over(what)
     if motion is not None:
         return scene_in(motion, at, pose, design)
@@ -81,6 +80,14 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
     if at is not None:
         return scene_in(solve(what, by_name(structure, at)), None, None, design)
     return scene_as_drawn(structure)
+
+
+def one_design(what: Drawable, design: int) -> tuple[Drawable, int]:
+    """Return what one of several designs is by itself, and its index there. Raises InvalidInput where there is none."""
+    if isinstance(what, Motion):
+        hold_design(design, what.inputs.designs)
+        return motion_of_design(what, design), 0
+    return alone(what, design)
 
 
 def scene_as_drawn(structure: Structure) -> Scene:

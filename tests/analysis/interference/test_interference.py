@@ -166,6 +166,15 @@ def test_layers_pass_each_other_and_pins_do_not() -> None:
     assert abs(touch.begin["crank"] + touch.end["crank"] - np.pi) < 1e-7
 
 
+def test_layers_may_be_far_apart() -> None:
+    far = ROCKER.replace(
+        ck.outline("crank", 5, pin=7, layer=-(10**12)), ck.outline("coupler", 5, layer=10**12),
+        ck.outline("frame", at=(0, 30), radius=2, layer=7),
+    )  # fmt: skip
+    (touch,) = ck.interference(ck.solve(far)).touches
+    assert (touch.one, touch.other, touch.layers) == ("pin B", "frame", (7,))
+
+
 def test_neighbours_are_told_from_collisions() -> None:
     """Both bars at a pin overlap by nature; the frame's stop away from the pin does not."""
     both = ROCKER.replace(ck.outline("crank", 6), ck.outline("coupler", 6), ck.outline("frame", 4, through=["A", "D"]))

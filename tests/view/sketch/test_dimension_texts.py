@@ -37,6 +37,14 @@ def test_nothing_but_the_numbers_changes_with_the_scale() -> None:
     assert large.width == pytest.approx(first.width, abs=60.0)
 
 
+@pytest.mark.parametrize(("factor", "power"), [(1e-8, "⁻⁷"), (1e10, "¹¹")])
+def test_numbers_far_from_one_have_powers_of_ten(factor: float, power: str) -> None:
+    picture = ck.draw(scaled(mechanism("four-bar-norton"), factor), dimensions=True)
+    assert {s.text for s in numbers(picture)} == {f"{d}·10{power}" for d in ("4", "8")} | {
+        f"{d}·10{({'⁻⁷': '⁻⁶', '¹¹': '¹²'})[power]}" for d in ("1", "1.2")
+    }
+
+
 @pytest.mark.parametrize("name", ["six-bar", "3-rrr", "andrews-squeezer", "jansen-leg", "roberts-cognates", "watt-ii"])
 def test_numbers_are_off_each_other_and_on_the_picture(name: str) -> None:
     picture = ck.draw(mechanism(name), dimensions=True)

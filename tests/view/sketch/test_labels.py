@@ -94,6 +94,24 @@ def test_all_circuits_are_named_with_their_branches() -> None:
     assert len(ghosts) == len(found.branches) - len(found.circuits)
 
 
+@pytest.mark.parametrize("kind", ["configurations", "circuits"])
+def test_all_configurations_of_each_design_are_its_own(kind: str) -> None:
+    """With outlines over designs too; a design that there is not is told."""
+
+    def crank_rocker(length: object, width: object) -> ck.Mechanism:
+        return ck.Mechanism(
+            "Crank-rocker", ck.link("frame", A=(0, 0), D=(60, 0)), ck.link("crank", A=(0, 0), B=(length, 0)),
+            ck.link("coupler", B=(0, 0), C=(55, 0)), ck.link("rocker", D=(0, 0), C=(45, 0)), ck.drive("crank"),
+            ck.outline("crank", width),
+        )  # fmt: skip
+
+    both = crank_rocker(np.array([[25.0], [20.0]]), [[8], [12]])
+    assert ck.draw(both, kind=kind, design=1).svg == ck.draw(crank_rocker(20.0, 12), kind=kind).svg
+    assert ck.draw(ck.solve(both), kind=kind).svg == ck.draw(crank_rocker(25.0, 8), kind=kind).svg
+    with pytest.raises(ck.errors.InvalidInput, match="there is no design 2"):
+        ck.draw(both, kind=kind, design=2)
+
+
 def leaves_of_groups(shapes: tuple[object, ...]) -> list[ShapeGroup]:
     """All groups, those inside others too."""
     groups = [s for s in shapes if isinstance(s, ShapeGroup)]
