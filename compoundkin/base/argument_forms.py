@@ -70,10 +70,17 @@ def is_beyond(value: object) -> bool:
 def is_real(value: object) -> bool:
     """Tell whether a value is one real number, no date, text, True or False."""
     if isinstance(value, np.ndarray):
-        return value.ndim == 0 and value.dtype.kind in "fiu" and not isinstance(value, np.ma.MaskedArray)
+        return value.ndim == 0 and value.dtype.kind in "fiu" and not is_masked(value)
     if isinstance(value, Integral):
         return not isinstance(value, _NO_NUMBERS) and abs(int(value)) < sys.float_info.max
     return isinstance(value, Real)
+
+
+def is_masked(value: object) -> bool:
+    """Tell whether a value is an array of which entries may be left out."""
+    # there is none before numpy.ma is loaded, which takes long
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(value, masked.MaskedArray)
 
 
 def is_finite_real(value: object) -> bool:

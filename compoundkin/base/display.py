@@ -22,8 +22,13 @@ def register(**ways: str) -> None:
 
 def way(name: str) -> Callable[..., Any]:
     """Return a registered function; its module is loaded now."""
-    module, function = _WAYS[name].split(":")
-    found: Callable[..., Any] = getattr(import_module(module), function)
+    return loaded(_WAYS[name])
+
+
+def loaded(function: str) -> Callable[..., Any]:
+    """Return the function that is written as ``module:function``; its module is loaded now."""
+    module, _, name = function.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), name)
     return found
 
 

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from compoundkin.base.argument_forms import is_masked
 from compoundkin.base.display import short
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 
@@ -76,7 +77,7 @@ def plain(value: Any) -> Any:
 
 
 def _array(where: str, value: Any, dtype: type | None, error: type[CompoundkinError]) -> NDArray[Any]:
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    if is_masked(value) and np.any(value.mask):
         raise error(Problem(where, "some of the numbers are masked", "leave those out, or fill them"))
     try:
         return np.asarray(value, dtype=dtype)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import sys
 import threading
@@ -127,6 +126,8 @@ def width() -> int:
     """Return the width of a report. It is the terminal's within bounds, 80 where there is none."""
     if sys.stdout is None or not sys.stdout.isatty():
         return WIDTH
+    import shutil  # late: few commands need it
+
     return max(NARROWEST, min(WIDEST, shutil.get_terminal_size((WIDTH, 24)).columns))
 
 

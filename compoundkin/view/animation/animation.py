@@ -28,11 +28,11 @@ from compoundkin.view.animation.frame_caption import Caption
 from compoundkin.view.animation.moving_svg import smil
 from compoundkin.view.animation.overlays import Arrows, MovingCentre, moving_centres, with_arrows
 from compoundkin.view.animation.timeline import Timeline, timeline_of
+from compoundkin.view.sketch.asked_values import asked_labels, asked_paths
 from compoundkin.view.sketch.moving_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.picture import PAGE, Picture, checked_size
 from compoundkin.view.sketch.shapes import Shape
 from compoundkin.view.sketch.shown_pose import scene_in
-from compoundkin.view.sketch.sketches import asked_labels, asked_paths
 from compoundkin.view.sketch.svg import NATURAL, pixel_size, pixels, require_cairo
 from compoundkin.view.sketch.vectors import wanted
 
@@ -183,7 +183,7 @@ def animate(
     kinds, asked, shown_size = wanted(vectors), asked_labels(labels), checked_size(size)
     motion = what.motion if isinstance(what, Forces) else _motion(what)
     scene = scene_in(motion, None, None, design)
-    sketch = moving_sketch(motion, design, paths=asked_paths(scene, paths), labels=asked)
+    sketch = moving_sketch(motion, design, paths=asked_paths(scene.mechanism, paths), labels=asked)
     timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
     sketch, arrows = with_arrows(sketch, kinds, bool((timeline.ways < 0).any()))
     if isinstance(what, Forces):

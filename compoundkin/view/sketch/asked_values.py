@@ -1,4 +1,4 @@
-"""What is asked of a mechanism's drivers and how it is said; its structure, and the ends of its pairs as drawn."""
+"""What is asked of drivers, paths and labels, and how it is said; structure, and ends of pairs as drawn."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from compoundkin.model.attributes import after_number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure import Structure, decompose
+
+LABELS = ("points", "links")
 
 Drawable: TypeAlias = Motion | Mechanism | Structure
 
@@ -57,3 +59,26 @@ def ends_of(structure: Structure) -> dict[str, Ends]:
 
 def _first_side(value: Number) -> Number:
     return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)
+
+
+def asked_paths(mechanism: Mechanism, paths: Any) -> tuple[str, ...]:
+    """Return the letters of points whose paths are asked for; raises UnknownName."""
+    carriers = mechanism.carriers
+    if paths is True:
+        return tuple(letter for letter, links in carriers.items() if len(links) == 1 and "frame" not in links)
+    names = (paths,) if isinstance(paths, str) else () if paths is False else tuple(paths)
+    for name in names:
+        if name not in carriers:
+            raise UnknownName(Problem(str(name), "there is no such point", nearest(str(name), list(carriers))))
+    return names
+
+
+def asked_labels(labels: Any) -> tuple[str, ...]:
+    """Tell what is to be labelled; raises InvalidInput for what cannot be."""
+    if isinstance(labels, bool):
+        return LABELS if labels else ()
+    names = (labels,) if isinstance(labels, str) else tuple(labels)
+    for name in names:
+        if name not in LABELS:
+            raise InvalidInput(Problem("labels", f"{name!r} cannot be labelled", nearest(str(name), list(LABELS))))
+    return names

@@ -17,7 +17,7 @@ from compoundkin.kinematics.configuration import BETWEEN, Configuration
 from compoundkin.model.attributes import after_number
 from compoundkin.model.outlines.outline_shapes import outline_shapes
 from compoundkin.structure import Structure
-from compoundkin.view.sketch.asked_values import Drawable, by_name, ends_of, structure_of, value_note
+from compoundkin.view.sketch.asked_values import Drawable, asked_labels, by_name, ends_of, structure_of, value_note
 from compoundkin.view.sketch.label_places import placed
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
 from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_rows, legible_size
@@ -27,7 +27,7 @@ from compoundkin.view.sketch.shapes import moved as shifted
 from compoundkin.view.sketch.shown_pose import Wishes, one_design, scene_of
 from compoundkin.view.sketch.sketch_labels import NARROW, below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
-from compoundkin.view.sketch.sketches import asked_labels, by_links, ghost, in_layers, layered, window_on
+from compoundkin.view.sketch.sketches import by_links, ghost, in_layers, layered, window_on
 from compoundkin.view.sketch.slide_shapes import Painter
 
 if TYPE_CHECKING:

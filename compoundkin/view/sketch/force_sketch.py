@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.forces import Forces
 from compoundkin.view.sketch.acting_forces import ShownForce, acting_forces, is_shown_once
+from compoundkin.view.sketch.asked_values import asked_labels
 from compoundkin.view.sketch.force_arrows import (
     AROUND_DRIVER,
     SHORTEST,
@@ -27,7 +28,7 @@ from compoundkin.view.sketch.shapes import Shape, Text, arrow, sheet
 from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import NARROW, SIDE, below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import INERTIA, LINE, LOAD, REACTION, SMALL
-from compoundkin.view.sketch.sketches import asked_labels, in_layers, window_on
+from compoundkin.view.sketch.sketches import in_layers, window_on
 from compoundkin.view.sketch.slide_shapes import Painter
 from compoundkin.view.sketch.vectors import VectorScale
 

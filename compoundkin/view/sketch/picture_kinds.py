@@ -2,31 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from compoundkin.base import display
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, nearest
-from compoundkin.dynamics.force_analysis import force_analysis
-from compoundkin.dynamics.forces import Forces
+from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
-from compoundkin.view.sketch.asked_values import Drawable, structure_of
-from compoundkin.view.sketch.centre_pictures import circle_diagram
-from compoundkin.view.sketch.configuration_pictures import circuits_picture, configurations_picture
-from compoundkin.view.sketch.construction import construction
-from compoundkin.view.sketch.force_polygons import force_polygons
-from compoundkin.view.sketch.force_sketch import force_sketch
-from compoundkin.view.sketch.free_bodies import free_bodies
-from compoundkin.view.sketch.graph_picture import graph
-from compoundkin.view.sketch.groups_in_graph import groups_in_graph
+from compoundkin.view.sketch.asked_values import Drawable
 from compoundkin.view.sketch.picture import Picture
-from compoundkin.view.sketch.scene import groups_of, numbers_of
-from compoundkin.view.sketch.shown_pose import Wishes, scene_of
-from compoundkin.view.sketch.sketches import sketch
-from compoundkin.view.sketch.structure_pictures import groups_picture, loops, loops_in_graph
-from compoundkin.view.sketch.vectors import vector_polygon
+from compoundkin.view.sketch.shown_pose import Wishes
+
+if TYPE_CHECKING:
+    from compoundkin.dynamics.forces import Forces
+
+POSE = ("at", "pose", "design")
+
+
+class PictureKind(NamedTuple):
+    """A kind of picture: what draws it, and which of the wishes it knows.
+
+    What draws is `module:function` of this folder, loaded when it is asked for.
+    """
+
+    drawn: str
+    known: Sequence[str]
+    of_forces: bool = False
+
+    def picture(self, what: Drawable | Forces, wishes: Wishes) -> Picture:
+        """Draw it; forces are found first where it is theirs."""
+        made: Picture = display.loaded(f"{__package__}.{self.drawn}")(_forces(what) if self.of_forces else what, wishes)
+        return made
+
+
+KINDS: Mapping[str, PictureKind] = {
+    "sketch": PictureKind(
+        "sketches:sketch", (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size", "dimensions")
+    ),
+    "groups": PictureKind("structure_kinds:groups_apart", (*POSE, "size")),
+    "loops": PictureKind("structure_kinds:independent_loops", (*POSE, "size")),
+    "graph": PictureKind("structure_kinds:kinematic_graph", ("size",)),
+    "circle": PictureKind("structure_kinds:circle_of_centres", ("size",)),
+    "polygon": PictureKind("vectors:vector_polygon", (*POSE, "vectors", "size")),
+    "construction": PictureKind("construction:construction", (*POSE, "link", "size")),
+    "configurations": PictureKind("configuration_pictures:configurations_picture", (*POSE, "labels", "size")),
+    "circuits": PictureKind("configuration_pictures:circuits_picture", ("at", "design", "labels", "size")),
+    "free-bodies": PictureKind("free_bodies:free_bodies", (*POSE, "link", "size"), of_forces=True),
+    "force-polygon": PictureKind("force_polygons:force_polygons", (*POSE, "link", "size"), of_forces=True),
+}
+SKETCH_OF_FORCES = PictureKind("force_sketch:force_sketch", (*POSE, "labels", "link", "size"), of_forces=True)
 
 
 @checked
@@ -83,88 +109,19 @@ def draw(
     if kind not in KINDS:
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(kind, list(KINDS))))
     wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
-    drawn, known = KINDS[kind]
-    if isinstance(what, Forces) and kind in OF_FORCES:
-        drawn, known = OF_FORCES[kind]
-    elif isinstance(what, Forces):
+    asked = KINDS[kind]
+    if not isinstance(what, Drawable) and kind == "sketch":
+        asked = SKETCH_OF_FORCES
+    elif not isinstance(what, Drawable) and not asked.of_forces:
         what = what.motion
-    if unfit := wishes.others(known):
+    if unfit := wishes.others(asked.known):
         raise InvalidInput(Problem(unfit[0], f"it does not go with the kind {kind!r}", "leave one of them out"))
-    return drawn(what, wishes)
-
-
-def _of_forces(drawn: Callable[[Forces, Wishes], Picture]) -> Callable[[Drawable | Forces, Wishes], Picture]:
-    """Return what draws forces, or those of a motion or a mechanism, which are found first."""
-    return lambda what, wishes: drawn(_forces(what), wishes)
+    return asked.picture(what, wishes)
 
 
 def _forces(what: Drawable | Forces) -> Forces:
     """The forces, or those of a motion; of a mechanism those over its drivers' own ranges."""
-    if isinstance(what, Forces):
+    if not isinstance(what, Drawable):
         return what
-    return force_analysis(what if isinstance(what, Motion) else solve(what))
-
-
-def _groups(what: Drawable, wishes: Wishes) -> Picture:
-    structure = _taken_apart(what)
-    known = what if isinstance(what, Motion) else structure.mechanism
-    try:
-        scene = scene_of(known, wishes.at, wishes.pose, wishes.design)
-    except (InvalidInput, NotAssembled):
-        # how it is taken apart is a matter of its letters: it needs no pose unless one is asked for
-        if wishes.others(("size",)):
-            raise
-        return groups_in_graph(structure, wishes.size)
-    return groups_picture(scene, wishes.size)
-
-
-def _circle(what: Drawable, wishes: Wishes) -> Picture:
-    structure = _taken_apart(what)
-    return circle_diagram(structure, numbers_of(structure), wishes.size)
-
-
-def _graph(what: Drawable, wishes: Wishes) -> Picture:
-    structure = structure_of(what)
-    return graph(structure, numbers_of(structure), groups_of(structure), wishes.size)
-
-
-def _loops(what: Drawable, wishes: Wishes) -> Picture:
-    """The loops on the mechanism; in its graph where it cannot be shown at any pose."""
-    try:
-        scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
-    except (InvalidInput, NotAssembled, NotDetermined):
-        if wishes.others(("size",)):
-            raise
-        return loops_in_graph(structure_of(what), wishes.size)
-    return loops(scene, wishes.size)
-
-
-def _taken_apart(what: Drawable) -> Structure:
-    """The structure; raises NotDetermined where it cannot be taken apart."""
-    structure = structure_of(what)
-    if structure.faults:
-        problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
-        raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")
-    return structure
-
-
-POSE = ("at", "pose", "design")
-# Each kind of picture: what draws it, and which of the wishes it knows.
-KINDS: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
-    "sketch": (sketch, (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size", "dimensions")),
-    "groups": (_groups, (*POSE, "size")),
-    "loops": (_loops, (*POSE, "size")),
-    "graph": (_graph, ("size",)),
-    "circle": (_circle, ("size",)),
-    "polygon": (vector_polygon, (*POSE, "vectors", "size")),
-    "construction": (construction, (*POSE, "link", "size")),
-    "configurations": (configurations_picture, (*POSE, "labels", "size")),
-    "circuits": (circuits_picture, ("at", "design", "labels", "size")),
-    "free-bodies": (_of_forces(free_bodies), (*POSE, "link", "size")),
-    "force-polygon": (_of_forces(force_polygons), (*POSE, "link", "size")),
-}
-# The same of forces, where it is another picture.
-OF_FORCES: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
-    "sketch": (_of_forces(force_sketch), (*POSE, "labels", "link", "size")),
-    **{kind: KINDS[kind] for kind in ("free-bodies", "force-polygon")},
-}
+    found: Forces = display.way("forces")(what if isinstance(what, Motion) else solve(what))
+    return found

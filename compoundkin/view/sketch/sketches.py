@@ -8,16 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.asked_values import Drawable
-from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
+from compoundkin.view.sketch.asked_values import Drawable, asked_labels, asked_paths
 from compoundkin.view.sketch.dimension_shapes import dimension_shapes
 from compoundkin.view.sketch.driver_shapes import drives
 from compoundkin.view.sketch.frame_dimensions import offset_shapes, room_for_offsets
 from compoundkin.view.sketch.geneva_shapes import genevas
-from compoundkin.view.sketch.label_places import placed
+from compoundkin.view.sketch.label_places import Label, placed
 from compoundkin.view.sketch.link_contours import contours
 from compoundkin.view.sketch.link_shapes import body, edges, pins, skeleton
 from compoundkin.view.sketch.own_discs import is_inside, racks
@@ -45,7 +44,6 @@ from compoundkin.view.sketch.wedge_shapes import slopes
 STRETCH = 0.5
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
-LABELS = ("points", "links")
 
 
 def window_on(
@@ -116,9 +114,9 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
     """Draw the kinematic sketch of a mechanism at one pose."""
     wanted_vectors, asked = wanted(wishes.vectors), asked_labels(wishes.labels)
     scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
-    traced = asked_paths(scene, wishes.paths)
+    traced = asked_paths(scene.mechanism, wishes.paths)
     others = _ghosts(scene, wishes.ghosts)
-    places = centre_places(scene) if wishes.centres else []
+    places = _centre_places(scene) if wishes.centres else []
     window, scales = _scaled(scene, window_on(scene, others, traced, places), wanted_vectors)
     window = room_for_offsets(scene, window) if wishes.dimensions else window
     painter = Painter(scene, window)
@@ -133,16 +131,29 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
     notes = pose_notes(scene) if asked else []
     notes += [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
     if wishes.centres:
-        found = shown_centres(scene, window)
-        sketch += centre_shapes(found)
-        named += centre_labels(found)
-        notes += found.notes
+        shapes, labels, said = _centres(scene, window)
+        sketch, named, notes = sketch + shapes, named + labels, notes + said
     sketch += _arrows(scene, window, scales)
     at = placed(named, sketch, window.width, window.height)
     names = dimension_shapes(painter, sketch, named, at) if wishes.dimensions else []
     names += label_shapes(scene, at)
     faint = [ghost(other, window) for other in others]
     return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(wishes.size))
+
+
+def _centre_places(scene: Scene) -> list[complex]:
+    # late: a sketch without centres needs none of this
+    from compoundkin.view.sketch.centre_pictures import centre_places
+
+    return centre_places(scene)
+
+
+def _centres(scene: Scene, window: Window) -> tuple[list[Shape], list[Label], list[str]]:
+    """What is drawn of the instant centres, their labels and notes."""
+    from compoundkin.view.sketch.centre_pictures import centre_labels, centre_shapes, shown_centres
+
+    found = shown_centres(scene, window)
+    return centre_shapes(found), centre_labels(found), found.notes
 
 
 def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window, list[VectorScale]]:
@@ -182,32 +193,9 @@ def _finished(
     return Picture((paper, *shapes, *texts), window.width, height, title, said, size, window)
 
 
-def asked_paths(scene: Scene, paths: Any) -> tuple[str, ...]:
-    """Return the letters of points whose paths are asked for; raises UnknownName."""
-    carriers = scene.mechanism.carriers
-    if paths is True:
-        return tuple(letter for letter, links in carriers.items() if len(links) == 1 and "frame" not in links)
-    names = (paths,) if isinstance(paths, str) else () if paths is False else tuple(paths)
-    for name in names:
-        if name not in carriers:
-            raise UnknownName(Problem(str(name), "there is no such point", nearest(str(name), list(carriers))))
-    return names
-
-
 def _ghosts(scene: Scene, ghosts: Any) -> list[Scene]:
     """So many poses, evenly along the motion."""
     if isinstance(ghosts, bool) or not isinstance(ghosts, int) or not 0 <= ghosts <= MOST_GHOSTS:
         raise InvalidInput(Problem("ghosts", f"{ghosts!r} is not a number of poses", f"0 to {MOST_GHOSTS}"))
     places = np.linspace(0, scene.count - 1, ghosts + 1 if scene.closes else max(ghosts, 1)).round().astype(int)
     return [scene.ghost(int(k)) for k in dict.fromkeys(places[:ghosts])] if scene.count > 1 else []
-
-
-def asked_labels(labels: Any) -> tuple[str, ...]:
-    """Tell what is to be labelled; raises InvalidInput for what cannot be."""
-    if isinstance(labels, bool):
-        return LABELS if labels else ()
-    names = (labels,) if isinstance(labels, str) else tuple(labels)
-    for name in names:
-        if name not in LABELS:
-            raise InvalidInput(Problem("labels", f"{name!r} cannot be labelled", nearest(str(name), list(LABELS))))
-    return names

@@ -11,6 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Series
 from compoundkin.model.elements import FRAME
 from compoundkin.structure import Group, Loop, Structure, roman
+from compoundkin.view.sketch.asked_values import LABELS
 from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
 from compoundkin.view.sketch.label_places import WIDE, Label, placed
 from compoundkin.view.sketch.link_shapes import edges, skeleton
@@ -21,7 +22,7 @@ from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes, Text, corners, moved, sheet
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, labels_of, lines_of_text
 from compoundkin.view.sketch.sketch_style import LETTER, LINE
-from compoundkin.view.sketch.sketches import LABELS, by_links, ghost, in_layers, layered, window_on
+from compoundkin.view.sketch.sketches import by_links, ghost, in_layers, layered, window_on
 from compoundkin.view.sketch.slide_shapes import Painter
 
 # Parts are drawn in this part of the size of a sketch.
