@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
@@ -90,8 +90,3 @@ def _reached(shape: OutlineShape, points: Points, slack: float) -> frozenset[str
     core, library = core_at(shape), shapely()
     apart = ((letter, library.distance(core, library.Point(p.real, p.imag))) for letter, p in own.items())
     return frozenset(letter for letter, distance in apart if distance <= shape.radius + slack)
-
-
-def bodies_of(shapes: tuple[OutlineShape, ...]) -> Iterator[str]:
-    """Yield the names of all bodies once."""
-    yield from dict.fromkeys(shape.body for shape in shapes)

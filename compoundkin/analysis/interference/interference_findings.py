@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from compoundkin.base.display import Shows, counted
 from compoundkin.kinematics import Motion
 
@@ -111,9 +109,3 @@ def _within(one: LinkTouch, place: float) -> bool:
     if one.first <= one.last:
         return one.first <= place <= one.last
     return place >= one.first or place <= one.last
-
-
-def none_at_all(motion: Motion) -> Interference:
-    """Return what there is to say of a motion without outlines."""
-    assembled = int(np.count_nonzero(motion.failed == 0))
-    return Interference(motion, (), (), (), assembled, int(motion.failed.size) - assembled)

@@ -14,12 +14,3 @@ def shapely(where: str = "interference") -> Any:
         return import_module("shapely")
     except ImportError:
         raise InvalidInput(Problem(where, "this needs shapely", "pip install 'compoundkin[interference]'")) from None
-
-
-def is_installed() -> bool:
-    """Tell whether it is there."""
-    try:
-        shapely()
-    except InvalidInput:
-        return False
-    return True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,16 +16,13 @@ from compoundkin.model.attributes import RADIANS, coordinate_dimension, unit_of
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
-from compoundkin.programs.tables.operation_table import CODES
 from compoundkin.programs.tables.page_program import PageProgram, RecordedReason
 from compoundkin.view.page.live.followed_quantities import followed_quantities
 from compoundkin.view.page.live.own_values import OwnValues
 from compoundkin.view.page.live.panel_data import panel_data, template_data
+from compoundkin.view.page.live.table_data import table_data
 from compoundkin.view.page.markup import exact
 from compoundkin.view.report.shown_poses import Sample
-
-# Whole numbers up to this are written in two bytes.
-SHORT = 2**15
 
 
 def live_data(sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str]) -> dict[str, Any] | None:
@@ -75,26 +71,21 @@ class LiveData:
     def data(self) -> dict[str, Any]:
         """All of it for a script: lengths in the user's unit, angles in radians."""
         program, table = self.program, self.program.table
-        if not self.program.dimensions:
+        if not program.dimensions:
             what = "it is overconstrained, and moves by its special dimensions only"
             raise InvalidInput(Problem(self.motion.mechanism.title, what, "take out what is redundant"))
-        names = [one.name for one in self.program.dimensions]
+        names = [one.name for one in program.dimensions]
         return {
-            "dimensions": [self._dimension(one) for one in self.program.dimensions],
+            "dimensions": [self._dimension(one) for one in program.dimensions],
             "drives": [self._drive(name) for name in program.mechanism.drives],
             "size": self.motion.size,
             "states": list(self._states()),
             "sides": [self.places[one.now.x] for one in program.carried[1]],
             "groups": list(self._groups()),
-            "panel": panel_data(self.program.stated, names),
-            "toml": template_data(self.program.stated, names),
+            "panel": panel_data(program.stated, names),
+            "toml": template_data(program.stated, names),
             "program": {
-                "codes": list(CODES),
-                "constants": list(map(_number, table.constants)),
-                "numbers": table.numbers,
-                "rows": table.rows,
-                "before": whole(table.before),
-                "along": whole(table.along),
+                **table_data(table),
                 "ends": list(table.ends),
                 "goods": [[index, self.places[node]] for index, node in program.goods],
                 "links": [self._link(name) for name in self.links],
@@ -162,18 +153,3 @@ class LiveData:
             parts = {part: self.places[node] for part, node in nodes.items()}
             own = self._own.has_output(output, [*nodes.values()])
             yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped, "own": own}
-
-
-def _number(value: float) -> float | str:
-    """Return a number as JSON has it; what is not finite as a text that a script reads."""
-    return value if np.isfinite(value) else str(value).replace("inf", "Infinity").replace("nan", "NaN")
-
-
-def whole(numbers: Sequence[int]) -> str:
-    """Pack whole numbers, two bytes each where these are enough, else four.
-
-    >>> whole([1, -2])
-    'h:AQD+/w=='
-    """
-    form, mark = ("<i2", "h:") if max(map(abs, numbers), default=0) < SHORT else ("<i4", "i:")
-    return mark + b64encode(np.array(numbers, form).tobytes()).decode("ascii")

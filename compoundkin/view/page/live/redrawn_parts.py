@@ -13,9 +13,9 @@ from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT
-from compoundkin.programs.tables.operation_table import CODES, OperationTable, operation_table
-from compoundkin.view.page.live.live_data import whole
+from compoundkin.programs.tables.operation_table import operation_table
 from compoundkin.view.page.live.noted_scene import POSE, noted_scene
+from compoundkin.view.page.live.table_data import table_data
 from compoundkin.view.sketch.link_shapes import ON_LINE, SAME
 from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
 from compoundkin.view.sketch.noted_numbers import LEAST, Noted, plain
@@ -34,7 +34,6 @@ from compoundkin.view.sketch.slide_shapes import Painter
 
 # What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
 LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
-
 # Points of a link that are less than this off a line, in parts of its length, are a bar.
 FLAT = 0.02
 
@@ -126,25 +125,13 @@ class RedrawnParts:
             for at, shapes in self.drawn
         ]
         return {
-            "courses": _program(along),
+            "courses": table_data(along),
             "poses": [[one.name, one.part] for one in poses],
             "outline": {"same": SAME, "line": ON_LINE},
             "least": [along.places[node] for node in courses],
-            "program": _program(table),
+            "program": table_data(table),
             "parts": parts,
         }
-
-
-def _program(table: OperationTable) -> dict[str, Any]:
-    """A table as the page's machine takes it."""
-    return {
-        "codes": list(CODES),
-        "constants": list(table.constants),
-        "numbers": table.numbers,
-        "rows": table.rows,
-        "before": whole(table.before),
-        "along": whole(table.along),
-    }
 
 
 def _kind(shape: Shape) -> tuple[str, Sequence[Sequence[Number]]]:
