@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.view.sketch.label_obstacles import obstacles
-from compoundkin.view.sketch.label_places import ROOM, Label, beyond, crowded, on_own, on_shapes, settled
+from compoundkin.view.sketch.label_places import ROOM, Label, LabelCrowd, beyond, on_own, on_shapes, settled
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.slide_shapes import Laid, Layer
@@ -120,27 +120,9 @@ class Surroundings:
 
 def placed_along(labels: Sequence[Label], courses: LabelCourses, around: Surroundings) -> dict[str, complex]:
     """Return a place for each label at the pose shown."""
-    fixed = {label.key: around.costs(label, courses.of_label(label.key)) for label in labels}
-
-    def crowding(label: Label, others: Sequence[Label], found: Mapping[str, complex]) -> Number:
-        middles = np.stack([courses.of_label(o.key).at(np.array(found[o.key])) for o in others], axis=-1)
-        half = np.array([o.half for o in others])
-        places = courses.of_label(label.key).at(np.array(label.places))
-        reach = label.half + half + ROOM * (1 + 1j)
-        # of others that are never near nothing is counted
-        low, high = _bounds(places)
-        gap = np.stack([middles.real - high.real[:, None], low.real[:, None] - middles.real,
-                        middles.imag - high.imag[:, None], low.imag[:, None] - middles.imag])  # fmt: skip
-        wide = np.stack([reach.real, reach.real, reach.imag, reach.imag])[:, None]
-        near = np.flatnonzero((gap < wide).all(axis=0).any(axis=0))
-        apart = places[:, :, None] - middles[:, None, near]
-        found_costs: Number = crowded(apart, label.half, half[near]).sum(axis=2).mean(axis=0)
-        return found_costs
-
-    return settled(labels, fixed, crowding)
-
-
-def _bounds(places: Number) -> tuple[Number, Number]:
-    """The corners of the boxes around places (poses, count), at each pose."""
-    low = places.real.min(axis=1) + 1j * places.imag.min(axis=1)
-    return low, places.real.max(axis=1) + 1j * places.imag.max(axis=1)
+    own = [courses.of_label(label.key) for label in labels]
+    fixed = {label.key: around.costs(label, course) for label, course in zip(labels, own, strict=True)}
+    nothing: Number = np.zeros((len(courses.others.turn), 0), dtype=complex)
+    turn = np.column_stack([nothing, *(course.turn for course in own)])
+    shift = np.column_stack([nothing, *(course.shift for course in own)])
+    return settled(labels, fixed, LabelCrowd(labels, turn, shift))

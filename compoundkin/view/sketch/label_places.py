@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,22 +71,58 @@ def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, heigh
         at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
         covered = on_shapes(at, half, lines, rounds) + beyond(at, half, width, height)
         fixed[label.key] = np.array(label.costs) + covered - on_own(label, at, half)
-    return settled(labels, fixed, _crowding)
+    still = np.ones((1, len(labels)), dtype=complex)
+    return settled(labels, fixed, LabelCrowd(labels, still, 0.0 * still))
 
 
-def settled(
-    labels: Sequence[Label],
-    fixed: Mapping[str, Number],
-    crowding: Callable[[Label, Sequence[Label], Mapping[str, complex]], Number],
-) -> dict[str, complex]:
+def settled(labels: Sequence[Label], fixed: Mapping[str, Number], crowd: LabelCrowd) -> dict[str, complex]:
     """Return a place for each label. All are placed again twice, by fixed costs and those of being on others."""
     found: dict[str, complex] = {}
     for _ in range(1 + ROUNDS):
-        for label in labels:
-            others = [other for other in labels if other.key != label.key and other.key in found]
-            costs = fixed[label.key] + (crowding(label, others, found) if others else 0.0)
+        for k, label in enumerate(labels):
+            costs = fixed[label.key] + crowd.costs(k, label)
             found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
+            crowd.put(k, found[label.key])
     return found
+
+
+class LabelCrowd:
+    """Where labels are so far, at some poses, and what it costs another one to be on them.
+
+    Places are turned about zero, then shifted: complex (poses, labels), both.
+    """
+
+    def __init__(self, labels: Sequence[Label], turn: Number, shift: Number) -> None:
+        self._turn, self._shift = turn, shift
+        self._half = np.array([label.half for label in labels])
+        # what is nowhere yet is near nothing
+        self._middles: Number = np.full(turn.shape, complex(np.nan, np.nan))
+
+    def put(self, k: int, place: complex) -> None:
+        """Put a label at a place."""
+        self._middles[:, k] = place * self._turn[:, k] + self._shift[:, k]
+
+    def costs(self, k: int, label: Label) -> Number:
+        """Return what each place of a label costs, on the average of the poses."""
+        places = np.array(label.places) * self._turn[:, k, None] + self._shift[:, k, None]
+        near = self._near(k, places)
+        gap = places[:, :, None] - self._middles[:, None, near]
+        found: Number = crowded(gap, label.half, self._half[near]).sum(axis=2).mean(axis=0)
+        return found
+
+    def _near(self, k: int, places: Number) -> Number:
+        """Indices of the others that any of the places is near at any pose: of all else nothing is counted."""
+        reach = self._half[k] + self._half + ROOM * (1 + 1j)
+        x, y, at = places.real, places.imag, self._middles
+        wide = (at.real - x.max(axis=1, keepdims=True) < reach.real) & (
+            x.min(axis=1, keepdims=True) - at.real < reach.real
+        )
+        high = (at.imag - y.max(axis=1, keepdims=True) < reach.imag) & (
+            y.min(axis=1, keepdims=True) - at.imag < reach.imag
+        )
+        near = (wide & high).any(axis=0)
+        near[k] = False
+        return np.flatnonzero(near)
 
 
 def beyond(at: Number, half: complex, width: float, height: float) -> Number:
@@ -137,11 +173,6 @@ def inside(at: Number, half: complex, lines: Number) -> Number:
             low, high = np.maximum(low, np.where(out, np.inf, near)), np.minimum(high, far)
     length = np.maximum(high - low, 0.0) * np.abs(d)
     return np.where(high > low, 1.0 + length / abs(half), 0.0)
-
-
-def _crowding(label: Label, others: Sequence[Label], found: Mapping[str, complex]) -> Number:
-    middle, half = np.array([found[o.key] for o in others]), np.array([o.half for o in others])
-    return crowded(np.array(label.places)[:, None] - middle, label.half, half).sum(axis=1)
 
 
 def crowded(gap: Number, half: complex, others: Number) -> Number:
