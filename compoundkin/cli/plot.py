@@ -31,6 +31,11 @@ OF_MOTIONS = {
     "modes": "--mode",
 }
 
+# What is for plots of quantities over something only.
+OF_QUANTITIES = {"against": "--against", "together": "--together", "others": "--with", "log": "--log",
+                 "xlim": "--x-limits", "ylim": "--y-limits"}  # fmt: skip
+LOG = ("x", "y", "xy")
+
 # What is not drawn of a motion, and what to say instead.
 UNSOLVED = {
     "--circuits": "the range of the driver: --from and --to; where others stand: --drive NAME=VALUE",
@@ -43,6 +48,8 @@ UNSOLVED = {
 Examples:
   compoundkin plot six-bar G.velocity bar.angle -o six-bar.png
   compoundkin plot six-bar G.x --against bar.angle --step 1 -o six-bar.svg
+  compoundkin plot six-bar G.speed --log y --x-limits 90 270 -o part.png
+  compoundkin plot crank-rocker rocker.angle --with triple-rocker -o both.png
   compoundkin plot crank-rocker rocker.angle --phase > phase.svg
   compoundkin plot jansen-leg foot --path --every 5 -o foot.pdf
   compoundkin plot elliptic-trammel --centrodes rod frame -o centrodes.png
@@ -55,6 +62,10 @@ Examples:
 @drive_options
 @click.option("--against", metavar="QUANTITY", help="What to draw over: driver, time, pose, or a quantity.")
 @click.option("--together", is_flag=True, help="Quantities of one unit in one panel.")
+@click.option("--with", "others", multiple=True, metavar="FILE", help="Another mechanism in the same plot.")
+@click.option("--x-limits", "xlim", type=float, nargs=2, metavar="LOW HIGH", help="Ends of the horizontal axis.")
+@click.option("--y-limits", "ylim", type=float, nargs=2, metavar="LOW HIGH", help="Ends of the vertical axes.")
+@click.option("--log", type=click.Choice(LOG), help="Which axes are logarithmic.")
 @click.option("--phase", "kinds", flag_value="phase", multiple=True, help="The quantity against its rate.")
 @click.option("--polar", "kinds", flag_value="polar", multiple=True, help="Radii over the driver's angle.")
 @click.option("--hodograph", "kinds", flag_value="hodograph", multiple=True, help="The curve of a vector's tip.")
@@ -96,14 +107,15 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
     if "timing_chart" in asked["kinds"]:
         _put(_timing(loaded(file), (*quantities, *asked["outputs"]), asked), path)
         return 0
-    structure = decompose(loaded(file))
+    structures = [decompose(loaded(one)) for one in (file, *asked["others"])]
     names = (*quantities, *asked["outputs"])
     if "circuits" in asked["kinds"]:
-        _put(_of_circuits(structure, names, asked), path)
+        _put(_of_circuits(structures[0], names, asked), path)
         return 0
-    motion = solved(structure, {**asked, "outputs": (), "order": _order(asked, names or structure.mechanism.outputs)})
-    _put(_drawn(motion, names, asked), path)
-    return 0 if motion.assembled.all() else explained(motion)
+    order = _order(asked, names or structures[0].mechanism.outputs)
+    motions = [solved(structure, {**asked, "outputs": (), "order": order}) for structure in structures]
+    _put(_drawn(motions, names, {**asked, "files": (file, *asked["others"])}), path)
+    return next((explained(motion) for motion in motions if not motion.assembled.all()), 0)
 
 
 def _put(picture: Plot, path: str | None) -> None:
@@ -122,9 +134,9 @@ def _fitting(asked: Mapping[str, Any]) -> None:
     kinds = [f"--{called.get(kind, kind)}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
     if len(kinds) > 1:
         raise InvalidInput(Problem(" ".join(kinds), "a plot is of one kind", "leave all but one out"))
-    for option in ("against", "together"):
-        if kinds and asked[option]:
-            raise InvalidInput(Problem(f"--{option}", f"it does not go with {kinds[0]}", "leave one of them out"))
+    for key, option in OF_QUANTITIES.items():
+        if kinds and asked[key]:
+            raise InvalidInput(Problem(option, f"it does not go with {kinds[0]}", "leave one of them out"))
     if asked["every"] and kinds in ([], ["--polar"], ["--circuits"], ["--timing"]):
         raise InvalidInput(Problem("--every", "it marks curves in a plane", "give --path, --phase or --hodograph too"))
     if asked["driver"] and kinds != ["--circuits"]:
@@ -145,17 +157,19 @@ def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
     return min(max(2, highest + ("phase" in asked["kinds"])), HIGHEST_ORDER)
 
 
-def _drawn(motion: Motion, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+def _drawn(motions: list[Motion], names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.view import plot
 
-    title, every = asked["title"], asked["every"]
+    title, every, motion = asked["title"], asked["every"], motions[0]
     if asked["centrodes"]:
         if names:
             raise InvalidInput(Problem(names[0], "centrodes take no quantities", "leave it out"))
         return plot.centrodes(motion, *asked["centrodes"], every=every, title=title)
     if not asked["kinds"]:
-        return plot.plot(motion, *names, against=asked["against"], stacked=not asked["together"], title=title)
+        axes: dict[str, Any] = {key: asked[key] for key in ("against", "xlim", "ylim", "log", "title")}
+        called = asked["files"] if len(motions) > 1 else ()
+        return plot.plot(motions, *names, stacked=not asked["together"], designs=called, **axes)
     kind = asked["kinds"][0]
     if kind == "phase":
         if not 1 <= len(names) <= 2:

@@ -27,7 +27,7 @@ ACROSS, UPWARDS = 9, 6
 # Characters that the height of a panel and of a whole figure have room for.
 PANEL, WHOLE = 24, 60
 # The width of a letter in a legend, inches, and how many letters a handle is wide.
-LETTER, HANDLE = 0.078, 7
+LETTER, HANDLE = 0.078, 9
 # How poses next to limit positions are marked.
 RING: Mapping[str, Any] = MappingProxyType(
     {"linestyle": "none", "marker": "o", "markersize": 5.5, "markerfacecolor": "white", "markeredgewidth": 1.2}
@@ -125,15 +125,17 @@ def legend(axes: Any) -> None:
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.2)
 
 
-def designs_legend(figure: Any, axes: Sequence[Any], names: Sequence[str]) -> None:
-    """Say which colour is which design. Names beside the plot, or a scale where there are many."""
+def designs_legend(
+    figure: Any, axes: Sequence[Any], names: Sequence[str], shades: Sequence[Any] = (), beside: bool = True
+) -> None:
+    """Say which colour is which design. Names beside the plot or above it, or a scale where there are many."""
     from matplotlib.colors import LinearSegmentedColormap, Normalize
     from matplotlib.lines import Line2D
 
-    shades = colours(1, len(names))
+    shades = shades or colours(1, len(names))
     if len(names) <= LISTED:
         handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(shades, names, strict=True)]
-        figure.legend(handles=handles, loc="outside right upper")
+        figure.legend(handles=handles, loc="outside right upper" if beside else "outside upper left")
         return
     from matplotlib.cm import ScalarMappable
 

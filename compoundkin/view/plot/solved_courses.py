@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from compoundkin.base.arrays import degrees
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
+from compoundkin.kinematics.extremes import Places, between, extremes
 from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import TIME, course_figure, order_of
+from compoundkin.view.plot.curve_places import CurvePlaces
 from compoundkin.view.plot.marked_places import CONSTANT
 from compoundkin.view.plot.plotted_rows import POSE, Plotted
 
@@ -76,29 +78,41 @@ def _shown(curve: Plotted, values: Number) -> Number:
 
 @dataclass(frozen=True, eq=False)
 class PlottedCourse:
-    """How a plot goes from pose to pose: through both sides of jumps."""
+    """How a plot goes from pose to pose. It is smooth, as solved between them, and goes through both sides of jumps."""
 
     motion: Motion
     x: Plotted
-    jumps: Places
+    more: CurvePlaces
+    solved: Any
 
     @classmethod
-    def of(cls, motion: Motion, x: Plotted) -> PlottedCourse:
-        """Return the course of a motion."""
-        return cls(motion, x, places_of_jumps(motion))
+    def of(cls, motion: Motion, x: Plotted, names: Sequence[str]) -> PlottedCourse:
+        """Return the course of a motion. It is solved between its poses for the quantities of names."""
+        more = CurvePlaces.of(motion)
+        order = max([motion.order, *map(order_of, (*names, x.name))])
+        with np.errstate(all="ignore"):
+            return cls(motion, x, more, between(motion, more.at.design, more.at.place, order))
 
     def line(self, curve: Plotted, design: int) -> tuple[Number, Number]:
-        """Return x and y of a curve. A pose at a jump gives way to its two sides; NaN parts what passes infinity."""
+        """Return x and y of a curve. It goes as far as limit positions, unless it grows without limit there.
+
+        A pose at a jump gives way to its two sides; NaN parts what passes infinity.
+        """
         if (curve.poles[design] | self.x.poles[design]).any():
             return curve.curve(design, self.x)
         x, y = self.x.values[design], curve.values[design]
-        mine = self.jumps.design == design
+        mine = self.more.at.design == design
+        if curve.is_unbounded or self.x.is_unbounded:
+            mine &= ~self.more.to_limits
         if not mine.any() or course_figure(curve.name)[1]:
             return x, y
-        at = self.jumps.some(mine)
-        place = np.arange(len(x), dtype=float)
-        kept = np.abs(place[:, None] - at.place).min(axis=1) > SAME_PLACE
-        order = np.argsort(np.concatenate([place[kept], at.place]))
-        rows = ((x, x_at(self.motion, self.x, at)), (y, values_at(self.motion, curve, at)))
-        across, up = (np.concatenate([row[kept], there])[order] for row, there in rows)
+        place, poses = self.more.at.place[mine], np.arange(len(x), dtype=float)
+        kept = np.abs(poses[:, None] - place).min(axis=1) > SAME_PLACE
+        order = np.argsort(np.concatenate([poses[kept], place]))
+        new = (x_at(self.motion, self.x, self.more.at.some(mine)), self._values(curve)[mine])
+        across, up = (np.concatenate([row[kept], one])[order] for row, one in zip((x, y), new, strict=True))
         return across, up
+
+    def _values(self, curve: Plotted) -> Number:
+        found = np.asarray(quantity(self.solved, curve.name).values)
+        return np.broadcast_to(_shown(curve, found).reshape(-1), self.more.at.place.shape)

@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.view.plot import canvas
+from compoundkin.view.plot.axis_scales import AxisScales
 from compoundkin.view.plot.plotted_rows import Plotted
 from compoundkin.view.plot.point_labels import number
 
@@ -20,19 +21,36 @@ INNER, TALL, TALL_WITHOUT_LIMITS, MARGIN = (5.0, 95.0), 3.0, 50.0, 0.35
 HEADROOM = 0.16
 
 
-def set_range(axes: Any, curves: Sequence[Plotted], scale: float, near_limits: bool) -> tuple[float, float] | None:
-    """Set the vertical range, and return it where values lie outside of it."""
-    values = np.concatenate([curve.values for curve in curves])
-    still, window = canvas.steady(values, scale), _window(curves, values, near_limits)
+def set_range(
+    axes: Any, curves: Sequence[Plotted], lines: Sequence[tuple[Number, Number]], scales: AxisScales, near_limits: bool
+) -> tuple[float, float] | None:
+    """Set the vertical range of curves. It is returned where values lie outside of it."""
+    if scales.ylim is not None:
+        axes.set_ylim(*scales.ylim)
+        return None
+    scale = max(curve.scale for curve in curves)
+    seen = scales.drawable(np.concatenate([scales.visible(*line) for line in lines]), scale)
+    values = np.concatenate([curve.values.ravel() for curve in curves]) if scales.xlim is None else seen
+    still, window = canvas.steady(seen, scale), _window(curves, values, near_limits)
     if still is not None:
         axes.set_ylim(*still)
-    elif window is not None:
+    elif window is not None and "y" not in scales.log:
         axes.set_ylim(*window)
         canvas.note(axes, f"cut off: from {number(np.nanmin(values))} to {number(np.nanmax(values))}")
         return window
-    else:
-        axes.margins(y=HEADROOM)
+    elif np.isfinite(seen).any():
+        window = _with_room(float(np.nanmin(seen)), float(np.nanmax(seen)), "y" in scales.log)
+        axes.set_ylim(*window)
+        return window if "y" in scales.log else None
     return None
+
+
+def _with_room(low: float, high: float, is_log: bool) -> tuple[float, float]:
+    """A range with room above and below, on a logarithmic axis by a part of its powers."""
+    if not is_log:
+        return low - HEADROOM * (high - low), high + HEADROOM * (high - low)
+    room = (high / low) ** HEADROOM
+    return low / room, high * room
 
 
 def _window(curves: Sequence[Plotted], values: Number, near_limits: bool) -> tuple[float, float] | None:

@@ -57,8 +57,16 @@ def sweep() -> ck.results.Motion:
 
 def curves(axes: Any) -> dict[str, tuple[Any, Any]]:
     """The lines of an axes that run through poses, by their labels."""
-    lines = [line for line in axes.get_lines() if line.get_linestyle() == "-"]
+    lines = [line for line in axes.get_lines() if line.get_linestyle() == "-" and len(line.get_xdata()) > 2]
     return {line.get_label(): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in lines}
+
+
+def at_poses(values: Any, poses: int) -> Any:
+    """What a curve of a motion without jumps and gaps has at the poses: it is solved between them too."""
+    step, rest = divmod(len(values) - 1, poses - 1)
+    assert rest == 0
+    assert len(values) > 240
+    return values[::step]
 
 
 def texts(axes: Any) -> list[str]:
@@ -71,12 +79,14 @@ def texts(axes: Any) -> list[str]:
 def test_the_lines_are_the_motions_arrays(six_bar: ck.results.Motion) -> None:
     first, second = ck.plot(six_bar, "bar.angle", "G.velocity").figure.axes
     (angle,) = curves(first).values()
-    np.testing.assert_allclose(angle[0], np.rad2deg(six_bar.drives["crank"].value), rtol=1e-12)
-    np.testing.assert_allclose(angle[1], np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
-    velocity = np.asarray(six_bar.points["G"].velocity)
-    drawn = curves(second)
-    for name, values in (("x", velocity.real), ("y", velocity.imag), ("length", abs(velocity))):
-        np.testing.assert_array_equal(drawn[name][1], values)
+    np.testing.assert_allclose(at_poses(angle[0], 73), np.rad2deg(six_bar.drives["crank"].value), rtol=1e-12)
+    np.testing.assert_allclose(at_poses(angle[1], 73), np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
+    fine = solved("six-bar", np.deg2rad(curves(second)["x"][0]))
+    for motion, step in ((six_bar, 4), (fine, 1)):
+        velocity = np.asarray(motion.points["G"].velocity)
+        drawn = curves(second)
+        for name, values in (("x", velocity.real), ("y", velocity.imag), ("length", abs(velocity))):
+            np.testing.assert_allclose(drawn[name][1][::step], values, rtol=0, atol=1e-9)
 
 
 def test_units_and_names_are_on_the_axes(six_bar: ck.results.Motion) -> None:
@@ -90,8 +100,8 @@ def test_units_and_names_are_on_the_axes(six_bar: ck.results.Motion) -> None:
 def test_against_a_quantity(six_bar: ck.results.Motion) -> None:
     (axes,) = six_bar.plot("G.velocity.x", against="bar.angle").figure.axes
     ((x, y),) = curves(axes).values()
-    np.testing.assert_allclose(x, np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
-    np.testing.assert_array_equal(y, six_bar.points["G"].velocity.real)
+    np.testing.assert_allclose(at_poses(x, 73), np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
+    np.testing.assert_array_equal(at_poses(y, 73), six_bar.points["G"].velocity.real)
     assert axes.get_xlabel() == "bar.angle [deg]"
 
 
@@ -100,13 +110,13 @@ def test_a_motion_in_time_is_drawn_over_time_unless_told() -> None:
     motion = ck.solve(crank, time=np.linspace(0.0, 1.0, 21))
     (axes,) = ck.plot(motion, "B.x").figure.axes
     ((x, _),) = curves(axes).values()
-    np.testing.assert_array_equal(x, motion.time)
+    np.testing.assert_array_equal(at_poses(x, 21), motion.time)
     assert axes.get_xlabel() == "time [s]"
     (axes,) = ck.plot(motion, "B.x", against="driver").figure.axes
     ((x, _),) = curves(axes).values()
-    np.testing.assert_allclose(x, np.rad2deg(3.0 * np.linspace(0.0, 1.0, 21)))
+    np.testing.assert_allclose(at_poses(x, 21), np.rad2deg(3.0 * np.linspace(0.0, 1.0, 21)))
     (axes,) = ck.plot(motion, "B.x", against="pose").figure.axes
-    assert next(iter(curves(axes).values()))[0].tolist() == list(range(21))
+    assert at_poses(next(iter(curves(axes).values()))[0], 21).tolist() == list(range(21))
 
 
 def test_quantities_of_one_unit_share_a_panel(six_bar: ck.results.Motion) -> None:
@@ -123,10 +133,59 @@ def test_designs_are_a_family_of_curves(sweep: ck.results.Motion) -> None:
         "P.velocity.y [length/s]",
         "P.velocity.length [length/s]",
     ]
-    drawn = [values for _, values in curves(y).values()]
+    drawn = [at_poses(values, 73) for _, values in curves(y).values()]
     np.testing.assert_array_equal(drawn, sweep.points["P"].velocity.imag)
     figure = x.figure
     assert [text.get_text() for text in figure.legends[0].get_texts()] == list("abcde")
+
+
+def test_several_motions_share_panels(six_bar: ck.results.Motion, rocker: ck.results.Motion) -> None:
+    other = solved("crank-rocker")
+    (axes,) = ck.plot([other, rocker], "rocker.angular_velocity").figure.axes
+    assert axes.get_xlabel() == "crank, driver [deg]"
+    for line, motion in zip(curves(axes).values(), (other, rocker), strict=True):
+        assert np.nanmax(line[1]) >= np.nanmax(motion.links["rocker"].angular_velocity) - 1e-12
+    named = [text.get_text() for text in axes.figure.legends[0].get_texts()]
+    assert named == [motion.mechanism.title for motion in (other, rocker)]
+    same = ck.plot([six_bar, six_bar], "bar", designs=["one", "two"]).figure.legends[0]
+    assert [text.get_text() for text in same.get_texts()] == ["one", "two"]
+    inches = ck.solve(
+        ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, G=2), ck.drive("crank"), unit="in")
+    )
+    with pytest.raises(ck.errors.InvalidInput, match="it would be in mm of one mechanism and in of another"):
+        ck.plot([six_bar, inches], "G")
+
+
+def test_axes_have_the_limits_that_are_asked_for(six_bar: ck.results.Motion) -> None:
+    (axes,) = ck.plot(six_bar, "G.speed", xlim=(200, 300), ylim=(0, 280)).figure.axes
+    assert (axes.get_xlim(), axes.get_ylim()) == ((200, 300), (0, 280))
+    assert texts(axes) == []  # the highest value is beyond, the lowest one elsewhere
+    (axes,) = ck.plot(six_bar, "bar.angle", xlim=(270, 330)).figure.axes
+    ((x, y),) = curves(axes).values()
+    seen = y[(x >= 270) & (x <= 330)]
+    low, high = axes.get_ylim()
+    # the vertical axis fits what is seen
+    assert low < seen.min() < seen.max() < high
+    assert high - low < 1.5 * np.ptp(seen)
+
+
+def test_logarithmic_axes_have_plain_numbers(six_bar: ck.results.Motion) -> None:
+    (axes,) = ck.plot(six_bar, "G.speed", log="y").figure.axes
+    assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["0.1", "1", "10", "100", "1000"]
+    assert texts(axes) == ["288.8"]  # the lowest one is 0, which is nowhere
+
+
+def test_curves_go_to_limit_positions_and_through_their_extremes(rocker: ck.results.Motion) -> None:
+    (axes,) = ck.plot(rocker, "rocker.angle").figure.axes
+    ((x, y),) = curves(axes).values()
+    known = np.isfinite(y)
+    assert x[known & (x < 180)].max() == pytest.approx(LIMIT, abs=1e-6)
+    marks = [line for line in axes.get_lines() if line.get_marker() == "o" and line.get_markerfacecolor() != "white"]
+    assert len(marks) == 2
+    for mark in marks:
+        (at,), (value,) = mark.get_xdata(), mark.get_ydata()
+        assert np.interp(at, x[known], y[known]) == pytest.approx(value, abs=0.01)
 
 
 def test_extremes_are_marked_with_their_values(six_bar: ck.results.Motion) -> None:
@@ -314,6 +373,13 @@ def mistakes() -> list[tuple[Callable[[ck.results.Motion], Any], type[Exception]
         (lambda m: ck.plot(m, "G", against="time"), ck.errors.InvalidInput, "no motion in time"),
         (lambda m: ck.plot(m, "bar", against="G"), ck.errors.InvalidInput, "G.length"),
         (lambda m: ck.plot(m, "bar", designs=["a", "b"]), ck.errors.InvalidInput, "1 designs and 2 names"),
+        (lambda m: ck.plot(m, "bar", xlim=(90, 0)), ck.errors.InvalidInput, "from 90 to 0 is no range"),
+        (lambda m: ck.plot(m, "bar", xlim=(500, 600)), ck.errors.InvalidInput, "no pose is between 500 and 600"),
+        (lambda m: ck.plot(m, "bar", "G", ylim=(0, 1)), ck.errors.InvalidInput, "the panels are in deg, mm"),
+        (lambda m: ck.plot(m, "bar", log="z"), ck.errors.InvalidInput, "'z' is no axis"),
+        (lambda m: ck.plot(m, "bar", log="y", ylim=(0, 1)), ck.errors.InvalidInput, "begin above zero"),
+        (lambda m: ck.plot(m, "G.velocity.x", log="y"), ck.errors.InvalidInput, "has positive values only"),
+        (lambda m: ck.plot([], "bar"), ck.errors.InvalidInput, "there is none"),
         (lambda m: ck.plot(m, "bar").save("bar.gif"), ck.errors.InvalidInput, ".png, .svg, .pdf"),
         (lambda m: ck.plot(m, "bar").save("/no/such/folder/bar.png"), ck.errors.InvalidInput, "cannot be written"),
         (lambda m: plot.phase(m, "G.velocity"), ck.errors.UnknownName, "G.velocity.x"),
