@@ -36,7 +36,7 @@ SCRIPTS = (
     "live/history.js",
 )
 # After those that draw the plots: what makes plots and tables follow.
-FIGURES = ("live/course.js", "live/figures.js")
+FIGURES = ("live/line_searches.js", "live/course.js", "live/figures.js")
 STYLES = ("live/live.css",)
 # What a page with a panel of dimensions has after all others, which hear of the dimensions in its address.
 PANEL_SCRIPTS = (

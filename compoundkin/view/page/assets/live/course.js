@@ -7,45 +7,10 @@
   const ADDED = 0.5; // second differences by which a curve may rise beyond a pose
   const SAME_JUMP = 1e-7; // places so near are both sides of a jump
   const BESIDE = 2e-9; // a jump is so near to its pose, of a place
-  const GOLDEN = (3 - Math.sqrt(5)) / 2;
-  const NEAR = 3e-8; // how near a highest place is searched, of a place: nearer, values differ by rounding alone
   const STEPS = 4, WIDE = 1e-5; // to a zero of a length, and for its slopes
-  const NEAREST = 1e-11; // of a place: rounding
-  const SEARCHES = 60, HALVINGS = 48;
+  const HALVINGS = 48;
   const NEAR_LIMIT = [1e-3, 1e-4], GROWTH = 3; // rates that grow so between, by the root of the distance, have no limit
   const SAME_POSE = 1e-9; // of the size, or radians
-
-  // the least value of a function between two places, by R. P. Brent (1973), chapter 5
-  const least = (f, low, high) => {
-    let [a, b] = [low, high], x = a + GOLDEN * (b - a), w = x, v = x, fx = f(x), fw = fx, fv = fx, step = 0, before = 0;
-    for (let n = 0; n < SEARCHES; n++) {
-      const middle = (a + b) / 2, near = NEAR;
-      if (Math.abs(x - middle) <= 2 * near - (b - a) / 2) break;
-      let golden = true;
-      if (Math.abs(before) > near) {
-        const r = (x - w) * (fx - fv), q = (x - v) * (fx - fw);
-        let p = (x - v) * q - (x - w) * r, d = 2 * (q - r);
-        if (d > 0) p = -p;
-        d = Math.abs(d);
-        if (Math.abs(p) < Math.abs(0.5 * d * before) && p > d * (a - x) && p < d * (b - x)) {
-          [before, step] = [step, p / d];
-          if (x + step - a < 2 * near || b - x - step < 2 * near) step = x < middle ? near : -near;
-          golden = false;
-        }
-      }
-      if (golden) { before = x < middle ? b - x : a - x; step = GOLDEN * before; }
-      const u = x + (Math.abs(step) >= near ? step : Math.sign(step) * near), fu = f(u);
-      if (fu <= fx) {
-        if (u < x) b = x; else a = x;
-        [v, fv, w, fw, x, fx] = [w, fw, x, fx, u, fu];
-      } else {
-        if (u < x) a = u; else b = u;
-        if (fu <= fw || w === x) [v, fv, w, fw] = [w, fw, u, fu];
-        else if (fu <= fv || v === x || v === w) [v, fv] = [u, fu];
-      }
-    }
-    return x;
-  };
 
   // One design: what its drivers do between the poses, and where it can be assembled.
   class Courses {
@@ -76,7 +41,7 @@
       if (this.time) {
         const { knots } = this, next = Math.min(Math.max(knots.findIndex(({ place }) => place >= s), 1), knots.length - 1);
         const [a, b] = [knots[next - 1], knots[next]], at = [a, b].find(({ place }) => place === s), t = (s - a.place) / (b.place - a.place);
-        return at ? at.rows : a.rows.map((row, d) => quintic(b.time - a.time, t, row.map((value, order) => [value, b.rows[d][order]])));
+        return at ? at.rows : a.rows.map((row, d) => page.quintic(b.time - a.time, t, row.map((value, order) => [value, b.rows[d][order]])));
       }
       const k = Math.min(Math.max(Math.floor(s), 0), this.last - 1), t = s - k;
       return this.path.drives.map((rows) => rows.map((row) => row[k] + t * (row[k + 1] - row[k])));
@@ -141,16 +106,6 @@
     const beside = (list, place) => list.find((one) => Math.abs(one - place) < SAME_JUMP) ?? null;
     return [...ends.map((place) => [place, beside(begins, place)]), ...begins.filter((place) => beside(ends, place) === null).map((place) => [null, place])];
   };
-  // value, rate and second at t of an interval in time, from those at both ends
-  const quintic = (h, t, [[a, b], [da, db], [dda, ddb]]) => {
-    const [p, q, r] = [da * h, dda * h * h, b - a], [dp, dq] = [db * h, ddb * h * h];
-    const c3 = 10 * r - 6 * p - 4 * dp - 1.5 * q + 0.5 * dq, c4 = -15 * r + 8 * p + 7 * dp + 1.5 * q - dq, c5 = 6 * r - 3 * (p + dp) - 0.5 * (q - dq);
-    return [
-      a + t * (p + t * (q / 2 + t * (c3 + t * (c4 + t * c5)))),
-      (p + t * (q + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / h,
-      (q + t * (6 * c3 + t * (12 * c4 + t * 20 * c5))) / (h * h),
-    ];
-  };
 
   class Course {
     constructor(whole, name, part) {
@@ -200,7 +155,7 @@
         if (inward === inward && !(sign * this.at(inward) > samples[top])) continue;
         // squares of lengths are smooth where they pass zero
         const goal = (s) => { const value = sign * this.at(s); return this.isLength ? -sign * value * value : -value; };
-        const at = least(goal, parts[Math.max(0, top - 1)], parts[Math.min(4, top + 1)]);
+        const at = page.least(goal, parts[Math.max(0, top - 1)], parts[Math.min(4, top + 1)]);
         offers.push(this.isLength && sign < 0 ? this.zero(at, low, high) : { at, value: sign * this.at(at) });
       }
       for (const one of offers) if (one.value > best) best = one.value;
@@ -253,7 +208,7 @@
       for (const { low, high } of whole.stretches) {
         let [a, b] = [low, high], [fa, fb] = [this.at(a), this.at(b)];
         if (!(sign(fa) * sign(fb) < 0)) continue; // not known at a limit position either
-        found.push(root((s) => this.at(s), a, b, fa, fb));
+        found.push(page.root((s) => this.at(s), a, b, fa, fb));
       }
       for (let k = 0; k <= last; k++) {
         if (sign(values[k])) continue;
@@ -265,18 +220,6 @@
       return found.sort((a, b) => a - b);
     }
   }
-
-  // where a function is zero between two places of different sign, by the Illinois method
-  const root = (f, a, b, fa, fb) => {
-    for (let n = 0; n < SEARCHES; n++) {
-      const c = (a * fb - b * fa) / (fb - fa), fc = f(c);
-      if (fc === 0 || Math.abs(c - b) < NEAREST) return c;
-      if (fc * fb < 0) [a, fa] = [b, fb];
-      else fa /= 2;
-      [b, fb] = [c, fc];
-    }
-    return b;
-  };
 
   page.Courses = Courses;
 })();

@@ -44,13 +44,7 @@
       this.whole = new page.Machine(this.program, data.poses);
       this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
-      this.states = new page.States(live, this.program);
-      const units = live.dimensions.map(({ kind, value }) => (kind === "angle" ? 1 : kind === "ratio" ? Math.abs(value) : live.size));
-      Object.assign(this.states, {
-        units, start: data.start, single: this.one,
-        drives: (k) => this.drives.map(([values]) => values[k]),
-        drive: (values) => values.forEach((value, index) => { this.one.rows[3 * index][0] = value; }),
-      });
+      this.states = new page.States(live, this.program, { start: this.start, values: this.drives.map(([values]) => values), single: this.one });
       this.home = { numbers: this.own, values: live.states.map(({ own }) => page.unpacked(own, data.poses)), sides: null };
     }
     driven(machine, drives) {

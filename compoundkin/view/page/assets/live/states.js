@@ -16,9 +16,16 @@
   const between = (here, there, part) => (part === 1 ? there : here.map((value, k) => value + part * (there[k] - value)));
 
   class States {
-    constructor(live, program) {
-      Object.assign(this, { program, size: live.size, all: live.states, sides: live.sides });
-      this.corrected = this.all.some(({ corrected }) => corrected);
+    // `values` are those of the drivers at all poses, `single` a machine of one pose, `start` where everything starts
+    constructor({ size, states, sides, dimensions }, program, { start, values, single }) {
+      Object.assign(this, { program, size, all: states, sides, start, single });
+      this.drives = (k) => values.map((one) => one[k]);
+      this.corrected = states.some(({ corrected }) => corrected);
+      this.units = dimensions.map(({ kind, value }) => (kind === "angle" ? 1 : kind === "ratio" ? Math.abs(value) : size));
+    }
+    // brings the machine of one pose to values of the drivers, each of which has three rows
+    drive(values) {
+      values.forEach((value, index) => { this.single.rows[3 * index][0] = value; });
     }
     get any() {
       return this.all.length > 0;
