@@ -19,6 +19,7 @@ from compoundkin.kinematics.quantities import quantity
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.view.page.live.mechanism_template import mechanism_template
+from compoundkin.view.page.live.panel_data import template_data
 from tests import catalog
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -30,6 +31,12 @@ KINDS = (
 )  # fmt: skip
 FILLED = """([toml, own, numbers]) => compoundkin.tomlOf({
   path: { data: { toml } }, own, numbers, isChanged: numbers.some((value, k) => value !== own[k]),
+})"""
+
+# The same of a page that stands at these places.
+PLACED = """([toml, own, to, places]) => compoundkin.tomlOf({
+  path: { data: { toml } }, own, numbers: to, isChanged: true,
+  player: { data: { start: 0 }, assembled: [1], place: (letter) => places[letter] },
 })"""
 
 WRONG = """(field, texts) => texts.map((text) => {
@@ -87,6 +94,29 @@ def test_what_is_copied_is_the_changed_mechanism_to_the_last_digit(whole: Any, n
             # wheels that do not fit their axes: a page leaves these out
             continue
         assert loads(whole.evaluate(FILLED, [pieces, own, changed])) == wanted
+
+
+def test_what_is_copied_keeps_its_configuration(whole: Any) -> None:
+    # loops that are two triangles or a rhombus at the first pose: the least change makes another one the usual one
+    bars = ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("rod", B=0, C=3), ck.link("arm", D=0, C=3)
+    motion = ck.solve(ck.Mechanism("Tie", *bars, ck.drive("crank")))
+    for name, to in [("frame.D.y", 0.1), ("frame.D.y", -0.1)]:
+        stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
+        pieces = template_data(stated, [name], motion)
+        copied = loads(whole.evaluate(FILLED, [pieces, [0.0], [to]]))
+        assert {mode.sign for mode in ck.solve(copied).modes.values()} == {m.sign for m in motion.modes.values()}
+    # without signs the drawing chooses: it is that of the page, from which no link reads anything any more
+    drawn = catalog.motion("stephenson-iii-floating-driver")
+    stated = StatedDimensions(drawn.mechanism, drawn.inputs.ends)
+    names = [name for name, one in stated.known.items() if one.is_of_link and not one.is_vector]
+    own = [float(stated.own(stated.known[name])) for name in names]
+    to = [value + 0.1 * (name == "AB.A.x") for name, value in zip(names, own, strict=True)]
+    places = {letter: [point.x[7], point.y[7]] for letter, point in drawn.points.items()}
+    copied = loads(whole.evaluate(PLACED, [template_data(stated, names, drawn), own, to, places]))
+    assert copied.sketch == {letter: complex(*place) for letter, place in places.items()}
+    assert all(None not in link.points.values() for link in copied.rigid_links.values())
+    wanted = designed(stated, {stated.known["AB.A.x"]: to[names.index("AB.A.x")]})
+    np.testing.assert_allclose(ck.solve(copied).points["F"].position, ck.solve(wanted).points["F"].position, rtol=1e-9)
 
 
 def test_lengths_and_angles_are_changed_by_keyboard_and_wrong_ones_told(whole: Any) -> None:

@@ -83,7 +83,7 @@ class LiveData:
             "sides": [self.places[one.now.x] for one in program.carried[1]],
             "groups": list(self._groups()),
             "panel": panel_data(program.stated, names),
-            "toml": template_data(program.stated, names),
+            "toml": template_data(program.stated, names, self.motion),
             "program": {
                 **table_data(table),
                 "ends": list(table.ends),

@@ -9,13 +9,14 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from compoundkin.files import toml_text
-from compoundkin.files.document import GRAVITY, HEAD
+from compoundkin.files.document import DRAWN, GRAVITY, HEAD
 from compoundkin.files.exact_numbers import plain
 from compoundkin.files.writer import document
 from compoundkin.model.component_names import AXES
+from compoundkin.model.elements import Mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN, pairs_among
-from compoundkin.model.written import CYLINDERS
+from compoundkin.model.written import CYLINDERS, DRIVES
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
@@ -28,9 +29,12 @@ LINKS, POINTS = "links", "points"
 _HEAD = ("format", *(key.name for key in HEAD), GRAVITY.name)
 _IN_DEGREES = ("angle", "turn", "sweep")
 _ENDS = ("from", "to")
+# Tables that choose the configuration: where a mechanism is changed they say which one it is in.
+_MODES = "modes"
 
-# A text in pieces: texts, indices of dimensions, and lists of one index where degrees are written.
-Pieces: TypeAlias = list[str | int | list[int]]
+# A text in pieces: texts, indices of dimensions, and lists: of one index where degrees are written, of a letter and
+# 0 or 1 where x or y of a point is.
+Pieces: TypeAlias = list[str | int | list[Any]]
 # Whether it is a link, and its name: pairs may have the names of links.
 Owner: TypeAlias = tuple[bool, str]
 
@@ -46,12 +50,15 @@ class Hole:
         return f"{_EDGE}{self.index}{'d' if self.in_degrees else ''}{_EDGE}"
 
 
-def mechanism_template(stated: StatedDimensions, names: Sequence[str]) -> list[Any]:
+def mechanism_template(
+    stated: StatedDimensions, names: Sequence[str], modes: Sequence[Mode] = (), drawn: bool = False
+) -> list[Any]:
     r"""Return a mechanism's file in pieces, for other values of these dimensions.
 
     A piece is text, or what the file says of one link or pair: `own` unless one of the dimensions `of` it has changed,
     any of all where `of` is null; then `changed`, whose numbers are indices of dimensions, and whose lists of one
-    number those that are written in degrees. Together they say what `designed` makes.
+    number those that are written in degrees. Together they say what `designed` makes, in these `modes`; `drawn` as it
+    stands on the page, where modes have no signs.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
@@ -61,14 +68,24 @@ def mechanism_template(stated: StatedDimensions, names: Sequence[str]) -> list[A
     ['\n[links.AB]\npoints = { A = [0, 0], B = [', 0, ', 0] }\n']
     """
     found = [stated.known[name] for name in names]
-    whole = designed(stated, {one: stated.own(one) for one in found})
+    whole = designed(stated, {one: stated.own(one) for one in found}).replace(*modes)
     changed = _Holed(document(whole), whole, stated.items)
     for index, one in enumerate(found):
         (changed.hold_point if one.is_of_link else changed.hold_number)(one, index)
-    return _merged(_pieces(document(stated.mechanism), changed, _owners(stated, found)))
+    owners, sketch = _owners(stated, found), _drawing(list(whole.carriers)) if drawn else None
+    # what links read off the drawing is not to be read off another one
+    owners |= {(True, link): None for link in whole.rigid_links if drawn}
+    return _merged(_pieces(document(stated.mechanism), changed, owners, sketch))
 
 
-def _owners(stated: StatedDimensions, found: Sequence[FreeDimension]) -> Mapping[Owner, list[int] | None]:
+def _drawing(letters: Sequence[str]) -> Pieces:
+    """Return the table of the drawing, with places of points in it."""
+    held = {letter: [Hole(2 * k), Hole(2 * k + 1)] for k, letter in enumerate(letters)}
+    pieces = _filled(toml_text.dumps({DRAWN.name: held}))
+    return [[letters[one // 2], one % 2] if isinstance(one, int) else one for one in pieces]
+
+
+def _owners(stated: StatedDimensions, found: Sequence[FreeDimension]) -> dict[Owner, list[int] | None]:
     """The dimensions of each owner. None for what reads numbers off the drawing, which any change states."""
     owners: dict[Owner, list[int] | None] = {}
     for index, one in enumerate(found):
@@ -118,20 +135,33 @@ class _Holed:
         self.document[table][place] = {key.name: entry[key.name] for key in item.keys if key.name in entry}
 
 
-def _pieces(own: Mapping[str, Any], changed: _Holed, owners: Mapping[Owner, list[int] | None]) -> Iterator[Any]:
+def _pieces(
+    own: Mapping[str, Any], changed: _Holed, owners: Mapping[Owner, list[int] | None], sketch: Pieces | None
+) -> Iterator[Any]:
     """Yield a piece for the head, each link, pair and cylinder, and each other table."""
     yield toml_text.dumps({name: value for name, value in own.items() if name in _HEAD})
     names = {place: name for name, place in changed.places.items()}
-    for table, value in own.items():
-        other = changed.document[table]
+    tables = list(changed.document)
+    if sketch and DRAWN.name not in tables:
+        tables.insert(tables.index(DRIVES) + 1, DRAWN.name)
+    for table, value, other in ((one, own.get(one, {}), changed.document.get(one, {})) for one in tables):
         if table == LINKS:
             for link in value:
                 yield _piece((True, link), owners, {LINKS: {link: value[link]}}, {LINKS: {link: other[link]}})
         elif (table, 0) in names:
             for k, entry in enumerate(value):
                 yield _piece((False, names[table, k]), owners, {table: [entry]}, {table: [other[k]]})
+        elif table == DRAWN.name and sketch:
+            yield {"of": None, "own": _text(table, value), "changed": sketch}
+        elif table == _MODES and value != other:
+            yield {"of": None, "own": _text(table, value), "changed": [_text(table, other)]}
         elif table not in _HEAD:
-            yield toml_text.dumps({table: value})
+            yield _text(table, value)
+
+
+def _text(table: str, value: Any) -> str:
+    """Return a table as text, nothing of an empty one."""
+    return toml_text.dumps({table: value}) if value else ""
 
 
 def _piece(owner: Owner, owners: Mapping[Owner, list[int] | None], own: dict[str, Any], changed: dict[str, Any]) -> Any:

@@ -10,11 +10,13 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import unit_of
 from compoundkin.model.component_names import AXES
 from compoundkin.model.elements import FRAME
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.view.page.live.chosen_signs import chosen_signs
 from compoundkin.view.page.live.mechanism_template import mechanism_template
 
 # Of so many pivots of the frame every distance is a row; of more those from the first.
@@ -43,10 +45,13 @@ def panel_data(stated: StatedDimensions, names: Sequence[str]) -> dict[str, Any]
     return DimensionRows(stated, tuple(stated.known[name] for name in names)).data
 
 
-def template_data(stated: StatedDimensions, names: Sequence[str]) -> list[Any] | dict[str, str]:
-    """Return the mechanism's file in pieces, or why it cannot be written."""
+def template_data(stated: StatedDimensions, names: Sequence[str], motion: Motion) -> list[Any] | dict[str, str]:
+    """Return the mechanism's file in pieces, or why it cannot be written.
+
+    Changed, it is to move in the configuration of the motion, which other dimensions alone might not choose.
+    """
     try:
-        return mechanism_template(stated, names)
+        return mechanism_template(stated, names, *chosen_signs(motion))
     except InvalidInput as error:
         return {"why": f"{error.problems[0].where}: {error.problems[0].what}."}
 

@@ -5,6 +5,8 @@
   const MOST_STEPS = 200; // of undo
   const KEPT = 4e6; // numbers of computed motions that the history may hold; older ones are computed again
 
+  const assembled = ({ assembled: poses }) => poses.reduce((sum, one) => sum + one, 0);
+
   class Design {
     // `player` shows what `path` computes
     constructor(player, path) {
@@ -23,6 +25,12 @@
     }
     get solved() {
       return this.current || this.original;
+    }
+    // from where configurations are followed to other dimensions: through a gap they are lost, so that who comes back
+    // from one shall find what was there before
+    get near() {
+      const { solved } = this, before = this.history[this.at].solved;
+      return before && assembled(before) > assembled(solved) ? before : solved;
     }
     get history() {
       return (this.steps ??= [{ numbers: Float64Array.from(this.own), solved: this.original, words: "" }]);
@@ -77,8 +85,7 @@
     }
     take(numbers, solved) {
       if (numbers.every((value, k) => value === this.numbers[k])) return;
-      const near = this.solved;
-      void this.history; // the first step is the original
+      const { near } = this; // asked before the numbers are others: the first step is the original
       this.numbers = numbers;
       this.current = this.isChanged ? solved || this.path.solved(numbers, near) : this.original;
       this.player.take(this.isChanged ? this.current : null);

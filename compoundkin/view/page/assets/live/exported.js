@@ -4,8 +4,10 @@
   const page = window.compoundkin;
 
   // --- the mechanism's file: the template with its holes filled -------------------------------------------------------------
+  // the pose that stands for the configuration in a drawing: where the motion starts, if it is assembled there
+  const drawnAt = ({ assembled, data }) => (assembled[data.start] === 1 ? data.start : assembled.indexOf(1));
   const toml = (design) => {
-    const { toml: pieces } = design.path.data, { numbers, own } = design;
+    const { toml: pieces } = design.path.data, { numbers, own, player } = design;
     const changed = (k) => numbers[k] !== own[k];
     const inDegrees = (value) => {
       const found = page.exactDegrees(value);
@@ -13,12 +15,15 @@
     };
     const filled = (part) => {
       if (typeof part === "string") return part;
-      return Array.isArray(part) ? inDegrees(numbers[part[0]]) : page.plainNumber(numbers[part]);
+      if (!Array.isArray(part)) return page.plainNumber(numbers[part]);
+      return part.length > 1 ? page.plainNumber(player.place(part[0], drawnAt(player))[part[1]]) : inDegrees(numbers[part[0]]);
     };
+    // what has no place anywhere cannot be drawn
+    const isDrawn = ({ changed: parts }) => !parts.some((part) => part.length > 1 && Array.isArray(part)) || drawnAt(player) >= 0;
     return pieces.map((piece) => {
       if (typeof piece === "string") return piece;
       const other = piece.of ? piece.of.some(changed) : design.isChanged;
-      return other ? piece.changed.map(filled).join("") : piece.own;
+      return other && isDrawn(piece) ? piece.changed.map(filled).join("") : piece.own;
     }).join("");
   };
 
