@@ -11,6 +11,7 @@ import numpy as np
 
 from compoundkin.analysis.interference.compared_bodies import ComparedBodies, OutlineComparison
 from compoundkin.analysis.interference.outline_places import between_outlines, clearance, core_at
+from compoundkin.analysis.interference.shape_pairs import ShapePairs, pairs_alike
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
@@ -108,13 +109,27 @@ class ClearanceCourse(PrintsShort):
         NaN where the motion is not assembled.
         """
         moved = between(self.motion, self.design, places, 0)
-        lost = moved.failed[0] != 0
         found = np.full(len(places), np.nan)
-        for k in np.unique(which):
-            index = np.flatnonzero((which == k) & ~lost)
-            bodies = self.comparison.compared[int(k)]
-            found[index] = least_clearance(bodies, poses_of(moved.poses, bodies, index))
+        kept = np.flatnonzero(moved.failed[0] == 0)
+        z, u = (
+            np.array([_picked(part, kept) for part in parts]).reshape(-1, len(kept))
+            for parts in ([moved.poses[link].z for link in self._rows], [moved.poses[link].u for link in self._rows])
+        )
+        least = np.full(len(kept), np.inf)
+        for pairs in self._alike:
+            pairs.lower(least, which[kept].astype(int), z, u)
+        found[kept] = least
         return found
+
+    @cached_property
+    def _rows(self) -> Mapping[str, int]:
+        """The rows of the links whose shapes are compared."""
+        links = dict.fromkeys(s.link for one in self.comparison.compared for two in one.shapes for s in two)
+        return {link: row for row, link in enumerate(links)}
+
+    @cached_property
+    def _alike(self) -> tuple[ShapePairs, ...]:
+        return tuple(pairs_alike(self.comparison.compared, self._rows))
 
     def middles(self, which: Number, places: Number) -> Number:
         """Return the places between bodies where they are nearest to each other, complex (n,)."""
@@ -143,10 +158,10 @@ def least_clearance(bodies: ComparedBodies, placed: Placed) -> Number:
 
 def poses_of(poses: Mapping[str, Pose], bodies: ComparedBodies, index: Number) -> Placed:
     """Return origins and orientations of the links of two bodies at some places, (n,)."""
-
-    def picked(part: Series) -> Number:
-        row = np.ravel(part.c[0])
-        return np.broadcast_to(row[index] if len(row) > 1 else row, index.shape)
-
     links = {shape.link for two in bodies.shapes for shape in two}
-    return {link: (picked(poses[link].z), picked(poses[link].u)) for link in links}
+    return {link: (_picked(poses[link].z, index), _picked(poses[link].u, index)) for link in links}
+
+
+def _picked(part: Series, index: Number) -> Number:
+    row = np.ravel(part.c[0])
+    return np.broadcast_to(row[index] if len(row) > 1 else row, index.shape)

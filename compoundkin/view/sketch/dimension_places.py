@@ -46,7 +46,9 @@ class Dimension(NamedTuple):
 
 
 def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
-    """Return a length or an angle (degrees) as it is written, far from 1 with a power of ten.
+    """Return a length or an angle (degrees) as it is written.
+
+    Far from 1 it has a power of ten.
 
     >>> number_text(123.456, "mm"), number_text(0.1 + 0.2, "m"), number_text(45.0, "", is_angle=True)
     ('123.5 mm', '0.3 m', '45°')
@@ -57,7 +59,7 @@ def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
     if LEAST <= power <= GREATEST:
         text, raised = f"{value:.{max(0, SIGNIFICANT - 1 - power)}f}", ""
     else:
-        text, _, exponent = f"{value:.{SIGNIFICANT - 1}e}".partition("e")
+        text, exponent = f"{value:.{SIGNIFICANT - 1}e}".split("e")
         raised = f"·10{str(int(exponent)).translate(RAISED)}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
     return f"{text}{raised}{after_number(is_angle, unit)}"
