@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -49,13 +50,19 @@ def _degrees(radians: Floats) -> Floats | None:
     """Return the shortest decimals that convert exactly, or None."""
     with np.errstate(all="ignore"):
         near = np.rad2deg(radians)
-        tries = [np.round(near, digits) for digits in range(15)]
-        tries += [near, np.nextafter(near, np.inf), np.nextafter(near, -np.inf)]
         out = np.full(radians.shape, np.nan)
-        for candidate in tries:
+        for candidate in _candidates(near):
             fits = np.isnan(out) & (np.deg2rad(candidate) == radians)
             out = np.where(fits, candidate, out)
-    return None if np.any(np.isnan(out)) else out
+            if not np.isnan(out).any():
+                return out
+    return None
+
+
+def _candidates(near: Floats) -> Iterator[Floats]:
+    """Ever more digits of numbers, then their neighbours."""
+    yield from (np.round(near, digits) for digits in range(15))
+    yield from (near, np.nextafter(near, np.inf), np.nextafter(near, -np.inf))
 
 
 def coordinate(value: Number, angle: bool) -> Any:

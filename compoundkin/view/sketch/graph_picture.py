@@ -101,11 +101,8 @@ def spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     wanted = _steps(len(names), joined)
     rng = np.random.default_rng(0)
     # the same orders every time: the seed is fixed
-    orders = [
-        np.arange(len(names)),
-        *(rng.permutation(len(names)) for _ in range(min(MOST_STARTS, STARTS // len(names)))),
-    ]
-    tried = [_settled(wanted, order) for order in orders]
+    starts = min(MOST_STARTS, STARTS // len(names))
+    tried = _settled(wanted, np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))]))
     places = min(tried, key=lambda found: _crossings(found, joined))
     places = places - places[0]
     # the frame below, as it is drawn
@@ -113,15 +110,15 @@ def spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     return [complex(p) for p in places * 1j * np.conjugate(far) / (abs(far) or 1.0) * APART]
 
 
-def _settled(wanted: Number, order: Number) -> Number:
-    """Places that have settled from a circle on which the links stand in an order."""
-    count = len(order)
-    places = np.exp(2j * np.pi * order / max(count, 1) + 1j * START) * max(1.0, count / 4.0)
-    weights = np.where(wanted > 0, 1.0 / np.maximum(wanted, 1.0) ** 2, 0.0)
+def _settled(wanted: Number, orders: Number) -> Number:
+    """Places (orders, links) that have settled from circles on which the links stand in some orders."""
+    count = orders.shape[1]
+    places = np.exp(2j * np.pi * orders / max(count, 1) + 1j * START) * max(1.0, count / 4.0)
+    weights, itself = np.where(wanted > 0, 1.0 / np.maximum(wanted, 1.0) ** 2, 0.0), np.eye(count)
     for _ in range(ROUNDS if count > 2 else 0):
-        apart = places[:, None] - places[None]
-        pull = weights * (places[None] + wanted * apart / (np.abs(apart) + np.eye(count)))
-        places = pull.sum(axis=1) / weights.sum(axis=1)
+        apart = places[:, :, None] - places[:, None]
+        pull = weights * (places[:, None] + wanted * apart / (np.abs(apart) + itself))
+        places = pull.sum(axis=2) / weights.sum(axis=1)
     return places
 
 
