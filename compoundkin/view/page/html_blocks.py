@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import singledispatch, singledispatchmethod
 
+from compoundkin.model.attributes import readable
 from compoundkin.view.page.html_tables import Names, ShownTable, table_html
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.mathml import Unread, mathml
@@ -20,7 +21,7 @@ from compoundkin.view.report.report_data import (
     StepBlock,
     TableBlock,
 )
-from compoundkin.view.report.wording import counted, written
+from compoundkin.view.report.wording import counted, typeset, written
 from compoundkin.view.sketch.svg import link_names
 
 # A notebook shows so many rows of a table; reports and the objects themselves have all.
@@ -75,12 +76,12 @@ def plain_figure(svg: str, caption: str) -> str:
 
 
 def _heading(column: Column) -> str:
-    return safe(f"{column.name} [{column.unit}]" if column.unit else column.name)
+    return safe(f"{column.name} [{readable(column.unit)}]" if column.unit else column.name)
 
 
 def _cells(row: Iterable[str], sides: Iterable[str]) -> Iterator[str]:
     for k, (text, side) in enumerate(zip(row, sides, strict=True)):
-        inside = safe(text).replace("\n", "<br>")
+        inside = safe(typeset(text)).replace("\n", "<br>")
         yield element("td", inside, style=side) if k else element("th", inside, scope="row", style=side)
 
 
@@ -92,23 +93,23 @@ def plain_block(block: Block) -> str:
 
 @plain_block.register
 def _(block: Paragraph) -> str:
-    return element("p", safe(block.text))
+    return element("p", safe(typeset(block.text)))
 
 
 @plain_block.register
 def _(block: FormulaBlock) -> str:
-    return element("pre", safe(block.text))
+    return element("pre", safe(typeset(block.text)))
 
 
 @plain_block.register
 def _(block: Alert) -> str:
     remedy = f" Remedy: {safe(block.remedy)}." if block.remedy else ""
-    return element("p", element("strong", safe(block.text)) + remedy, role="note")
+    return element("p", element("strong", safe(typeset(block.text))) + remedy, role="note")
 
 
 @plain_block.register
 def _(block: StepBlock) -> str:
-    facts = "".join(element("dt", safe(term)) + element("dd", safe(text)) for term, text in block.facts)
+    facts = "".join(element("dt", safe(term)) + element("dd", safe(typeset(text))) for term, text in block.facts)
     return element("h5", safe(block.title)) + element("dl", facts)
 
 
@@ -176,7 +177,7 @@ class Blocks:
         if links:
             swatch = f'<i class="swatch g{self.names.colour(links)}"></i>'
             title = element("button", swatch + title, type="button", class_="who", aria_pressed="false")
-        facts = lines(f"<div><dt>{safe(term)}</dt><dd>{safe(fact)}</dd></div>" for term, fact in step.facts)
+        facts = lines(f"<div><dt>{safe(term)}</dt><dd>{safe(typeset(fact))}</dd></div>" for term, fact in step.facts)
         tag = f' data-links="{link_names(links)}"' if links else ""
         return f'<div class="step"{tag}>\n<h3>{title}</h3>\n<dl>\n{facts}\n</dl>\n</div>'
 
@@ -187,7 +188,7 @@ class Blocks:
     @_block.register
     def _(self, block: Paragraph) -> str:
         # the badges at the head of the page say the rest
-        return element("p", safe(block.text.removesuffix(block.badged).rstrip()))
+        return element("p", safe(typeset(block.text.removesuffix(block.badged).rstrip())))
 
     @_block.register
     def _(self, block: FormulaBlock) -> str:
@@ -197,13 +198,13 @@ class Blocks:
     def _(self, block: Alert) -> str:
         remedy = f"\n<p><b>Remedy:</b> {safe(block.remedy)}.</p>" if block.remedy else ""
         return element(
-            "div", f"<p><strong>{hidden('Warning:')} {safe(block.text)}</strong></p>{remedy}", class_="alert"
+            "div", f"<p><strong>{hidden('Warning:')} {safe(typeset(block.text))}</strong></p>{remedy}", class_="alert"
         )
 
 
 def _formula(block: FormulaBlock) -> str:
     """A formula as mathematics where it comes as such, read out as its text; else as it is written."""
-    written = element("code", safe(block.text))
+    written = element("code", safe(typeset(block.text)))
     if block.latex:
         with suppress(Unread):
             shown = element("span", mathml(block.latex), aria_hidden="true", class_="maths")

@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.series import Number
+from compoundkin.model.attributes import readable
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style
@@ -71,7 +72,13 @@ def contributions(
         height = FIRST + EACH * len(rows.names)
         figure, axes = canvas.panels(1, text, size or (canvas.WIDTH, height), 2, sharey=True)
         _bars(axes[0], rows, rows.shares, "share of the variance [%]", COLOURS[0])
-        _bars(axes[1], rows, rows.parts, f"part of the worst case{f' [{rows.unit}]' if rows.unit else ''}", COLOURS[1])
+        _bars(
+            axes[1],
+            rows,
+            rows.parts,
+            f"part of the worst case{f' [{readable(rows.unit)}]' if rows.unit else ''}",
+            COLOURS[1],
+        )
         axes[0].invert_yaxis()
         return canvas.finished(figure, ())
 

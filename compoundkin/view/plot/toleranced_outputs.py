@@ -8,6 +8,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
+from compoundkin.model.attributes import readable
 from compoundkin.model.component_names import component_names
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
@@ -75,10 +76,10 @@ def place_words(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None
     if pose is None:
         return one.name
     x, _ = along(found.motion, None)
-    return f"{one.name} at {x.name} {number(float(x.values[0, pose]), x.scale)} {x.unit}".rstrip()
+    return f"{one.name} at {x.name} {number(float(x.values[0, pose]), x.scale)} {readable(x.unit)}".rstrip()
 
 
 def shown_words(one: OutputTolerance, value: float) -> str:
     """Write a value of an output with its unit, angles in degrees."""
     shown = shown_of(one.name, one.unit, np.array([value]))
-    return f"{number(float(shown.values[0]))} {shown.unit}".rstrip()
+    return f"{number(float(shown.values[0]))} {readable(shown.unit)}".rstrip()

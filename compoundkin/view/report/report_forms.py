@@ -13,6 +13,7 @@ from compoundkin.base.display import Shows
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import readable
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import (
     Alert,
@@ -26,11 +27,12 @@ from compoundkin.view.report.report_data import (
     TableBlock,
     summarised,
 )
-from compoundkin.view.report.wording import written
+from compoundkin.view.report.wording import typeset, written
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
+_ESCAPED = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_|<>"})
 Subject: TypeAlias = Structure | Motion
 
 
@@ -120,7 +122,7 @@ def _(block: Paragraph) -> str:
 
 @_as_markdown.register
 def _(block: FormulaBlock) -> str:
-    return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{block.text}\n```"
+    return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{typeset(block.text)}\n```"
 
 
 @_as_markdown.register
@@ -148,14 +150,12 @@ def _line(cells: Iterable[str]) -> str:
 
 
 def _heading(column: Column) -> str:
-    return _plain(f"{column.name} [{column.unit}]" if column.unit else column.name)
+    return _plain(f"{column.name} [{readable(column.unit)}]" if column.unit else column.name)
 
 
 def _plain(text: str) -> str:
     """Text in which nothing is taken for markup."""
-    for mark in "\\`*_|<>":
-        text = text.replace(mark, "\\" + mark)
-    return " ".join(text.split())
+    return " ".join(typeset(text).translate(_ESCAPED).split())
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from math import floor, isfinite, log10
 
+from compoundkin.model.attributes import RAISED
 from compoundkin.view.report.report_data import Cell, Column
 
 SIGNIFICANT = 6
 # Outside of these, numbers are written with exponents.
 LARGEST, SMALLEST = 1e7, 1e-3
 NOTHING = "-"
+# Powers of seconds, and numbers that are multiplied; names may have anything else.
+_TYPESET = re.compile(r"(?<=/s)\^[23]\b|(?<=\d) \* (?=\d)")
 _KINDS = ("free", "singular", "binary", "ternary", "quaternary", "quinary", "senary")
 
 
@@ -32,6 +36,15 @@ def number(value: float) -> str:
     ('14', '0.333333', '0')
     """
     return f"{value + 0.0:.{SIGNIFICANT}g}"
+
+
+def typeset(text: str) -> str:
+    """Return a sentence or formula as pages and Markdown have it. Terminals and data have it plain.
+
+    >>> typeset("3 (6 - 1) - 2 * 7 = 1"), typeset("9.81 m/s^2 at x^2")
+    ('3 (6 - 1) - 2·7 = 1', '9.81 m/s² at x^2')
+    """
+    return _TYPESET.sub(lambda found: RAISED.get(found[0], "·"), text)
 
 
 def brief(value: float) -> str:

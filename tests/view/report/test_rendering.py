@@ -98,6 +98,16 @@ def test_markdown_tables_are_well_formed(broken: ck.results.Motion) -> None:
         assert_well_formed(made)
 
 
+def test_formulas_and_units_are_set_alike_but_for_plain_text(six_bar: ck.results.Motion) -> None:
+    made = report(six_bar)
+    for form in (made.markdown(), re.sub(r"(?s)<script.*?</script>", "", made.html())):
+        assert "3 (6 - 1) - 2·7 = 1" in form
+        assert "mm/s²" in form
+        assert not re.search(r"/s\^[23]|\d \* \d", form)
+    assert "2 * 7" in made.text()
+    assert "mm/s^2" in made.json()
+
+
 def test_markdown_escapes_what_is_markup() -> None:
     mechanism = ck.Mechanism("a | b *c* <d> `e`", ck.link("frame", A=0), ck.link("x|y", A=0, B=1), ck.drive("x|y"))
     found = report(ck.solve(mechanism)).markdown()
