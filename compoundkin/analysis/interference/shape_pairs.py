@@ -31,7 +31,7 @@ class ShapePairs(PrintsShort):
     def lower(self, found: Number, which: Number, z: Number, u: Number) -> None:
         """Put clearances into what is `found` where they are less, (n,).
 
-        They are of bodies by their indices. `z` and `u` are the origins and orientations of all links there, (links, n).
+        They are of bodies by their indices. `z` and `u` are the origins and orientations of all links, (links, n).
         """
         first, last = np.searchsorted(self.bodies, which, "left"), np.searchsorted(self.bodies, which, "right")
         count = last - first
