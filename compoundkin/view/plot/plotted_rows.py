@@ -60,8 +60,14 @@ class Plotted(Quantity):
 
     def curve(self, d: int, across: Self) -> tuple[Number, Number]:
         """Return the curve of a design over another quantity, a gap at each pole."""
-        cuts = np.flatnonzero(self.poles[d] | across.poles[d]) + 1
-        return np.insert(across.values[d].astype(float), cuts, np.nan), np.insert(self.values[d], cuts, np.nan)
+        return self.parted(across, across.values[d], self.values[d])
+
+    def parted(self, across: Self, x: Number, y: Number) -> tuple[Number, Number]:
+        """Return a line with a gap wherever it changes its sign through infinity."""
+        both = ((across, x), (self, y))
+        flips = [one.has_poles & (np.sign(v[:-1].real) * np.sign(v[1:].real) < 0) for one, v in both]
+        cuts = np.flatnonzero(flips[0] | flips[1]) + 1
+        return np.insert(x.astype(float), cuts, np.nan), np.insert(y, cuts, np.nan)
 
     def part(self, name: str) -> Self:
         """Return a component or the length of a vector."""
@@ -167,7 +173,7 @@ def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
 def _rows(motion: Motion, found: Quantity) -> Plotted:
     values = _shaped(motion, found.shown.values)
     largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
-    natural = TURN if found.is_angle else 1.0 if found.dimension == "number" else motion.size
+    natural = TURN if found.is_angle else 1.0 if found.dimension in ("angle", "number") else motion.size
     scale = max(largest, found.scale or natural * _pace(motion) ** found.order)
     owner, _, attribute = found.name.rpartition(".")
     is_speed = attribute == SPEED and owner in motion.points

@@ -98,20 +98,18 @@ class PlottedCourse:
 
         A pose at a jump gives way to its two sides; NaN parts what passes infinity.
         """
-        if (curve.poles[design] | self.x.poles[design]).any():
-            return curve.curve(design, self.x)
         x, y = self.x.values[design], curve.values[design]
         mine = self.more.at.design == design
         if curve.is_unbounded or self.x.is_unbounded:
             mine &= ~self.more.to_limits
         if not mine.any() or course_figure(curve.name)[1]:
-            return x, y
+            return curve.parted(self.x, x, y)
         place, poses = self.more.at.place[mine], np.arange(len(x), dtype=float)
         kept = np.abs(poses[:, None] - place).min(axis=1) > SAME_PLACE
         order = np.argsort(np.concatenate([poses[kept], place]))
         new = (x_at(self.motion, self.x, self.more.at.some(mine)), self._values(curve)[mine])
         across, up = (np.concatenate([row[kept], one])[order] for row, one in zip((x, y), new, strict=True))
-        return across, up
+        return curve.parted(self.x, across, up)
 
     def _values(self, curve: Plotted) -> Number:
         found = np.asarray(quantity(self.solved, curve.name).values)

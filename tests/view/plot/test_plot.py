@@ -215,6 +215,11 @@ def test_what_is_nothing_but_rounding_is_drawn_as_constant() -> None:
     (axes,) = ck.plot(motion, "follower.angular_velocity").figure.axes
     assert axes.get_ylim() == (pytest.approx(0.5), pytest.approx(1.5))
     assert texts(axes) == []
+    slider = ck.solve(load_named("slider-crank-offset"))
+    velocity, turn = ck.plot(slider, "B.velocity.y", "piston.angular_velocity").figure.axes
+    assert texts(velocity) == texts(turn) == []
+    # a zero rate of an angle goes by the driver's, 10 rad/s, whatever the lengths
+    assert turn.get_ylim() == (pytest.approx(-10.0), pytest.approx(10.0))
 
 
 # --- gaps, limit positions, change points ---------------------------------------------------------------
