@@ -78,7 +78,7 @@ def verdict(made: Report, closed: bool) -> int:
     if (faults := made.section("faults")) is not None:
         return unsolvable(len(faults.blocks) - 1)
     if not made.outcome.passed and (made.outcome.assembled or not made.outcome.poses):
-        say("A check or a published number FAILED; the report says which.")
+        say("A check or a published number FAILED, or links touch; the report says which.")
         return FAILED
     return 0 if closed else NOT_ASSEMBLED
 

@@ -23,6 +23,8 @@ SAME = 1e-3
 FEWEST = 3
 # Half the width of a slot, and the wall between slot and locking arc at its thinnest, in picture units.
 HALF, WALL = 5.5, 6.0
+# Neither is more than this part of the crank's length, where the wheel is small or has many slots.
+PART = 0.2
 HUB = 9.0
 # The locking disc in parts of the crank's length, where there is room for it.
 LOCKING = 0.7
@@ -103,7 +105,7 @@ def geneva_wheel(painter: Painter, found: Geneva) -> Iterator[Laid]:
 
 def wheel_line(found: Geneva, scale: float) -> Number:
     """Return the outline of the wheel in its own frame. It is that for a picture of a scale."""
-    half, radius = HALF / scale, abs(found.slot)
+    half, radius = _width(found, HALF, scale), abs(found.slot)
     locking = _locking(found, scale)
     pitch = 2.0 * np.pi / found.slots
     # one slot along the x axis from its bottom, and half a pitch on the locking arc
@@ -120,7 +122,7 @@ def wheel_line(found: Geneva, scale: float) -> Number:
 
 def disc_line(found: Geneva, scale: float) -> Number:
     """Return the outline of the crank's locking disc in its own frame. It is cut out where the wheel turns by."""
-    locking, radius = _locking(found, scale), abs(found.slot) + HALF / scale
+    locking, radius = _locking(found, scale), abs(found.slot) + _width(found, HALF, scale)
     half = float(np.arccos((found.apart**2 + locking**2 - radius**2) / (2.0 * found.apart * locking)))
     wide = float(np.arccos((found.apart**2 + radius**2 - locking**2) / (2.0 * found.apart * radius)))
     rim = arc_line(0j, locking, half, 2.0 * np.pi - half)
@@ -130,5 +132,10 @@ def disc_line(found: Geneva, scale: float) -> Number:
 
 def _locking(found: Geneva, scale: float) -> float:
     """The radius of the locking arcs. Beside the slots a wall is left, and the arcs reach into the wheel."""
-    most, least = abs(found.arm) - (HALF + WALL) / scale, 1.05 * (found.apart - abs(found.slot))
+    walls = _width(found, HALF, scale) + _width(found, WALL, scale)
+    most, least = abs(found.arm) - walls, 1.05 * (found.apart - abs(found.slot))
     return max(min(LOCKING * abs(found.arm), most), least)
+
+
+def _width(found: Geneva, width: float, scale: float) -> float:
+    return min(width / scale, PART * abs(found.arm))

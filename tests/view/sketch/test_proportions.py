@@ -8,7 +8,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
 from compoundkin.view.sketch.cylinder_shapes import is_piston
-from compoundkin.view.sketch.geneva_shapes import HALF, disc_line, genevas, wheel_line
+from compoundkin.view.sketch.geneva_shapes import HALF, PART, disc_line, genevas, wheel_line
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, leaves
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import BLOCK
@@ -77,7 +77,7 @@ def test_a_rack_is_behind_its_pinion_and_slides_without_a_block() -> None:
     assert not [one for one in laid if one.layer == Layer.BLOCK]
 
 
-@pytest.mark.parametrize("slots", [3, 4, 6, 8])
+@pytest.mark.parametrize("slots", [3, 4, 6, 8, 60])
 def test_a_geneva_wheel_has_the_slots_and_arcs_that_its_dimensions_tell(slots: int) -> None:
     crank, wheel = np.sin(np.pi / slots), np.cos(np.pi / slots)
     mechanism = ck.Mechanism(
@@ -106,7 +106,7 @@ def test_a_geneva_wheel_has_the_slots_and_arcs_that_its_dimensions_tell(slots: i
     motion = ck.solve(mechanism)
     pin = motion.points["A"].position - 1.0
     own = pin * np.exp(-1j * motion.links["wheel"].angle)
-    assert min(abs(line - p).min() for p in own) * scale > 0.9 * HALF
+    assert min(abs(line - p).min() for p in own) * scale > 0.9 * min(HALF, PART * crank * scale)
 
 
 def test_pistons_are_what_is_called_so_and_never_leave_their_bores_on_the_side_of_the_head() -> None:
