@@ -87,7 +87,7 @@ def settled(labels: Sequence[Label], fixed: Mapping[str, Number], crowd: LabelCr
 
 
 class LabelCrowd:
-    """Where labels are at some poses, and what it costs another to be there.
+    """Where labels are at some poses, and what others cost there.
 
     Places are turned about zero, then shifted: complex (poses, labels), both.
     """
