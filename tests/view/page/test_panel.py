@@ -127,6 +127,11 @@ def test_lengths_and_angles_are_changed_by_keyboard_and_wrong_ones_told(whole: A
     crank.fill("15,5 mm")
     crank.press("Enter")
     assert numbers(whole) == {"crank.D.x": 15.5}
+    # what was taken is undone in the field too; what is being typed is not
+    crank.press("Control+z")
+    assert numbers(whole) == {}
+    crank.press("Control+y")
+    assert numbers(whole) == {"crank.D.x": 15.5}
     # each wrong text: what is told beside the field
     told = crank.evaluate(WRONG, ["abc", "", "-3", "0", "1e9", "NaN", "Infinity", "1 in"])
     assert [text.partition(" ")[0] for text, _ in told] == [
@@ -215,6 +220,12 @@ def test_the_address_restores_what_was_changed(whole: Any) -> None:
     assert address.endswith("#dimensions=slot.angle:5deg,frame.F.x:-0.1,crank.D.x:15.25,plate.C.y:8.7")
     whole.evaluate("compoundkin.design.reset()")
     whole.evaluate("(hash) => { location.hash = hash; }", address.partition("#")[2])
+    whole.wait_for_function("compoundkin.design.isChanged")
+    assert numbers(whole) == values
+    # back to the address before it, and on again
+    whole.go_back()
+    whole.wait_for_function("!compoundkin.design.isChanged")
+    whole.go_forward()
     whole.wait_for_function("compoundkin.design.isChanged")
     assert numbers(whole) == values
     # an ordinary anchor goes where it always went, and changes nothing

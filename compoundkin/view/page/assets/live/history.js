@@ -35,7 +35,11 @@
       return button;
     }
     key(event) {
-      if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest?.(TYPED)) return;
+      if (!event.target.closest?.(TYPED)) this.way(event);
+    }
+    // keys that lead back and on again, from where they mean no text that is being typed
+    way(event) {
+      if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
       const key = event.key.toLowerCase();
       if (key !== "z" && (key !== "y" || event.shiftKey)) return;
       event.preventDefault();

@@ -60,7 +60,9 @@
       input.addEventListener("keydown", (event) => this.key(event));
     }
     key(event) {
-      const by = { ArrowUp: 1, ArrowDown: -1, PageUp: COARSE, PageDown: -COARSE }[event.key];
+      const { history } = this.panel.player, by = { ArrowUp: 1, ArrowDown: -1, PageUp: COARSE, PageDown: -COARSE }[event.key];
+      // a number that was taken is undone as what was dragged is, one that is being typed as text is
+      if (history && !this.bad && this.input.value === this.shown) history.way(event);
       if (event.key === "Enter") this.taken();
       else if (event.key === "Escape" && (this.bad || this.input.value !== this.shown)) {
         this.write();

@@ -63,7 +63,13 @@
     design.load(found.values, "dimensions of the address");
     tell("Dimensions of the address.");
   };
-  addEventListener("hashchange", open);
+  // back to the address before it is back to what was there
+  addEventListener("hashchange", ({ oldURL }) => {
+    const before = !location.hash && page.readFragment(new URL(oldURL).hash, design);
+    if (!before || before.problem) return open();
+    design.load({}, "original dimensions");
+    tell("Original dimensions.");
+  });
   open();
 
   // --- what does not follow --------------------------------------------------------------------------------------------------------
