@@ -199,6 +199,7 @@
         player.transport.stop();
         return row.move(value);
       }
+      if (atOnce) this.rest(); // what was stepped before it is a step of its own
       design.change(row.set(value, this.now));
       this.words = `${row.label} of ${row.owner}: ${page.written(value)} ${row.unit}`.trim();
       clearTimeout(this.resting);
