@@ -37,8 +37,9 @@ ICON = (
     "%3Cpath d='M3 12L6 4L13 7' fill='none' stroke='%230067b1' stroke-width='2'/%3E"
     "%3Ccircle cx='3' cy='12' r='2'/%3E%3Ccircle cx='6' cy='4' r='2'/%3E%3Ccircle cx='13' cy='7' r='2'/%3E%3C/svg%3E"
 )
-# Lines with patterns or templates stay as they are. Spaces say nothing elsewhere but beside signs, as in "a - -b".
-PLAIN, TEXT = re.compile(r"['`/\\]"), re.compile('("[^"]*")')
+# Lines with patterns or templates stay as they are; a stroke between spaces divides. Spaces say nothing elsewhere but
+# beside signs, as in "a - -b".
+PLAIN, TEXT = re.compile(r"['`\\]|(?<! )/|/(?! )"), re.compile('("[^"]*")')
 SPACES, STOPS = re.compile(r" ?(=>|[=,:;?*{}()\[\]&|]) ?"), re.compile(r"(?<=[:;,{}]) | (?=[{}])")
 # A line of comment.
 REMARK = re.compile(r"//.*|/\*[^*]*\*/")

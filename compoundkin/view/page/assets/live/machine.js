@@ -57,7 +57,7 @@
     sub: (n, o, b, a) => { for (let k = 0; k < n; k++) o[k] = a - b[k]; },
   };
 
-  // whole numbers as live_data.py packs them
+  // whole numbers as table_data.py packs them
   const wholes = (text) => {
     const bytes = Uint8Array.from(atob(text.slice(2)), (c) => c.charCodeAt(0));
     return Int32Array.from(text[0] === "h" ? new Int16Array(bytes.buffer) : new Int32Array(bytes.buffer));
