@@ -58,9 +58,14 @@ def cylinder(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
 
 
 def is_piston(seen: Seen) -> bool:
-    """Tell whether a slide on the frame is that of a piston. Its name or that of its link says so."""
+    """Tell whether a slide on the frame is that of a piston. Its name or that of its link says so.
+
+    A slide that has stops is drawn with them.
+    """
+    if not isinstance(seen.mark, Sliding) or seen.members[0] != FRAME or any(seen.mark.stops):
+        return False
     words = re.split("[^a-z]+", f"{seen.members[1]} {seen.pair.name}".lower())
-    return isinstance(seen.mark, Sliding) and seen.members[0] == FRAME and not PISTONS.isdisjoint(words)
+    return not PISTONS.isdisjoint(words)
 
 
 def piston(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:

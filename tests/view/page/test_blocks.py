@@ -25,7 +25,7 @@ from compoundkin.view.page.report_page import Page
 from compoundkin.view.report import Report, page, report
 from compoundkin.view.report.atlas_sections import atlas_report
 from compoundkin.view.report.report_data import Column, Outcome, Section, TableBlock
-from compoundkin.view.report.wording import written
+from compoundkin.view.report.wording import typeset, written
 from tests import catalog
 
 from .conftest import HOSTILE
@@ -167,7 +167,7 @@ def test_all_paragraphs_steps_and_formulas_are_there(six_bar: tuple[Report, str]
             # what badges say is not said again
             told = [getattr(block, "text", "").removesuffix(getattr(block, "badged", "")), getattr(block, "title", "")]
             told += [part for fact in getattr(block, "facts", ()) for part in fact]
-            assert all(" ".join(part.split()) in text for part in told)
+            assert all(" ".join(typeset(part).split()) in text for part in told)
 
 
 def test_the_same_motion_gives_the_same_page(six_bar: tuple[Report, str]) -> None:
