@@ -84,7 +84,7 @@ def mechanisms(draw: st.DrawFn) -> Mechanism:
         raise
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(mechanisms(), st.sampled_from(["toml", "json"]))
 def test_every_mechanism_is_read_as_it_was_written(mechanism: Mechanism, syntax: Any) -> None:
     assert loads(dumps(mechanism, syntax), syntax) == mechanism

@@ -16,7 +16,7 @@ from tests.stress.mutated_files import mutated
 from tests.stress.sketch import Placed
 from tests.stress.trial import Outcome, drawn_case, tried
 
-COUNT, PARTS = 100, 4
+COUNT, PARTS = 80, 4
 small = partial(tried, small=True)
 
 
