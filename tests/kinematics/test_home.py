@@ -188,7 +188,7 @@ def newton(x: np.ndarray, theta: float, places: dict[str, complex]) -> tuple[np.
 def test_no_random_drawn_stephenson_iii_is_lost() -> None:
     """Over a full turn; 9 of 59 once lost everything: what own continuation reaches is reached."""
     rng, reached = np.random.default_rng(1), 0
-    for _ in range(20):
+    for _ in range(30):
         places, mechanism = drawn_at_random(rng)
         motion = quietly(mechanism, order=0)
         start = float(np.angle(places["G"] - places["F"])) % (2.0 * np.pi)
