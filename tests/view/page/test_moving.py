@@ -161,6 +161,11 @@ def test_a_frame_is_small_and_asks_for_nothing() -> None:
     assert ck.solve(load_named("six-bar"), {"crank": ck.deg([30])})._repr_html_() is None
 
 
+def test_a_mechanism_whose_point_is_led_has_a_page() -> None:
+    """Its instant centres are those of links that the page does not show, too."""
+    assert "ck-motion" in ck.page(catalog.motion("five-bar-led")).html
+
+
 def test_the_catalog_can_be_viewed() -> None:
     """Every third mechanism: the live pages of all are made with the site."""
     for name in names()[::3]:

@@ -59,7 +59,8 @@ def _without(whole: Mapping[str, Any], keys: tuple[str, ...]) -> dict[str, Any]:
 def _centre(data: Mapping[str, Any], centre: Mapping[str, Any]) -> dict[str, Any]:
     """Return an instant centre without its places, where these follow from velocities at every pose."""
     links = {link["name"]: link for link in data["links"]}
-    if any("v" not in links[name] for name in centre["links"]):
+    # what leads a point is no link of the page
+    if any("v" not in links.get(name, ()) for name in centre["links"]):
         return dict(centre)
     one, other = (_rate(links[name], data["poses"]) for name in centre["links"])
     ax, ay, w = other - one
