@@ -1,0 +1,13 @@
+"""Files of other programs, in and out: PMKS, PMKS+, Linkage, pyslvs, pylinkage and more.
+
+>>> import compoundkin as ck
+>>> ck.exchange.read("ground,crank,R,0,0\\ncrank,rod,R,1,2\\nrod,slide,R,5,0\\nslide,ground,P,5,0,0").form
+'pmks'
+"""
+
+from __future__ import annotations
+
+from compoundkin.files.exchange.conversion import read, write
+from compoundkin.files.exchange.exchanged import Exported, Imported
+
+__all__ = ["Exported", "Imported", "read", "write"]

@@ -1,0 +1,35 @@
+"""Files of other programs, in and out: one file or folder for each format, and this registry."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from compoundkin.files.exchange.contract import ExchangeFormat
+
+# Each format's word with its module, which has it as FORMAT and is imported when it is asked for. In the order in
+# which they are tried on a content; those whose marks are plainest first.
+MODULES = {
+    "linkage": "linkage.linkage_format",
+    "pyslvs": "pyslvs.pyslvs_format",
+    "pyslvs-project": "pyslvs.pyslvs_project",
+    "pmks-file": "pmks.pmks_file",
+    "pylinkage": "pylinkage.pylinkage_format",
+    "linkage-sim": "linkage_sim.linkage_sim_format",
+    "pmks+": "pmks_plus.pmks_plus_format",
+    "pmks": "pmks.pmks_format",
+    "pmks-url": "pmks.pmks_url",
+    "joints": "pmks.joint_table",
+    "mjcf": "mjcf.mjcf_format",
+    "geogebra": "geogebra.geogebra_format",
+    "geogebra-commands": "geogebra.geogebra_commands",
+    "dxf": "dxf.dxf_format",
+    "cam-profile": "cam_profile.cam_profile_format",
+}
+
+
+def format_named(name: str) -> ExchangeFormat:
+    """Return the format of a word."""
+    found: ExchangeFormat = import_module(f"{__name__}.{MODULES[name]}").FORMAT
+    return found

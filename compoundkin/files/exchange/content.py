@@ -1,0 +1,82 @@
+"""What is to be read: the bytes of a file or a text that was pasted, held to a size before anything looks at it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from compoundkin.base.errors import InvalidInput, Problem
+
+# What files and links may hold. The largest known are of some hundred kilobytes, and of ten.
+MOST_BYTES = 8_000_000
+MOST_OF_LINK = 200_000
+
+
+@dataclass(frozen=True)
+class Content:
+    """Bytes and where they come from: the path of a file, or "" for a text that was given itself."""
+
+    raw: bytes
+    where: str = ""
+
+    @cached_property
+    def text(self) -> str:
+        """The content as text. Raises InvalidInput where it is none."""
+        try:
+            return self.raw.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            what = f"it is not UTF-8 text (byte {error.start})"
+            raise InvalidInput(Problem(self.where, what, "save it as UTF-8")) from None
+
+    @cached_property
+    def is_text(self) -> bool:
+        """Whether it is text at all."""
+        return b"\0" not in self.raw and not self.raw.startswith(b"\x80")
+
+    @property
+    def head(self) -> str:
+        """How it begins, without blanks in front; bytes that are no text are left out."""
+        return self.raw[:4096].decode("utf-8-sig", "ignore").lstrip()
+
+    @property
+    def name(self) -> str:
+        """The name of the file without its suffix, or nothing."""
+        return Path(self.where).stem if self.where else ""
+
+
+def content_of(source: str | os.PathLike[str]) -> Content:
+    """Return what is to be read: of a path the file, of a link or of a text of several lines itself."""
+    if isinstance(source, str) and _is_itself(source):
+        raw = source.encode("utf-8", "surrogatepass")
+        if len(raw) > (MOST_BYTES if "\n" in source else MOST_OF_LINK):
+            raise _too_large("the text", len(raw), MOST_BYTES if "\n" in source else MOST_OF_LINK)
+        return Content(raw)
+    path = Path(source)
+    try:
+        if path.is_dir():
+            raise InvalidInput(Problem(str(path), "this is a folder", "name a file in it"))
+        size = path.stat().st_size
+        if size > MOST_BYTES:
+            raise _too_large(str(path), size, MOST_BYTES)
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
+    except FileNotFoundError:
+        raise InvalidInput(Problem(str(path), "there is no such file", "name a file, or paste a link")) from None
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise InvalidInput(Problem(str(path)[:200], f"it cannot be read: {what}")) from None
+    if len(raw) > MOST_BYTES:
+        raise _too_large(str(path), len(raw), MOST_BYTES)
+    return Content(raw, str(path))
+
+
+def _is_itself(source: str) -> bool:
+    """Return whether a text is what is to be read and no path: nothing is ever fetched."""
+    return "\n" in source or "://" in source or source.lstrip()[:2] in ("M[", '{"') or "mech=" in source
+
+
+def _too_large(where: str, size: int, most: int) -> InvalidInput:
+    what = f"it has {size:,} bytes; a mechanism's has at most {most:,}"
+    return InvalidInput(Problem(where, what, "look whether it is the right file"))

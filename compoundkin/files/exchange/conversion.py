@@ -1,0 +1,70 @@
+"""`read` and `write`: a mechanism out of any known format, and into any."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.files.exchange import MODULES, format_named
+from compoundkin.files.exchange.content import Content, content_of
+from compoundkin.files.exchange.contract import Readable, Writable
+from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.model.mechanism import Mechanism
+
+
+@checked
+def read(source: str | os.PathLike[str], form: str = "") -> Imported:
+    """Read a mechanism that another program has saved or shared.
+
+    `source` is the path of a file, a link, or a text of several lines; nothing is fetched, nothing executed. The format
+    is recognised by the content, unless `form` names it. Raises InvalidInput, with every element that cannot be said
+    here and its line; InvalidMechanism where what is read cannot be one.
+
+    >>> read("ground,crank,R,0,0,tfft\\ncrank,rod,R,1,2\\nrod,slide,R,5,0\\nslide,ground,P,5,0,0").mechanism.pins["B"]
+    ('crank', 'rod')
+    """
+    content = content_of(source)
+    known = {name: one for name, one in _formats() if isinstance(one, Readable)}
+    if form:
+        if form not in known:
+            raise InvalidInput(Problem("form", f"no format {form!r} is read", nearest(form, list(known))))
+        return known[form].read(content)
+    return _recognised(content, known).read(content)
+
+
+@checked
+def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None, **options: Any) -> Exported:
+    """Write a mechanism in the format of another program.
+
+    It is drawn `at` values of its drivers (radians, lengths), at the pose nearest to its drawing where they are left
+    out. Raises InvalidInput listing all that the format cannot say.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> write(load_named("slider-crank"), "pmks").text.splitlines()[0].split(",")[2]
+    'R'
+    """
+    known = {name: one for name, one in _formats() if isinstance(one, Writable)}
+    if form not in known:
+        raise InvalidInput(Problem("form", f"no format {form!r} is written", nearest(form, list(known))))
+    unknown = [name for name in options if name not in known[form].options]
+    if unknown:
+        remedy = nearest(unknown[0], list(known[form].options))
+        raise InvalidInput(Problem(unknown[0], f"{form} is written without it", remedy))
+    return known[form].write(shown_mechanism(mechanism, at), **options)
+
+
+def _formats() -> list[tuple[str, Any]]:
+    return [(name, format_named(name)) for name in MODULES]
+
+
+def _recognised(content: Content, known: Mapping[str, Readable]) -> Readable:
+    """Return the format of a content. Raises InvalidInput where it is none that is known."""
+    for one in known.values():
+        if one.recognises(content):
+            return one
+    what = "it is no mechanism of a program that is known here"
+    raise InvalidInput(Problem(content.where, what, f"known: {', '.join(one.title for one in known.values())}"))

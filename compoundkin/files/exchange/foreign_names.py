@@ -1,0 +1,57 @@
+"""Names of other programs, made into such as a mechanism can have: unique, without dots and commas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import count
+
+from compoundkin.model.geometry import FRAME
+
+# What names of other programs may hold and ours may not, and what stands for it.
+_REPLACED = str.maketrans({".": "-", ",": "-"})
+LONGEST = 80
+
+
+def legal(name: str) -> str:
+    """Return a name that a link or a point may have; an empty one where nothing of it is left.
+
+    >>> legal(" coupler.0_tip "), legal("\\t")
+    ('coupler-0_tip', '')
+    """
+    printable = "".join(c if c.isprintable() else " " for c in name).translate(_REPLACED)
+    return printable.strip()[:LONGEST].strip()
+
+
+def letters(taken: Iterable[str] = ()) -> Iterator[str]:
+    """Yield A, B ... Z, A1, B1 ..., without those that are taken.
+
+    >>> from itertools import islice
+    >>> list(islice(letters({"B"}), 3))
+    ['A', 'C', 'D']
+    """
+    used = set(taken)
+    for k in count():
+        for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ":
+            name = f"{letter}{k or ''}"
+            if name not in used:
+                yield name
+
+
+class NamesGiven:
+    """The names given so far, each once, for links and points together."""
+
+    def __init__(self) -> None:
+        self._used: set[str] = {FRAME}
+        self.changed: list[tuple[str, str]] = []
+
+    def give(self, wanted: str, otherwise: str) -> str:
+        """Return the name wanted, or the one nearest to it that can be had; note where it differs."""
+        name = unused = legal(wanted) or legal(otherwise) or "x"
+        for k in count(2):
+            if unused not in self._used:
+                break
+            unused = f"{name}-{k}"
+        self._used.add(unused)
+        if unused != wanted:
+            self.changed.append((wanted, unused))
+        return unused

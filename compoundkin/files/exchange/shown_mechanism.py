@@ -1,0 +1,121 @@
+"""A mechanism at one pose, which is what writers of formats are given: its links' poses, its points' places."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arrays import first_entry
+from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.files.exchange.drawing import Drawing
+from compoundkin.kinematics import Motion, solve
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure import Structure, decompose
+
+# Places nearer to each other than this part of the size are one.
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class ShownMechanism:
+    """A mechanism of one design at one pose.
+
+    `motion` is solved to the first order, over the drivers' own ranges or at the pose asked for, which is the pose
+    `pose` of it; None where it cannot be solved and is shown as drawn. `poses` are those of all links, the parts of
+    cylinders among them, numbers with their rates.
+    """
+
+    structure: Structure
+    poses: Mapping[str, Pose]
+    motion: Motion | None = None
+    pose: int = 0
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.structure.mechanism
+
+    def place(self, link: str, point: str | complex) -> complex:
+        """Return where a point of a link is, by its letter or its place in the link's frame."""
+        own = self.points[link][point] if isinstance(point, str) else point
+        return complex(self.poses[link].at(own).c[0])
+
+    def direction(self, link: str, own: complex) -> complex:
+        """Return a direction of a link's frame in space."""
+        return complex(self.poses[link].u.c[0] * own)
+
+    @cached_property
+    def points(self) -> Mapping[str, Mapping[str, complex]]:
+        """The points of each link in its own frame."""
+        placed = self.mechanism.geometry.points
+        return {name: {k: complex(first_entry(p)) for k, p in own.items()} for name, own in placed.items()}
+
+    @cached_property
+    def ends(self) -> Mapping[str, Ends]:
+        """The sides of the pairs that are written out, numbers in the links' frames, by the pairs' names."""
+        geometry = self.mechanism.geometry
+        return {
+            pair.name: tuple(End(*map(_number, end)) for end in pair.ends(geometry))
+            for pair in self.mechanism.written_pairs
+        }
+
+    @property
+    def pairs(self) -> tuple[Pair, ...]:
+        """The pairs that are written out: all but the pins."""
+        return self.mechanism.written_pairs
+
+    @cached_property
+    def drawing(self) -> Drawing:
+        """The mechanism as a drawing of this pose. Raises InvalidInput listing all that no drawing can say."""
+        from compoundkin.files.exchange.drawing_of import drawing_of
+
+        return drawing_of(self)
+
+
+def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None) -> ShownMechanism:
+    """Return a mechanism at driver values (radians, lengths), or at the pose of its motion nearest to its drawing.
+
+    Raises InvalidInput for several designs, NotAssembled where there is no pose.
+    """
+    structure = decompose(mechanism)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            motion = solve(structure, at, order=1)
+    except (InvalidInput, NotAssembled, NotDetermined):
+        if at is None and set(mechanism.drawn_poses) >= set(mechanism.links):
+            return ShownMechanism(structure, {k: p.entry((0, 0)) for k, p in mechanism.drawn_poses.items()})
+        raise
+    if motion.inputs.designs > 1:
+        what = f"it has {motion.inputs.designs} designs, a file of another program holds one"
+        raise InvalidInput(Problem(mechanism.title, what, "give the dimensions of one design"))
+    pose = _nearest_to_drawing(motion)
+    return ShownMechanism(structure, {k: p.entry((0, pose)) for k, p in motion.poses.items()}, motion, pose)
+
+
+def _nearest_to_drawing(motion: Motion) -> int:
+    """Return the index of the assembled pose nearest to the drawn points; of several that are, the first."""
+    known = np.flatnonzero(np.ravel(motion.failed) == 0)
+    if not known.size:
+        what = "no pose of its motion can be assembled"
+        raise NotAssembled(Problem(motion.mechanism.title, what, "gaps() tells why; name another pose"))
+    off = np.zeros(known.size)
+    for letter, drawn in motion.mechanism.sketch.items():
+        if letter in motion.mechanism.carriers:
+            places = np.ravel(motion.points[letter].position)
+            off += np.abs((places if places.size == 1 else places[known]) - first_entry(drawn)) ** 2
+    near = known[off <= off.min() + (_ROUNDING * motion.size) ** 2]
+    return int(near[0])
+
+
+def _number(value: Any) -> Number:
+    return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)
