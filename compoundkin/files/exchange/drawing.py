@@ -9,8 +9,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from compoundkin.model.geometry import FRAME
-
 GearKind = Literal["gears", "ring", "belt", "crossed belt"]
 GuideKind = Literal["slide", "slot"]
 
