@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from compoundkin.base.arguments import checked
@@ -58,7 +59,11 @@ def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None
 
 
 def _formats() -> list[tuple[str, Any]]:
-    return [(name, format_named(name)) for name in MODULES]
+    found = []
+    for name in MODULES:
+        with suppress(ModuleNotFoundError):  # until all of them are there
+            found.append((name, format_named(name)))
+    return found
 
 
 def _recognised(content: Content, known: Mapping[str, Readable]) -> Readable:

@@ -180,8 +180,8 @@ class Drawing:
     def points_of(self, link: str) -> Iterator[DrawnPoint]:
         """Yield the points of a link.
 
-        >>> bar = Drawing("bar", (DrawnLink(FRAME),), (DrawnPoint("A", 0j, (FRAME,)),))
-        >>> [point.key for point in bar.points_of(FRAME)]
+        >>> bar = Drawing("bar", (DrawnLink("frame"),), (DrawnPoint("A", 0j, ("frame",)),))
+        >>> [point.key for point in bar.points_of("frame")]
         ['A']
         """
         return (point for point in self.points if link in point.links)

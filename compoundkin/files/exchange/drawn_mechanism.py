@@ -1,11 +1,158 @@
-"""From a drawing to a mechanism."""
+"""From a drawing to a mechanism: links by letters, a table of where they are drawn, pairs, drivers."""
 
 from __future__ import annotations
 
-from compoundkin.files.exchange.drawing import Drawing
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.display import counted
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
+from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnGuide
+from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters, check
+from compoundkin.files.exchange.drawn_loads import loads_of
+from compoundkin.files.exchange.drawn_pairs import pairs_of
 from compoundkin.files.exchange.exchanged import Imported
+from compoundkin.files.exchange.problems import Problems
+from compoundkin.model.attributes import OF_POINTS
+from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+
+# A mechanism of more elements than this takes longer to look at than anybody waits; the largest known have hundreds.
+MOST = 2000
+# How far a length is driven both ways, as a part of the size, where the other program does not say.
+TRAVEL = 0.1
+# So many steps as a full turn has, so that drivers of both kinds go together.
+STEPS = 72
 
 
-def mechanism_of(drawing: Drawing, form: str) -> Imported:
-    """Return the mechanism that a drawing shows."""
-    raise NotImplementedError
+def mechanism_of(drawing: Drawing, form: str, where: str = "") -> Imported:
+    """Return the mechanism that a drawing shows. Its assembly mode is the one drawn.
+
+    `form` is the word of the format it was read from, `where` the file. Raises InvalidInput where the drawing is of
+    more elements than can be looked at, or names what is not there; InvalidMechanism for what cannot be a mechanism.
+    """
+    problems = Problems(where)
+    many = len(drawing.points) + len(drawing.links) + len(drawing.guides)
+    if many > MOST:
+        problems.add("", f"it has {many} links, points and guides", f"at most {MOST} are read")
+        problems.raise_if_any()
+    check(drawing, problems)
+    problems.raise_if_any()
+    letters = DrawnLetters(drawing)
+    try:
+        pairs = pairs_of(drawing, letters)
+        mechanism, notes = _built(drawing, letters, pairs)
+    except InvalidMechanism as error:
+        told = [_translated(problem, drawing, letters) for problem in error.problems]
+        raise InvalidInput(told, heading=f"{where or drawing.title or form}: it cannot be a mechanism") from None
+    return Imported(mechanism, form, (*drawing.notes, *_renamed(letters), *notes, *_left_out(drawing)))
+
+
+def _built(drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair]) -> tuple[Mechanism, list[str]]:
+    items: list[Item] = [*_links(letters), *pairs.values(), drawn(**letters.places)]
+    notes: list[str] = []
+    drivers = [_driver(one, drawing, letters, pairs, notes) for one in drawing.drivers]
+    about: dict[str, Any] = {"unit": drawing.unit, "source": drawing.source}
+    about["outputs"] = tuple(f"{letters.point[key]}.{OF_POINTS[0]}" for key in drawing.outputs)
+    mechanism = Mechanism(drawing.title or "Mechanism", *items, *drivers, **about)
+    if not (drawing.masses or drawing.forces or drawing.gravity):
+        return mechanism, notes
+    loads = loads_of(drawing, letters, mechanism, notes)
+    if drawing.units is not None:
+        about["unit"], about["units"] = "", dict(zip(("length", "mass", "force"), drawing.units, strict=True))
+    return Mechanism(mechanism.title, *items, *drivers, *loads, **about), notes
+
+
+def _links(letters: DrawnLetters) -> Iterator[Item]:
+    """Yield the links by their letters; one whose points are all at one place by these, for nothing is read off."""
+    for key, name in letters.link.items():
+        own = letters.ordered(key)
+        if key != FRAME and len(own) > 1 and letters.axis(key) is None:
+            yield link(name, **dict.fromkeys(own, 0j))
+        else:
+            yield link(name, *own)
+
+
+def _driver(
+    one: DrawnDriver, drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair], notes: list[str]
+) -> Drive:
+    """Return a driver. One of a length whose way is not told goes a little both ways, which is noted."""
+    guide = next((guide for guide in drawing.guides if guide.key == one.at), None)
+    travel = one.travel
+    if guide is not None and travel is None:
+        travel = guide.reach and tuple(end - _along(guide, letters) for end in guide.reach)  # type: ignore[assignment]
+        if travel is None:
+            reach = TRAVEL * letters.size
+            travel = (-reach, reach)
+            notes.append(f"{one.link} is driven by a length over {reach:.4g} both ways, for no way is told")
+    words: dict[str, Any] = {} if one.speed is None else {"speed": one.speed}
+    if travel is not None:
+        start = _shown(guide, one, letters)
+        words["values"] = start + np.linspace(*travel, STEPS + 1)
+    if one.name:
+        words["name"] = one.name
+    several = [*_shared(one, letters), *(p for p in pairs.values() if {*p.members} == _names(one, letters))]
+    if len(several) > 1:
+        words["pair"] = pairs[one.at].name if one.at in pairs else letters.point[one.at]
+    made = drive(letters.link[one.link], on=letters.link[one.on], **words)
+    assert isinstance(made, Drive)
+    return made
+
+
+def _names(one: DrawnDriver, letters: DrawnLetters) -> set[str]:
+    return {letters.link[one.link], letters.link[one.on]}
+
+
+def _shared(one: DrawnDriver, letters: DrawnLetters) -> list[str]:
+    two = letters.of[letters.link[one.on]]
+    return [letter for letter in letters.of[letters.link[one.link]] if letter in two]
+
+
+def _along(guide: DrawnGuide, letters: DrawnLetters) -> float:
+    """Return how far along its line a guide's point is drawn, from where the line is said to run through."""
+    gap = letters.places[letters.point[guide.at]] - guide.through
+    return float((gap * np.exp(-1j * guide.angle)).real)
+
+
+def _shown(guide: DrawnGuide | None, one: DrawnDriver, letters: DrawnLetters) -> float:
+    """Return the value that the drawing shows of a driver."""
+    if guide is None:
+        return float(np.angle(np.exp(1j * ((letters.axis(one.link) or 0.0) - (letters.axis(one.on) or 0.0)))))
+    start = letters.point[guide.ends[0]] if guide.ends else letters.there(guide.on, guide.through)
+    gap = letters.places[letters.point[guide.at]] - letters.places[str(start)]
+    return float((gap * np.exp(-1j * guide.angle)).real)
+
+
+def _translated(problem: Problem, drawing: Drawing, letters: DrawnLetters) -> Problem:
+    """Return a problem of the mechanism in the words of its file, with points that may be meant to be joined."""
+    found = next((one for one in drawing.links if problem.where == f"links.{letters.link[one.key]}"), None)
+    if found is None:
+        return problem
+    hint = next((text for point in drawing.points_of(found.key) for text in _coinciding(point.key, drawing)), "")
+    place = found.where or f"link {found.called}"
+    return Problem(place, f"link {found.called!r}: {problem.what}", hint or problem.remedy)
+
+
+def _coinciding(key: str, drawing: Drawing) -> Iterator[str]:
+    point = next(one for one in drawing.points if one.key == key)
+    for other in drawing.points:
+        if other.key != key and abs(other.at - point.at) <= SAME * (abs(point.at) + 1.0):
+            yield f"did you mean to join {point.called} and {other.called}, which are at one place?"
+
+
+def _renamed(letters: DrawnLetters) -> Iterator[str]:
+    changed = [f"{old!r} is {new!r}" for old, new in letters.names.changed]
+    if changed:
+        more = f" and {len(changed) - 8} more" if len(changed) > 8 else ""
+        yield f"names are unique here, without dots and commas: {', '.join(changed[:8])}{more}"
+
+
+def _left_out(drawing: Drawing) -> Iterator[str]:
+    """Yield the one note that counts what is not kinematic."""
+    said = [counted(many, what) for what, many in drawing.dropped if many]
+    if said:
+        yield f"left out, for it does not move anything: {', '.join(said)}"

@@ -16,6 +16,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.files.exchange.drawing import Drawing
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.approach import drawn_value
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
@@ -23,21 +24,24 @@ from compoundkin.structure import Structure, decompose
 
 # Places nearer to each other than this part of the size are one.
 _ROUNDING = 1e-6
+# A drawing is exact that is met to this part of the size: what rounding to printed digits never leaves.
+_DIGITS = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class ShownMechanism:
     """A mechanism of one design at one pose.
 
-    `motion` is solved to the first order, over the drivers' own ranges or at the pose asked for, which is the pose
-    `pose` of it; None where it cannot be solved and is shown as drawn. `poses` are those of all links, the parts of
-    cylinders among them, numbers with their rates.
+    `poses` are those of all links, the parts of cylinders among them, numbers with their rates; `values` and `rates`
+    those of the drivers. `motion` is over the drivers' own ranges, or at the pose asked for; None where it cannot be
+    solved and is shown as drawn: then there are no values.
     """
 
     structure: Structure
     poses: Mapping[str, Pose]
+    values: Mapping[str, float]
+    rates: Mapping[str, float]
     motion: Motion | None = None
-    pose: int = 0
 
     @property
     def mechanism(self) -> Mechanism:
@@ -82,24 +86,62 @@ class ShownMechanism:
 
 
 def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None) -> ShownMechanism:
-    """Return a mechanism at driver values (radians, lengths), or at the pose of its motion nearest to its drawing.
+    """Return a mechanism at driver values (radians, lengths).
 
-    Raises InvalidInput for several designs, NotAssembled where there is no pose.
+    Without them it is the pose that is drawn exactly, else the one of its motion nearest to the drawing. Raises
+    InvalidInput for several designs, NotAssembled where there is no pose.
     """
     structure = decompose(mechanism)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            motion = solve(structure, at, order=1)
+        motion = _solved(structure, at, None)
     except (InvalidInput, NotAssembled, NotDetermined):
         if at is None and set(mechanism.drawn_poses) >= set(mechanism.links):
-            return ShownMechanism(structure, {k: p.entry((0, 0)) for k, p in mechanism.drawn_poses.items()})
+            return ShownMechanism(structure, {k: p.entry((0, 0)) for k, p in mechanism.drawn_poses.items()}, {}, {})
         raise
     if motion.inputs.designs > 1:
         what = f"it has {motion.inputs.designs} designs, a file of another program holds one"
         raise InvalidInput(Problem(mechanism.title, what, "give the dimensions of one design"))
-    pose = _nearest_to_drawing(motion)
-    return ShownMechanism(structure, {k: p.entry((0, pose)) for k, p in motion.poses.items()}, motion, pose)
+    exact = _exactly_drawn(motion) if at is None else None
+    shown, pose = (motion, _nearest_to_drawing(motion)) if exact is None else (exact, 0)
+    return ShownMechanism(
+        structure,
+        {name: place.entry((0, pose)) for name, place in shown.poses.items()},
+        {name: _entry(drive.value, pose) for name, drive in shown.drives.items()},
+        {name: _entry(drive.rate, pose) for name, drive in shown.drives.items()},
+        motion,
+    )
+
+
+def _solved(structure: Structure, at: Mapping[str, float] | None, hint: Mapping[str, Any] | None) -> Motion:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return solve(structure, at, order=1, hint=hint)
+
+
+def _entry(values: Number, pose: int) -> float:
+    """Return a driver's number at a pose; one that is the same at all of them is told once."""
+    row = np.ravel(values)
+    return float(row[min(pose, row.size - 1)])
+
+
+def _exactly_drawn(motion: Motion) -> Motion | None:
+    """Return the pose that the drawing shows, where it is one to the last digits."""
+    shown, sketch = motion.tracker.shown, motion.mechanism.sketch
+    values: dict[str, float] = {}
+    for name in motion.structure.driven if sketch else ():
+        value = drawn_value(motion.solving_order, motion.inputs, name, shown.poses, shown.beside)
+        if value is None:
+            return None
+        values[name] = float(np.ravel(value)[0])
+    if not values:
+        return None
+    try:
+        found = _solved(motion.structure, values, None)
+    except (InvalidInput, NotAssembled):
+        return None
+    off = [abs(complex(np.ravel(found.points[k].position)[0]) - complex(first_entry(p))) for k, p in sketch.items()
+           if k in motion.mechanism.carriers]  # fmt: skip
+    return found if max(off, default=np.inf) <= _DIGITS * motion.size else None
 
 
 def _nearest_to_drawing(motion: Motion) -> int:
