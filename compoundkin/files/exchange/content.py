@@ -16,7 +16,10 @@ MOST_OF_LINK = 200_000
 
 @dataclass(frozen=True)
 class Content:
-    """Bytes and where they come from: the path of a file, or "" for a text that was given itself."""
+    """Bytes, and where they come from.
+
+    `where` is the path of a file, or "" for a text that was given itself.
+    """
 
     raw: bytes
     where: str = ""
@@ -37,7 +40,10 @@ class Content:
 
     @property
     def head(self) -> str:
-        """How it begins, without blanks in front; bytes that are no text are left out."""
+        """How it begins, without blanks in front.
+
+        Bytes that are no text are left out.
+        """
         return self.raw[:4096].decode("utf-8-sig", "ignore").lstrip()
 
     @property
@@ -47,7 +53,11 @@ class Content:
 
 
 def content_of(source: str | os.PathLike[str]) -> Content:
-    """Return what is to be read: of a path the file, of a link or of a text of several lines itself."""
+    """Return what is to be read.
+
+    Of a path it is the file, of a link or of a text of several lines that itself. Nothing is ever fetched. Raises
+    InvalidInput for what cannot be read or is too large.
+    """
     if isinstance(source, str) and _is_itself(source):
         raw = source.encode("utf-8", "surrogatepass")
         if len(raw) > (MOST_BYTES if "\n" in source else MOST_OF_LINK):

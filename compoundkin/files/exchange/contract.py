@@ -28,7 +28,10 @@ class Readable(ExchangeFormat):
 
     @abstractmethod
     def recognises(self, content: Content) -> bool:
-        """Return whether a content is of this format, quickly: by how it begins or what it holds."""
+        """Return whether a content is of this format.
+
+        It is told quickly, by how it begins or what it holds.
+        """
 
     @abstractmethod
     def read(self, content: Content) -> Imported:

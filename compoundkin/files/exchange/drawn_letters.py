@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import atan2, isfinite
 
-from compoundkin.files.exchange.drawing import Drawing, DrawnPoint
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnArc, DrawnGuideway, DrawnPoint
 from compoundkin.files.exchange.foreign_names import NamesGiven, letters
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME
@@ -14,9 +14,10 @@ SAME = 1e-12
 
 
 class DrawnLetters:
-    """Names and places of the links and points of a drawing, by their keys.
+    """Names and places of a drawing's links and points.
 
-    `of` has the letters of each link by its name, `places` the place of each letter, as drawn.
+    `link` and `point` have the names by keys; `of` has the letters of each link by its name, `places` the place of each
+    letter, as drawn.
     """
 
     def __init__(self, drawing: Drawing) -> None:
@@ -57,7 +58,10 @@ class DrawnLetters:
         return next((k for k in self.of[self.link[link]] if abs(self.places[k] - at) <= near), None)
 
     def axis(self, link: str) -> float | None:
-        """Return the angle of a link's own x axis as drawn, or None where its letters are at one place."""
+        """Return the angle of a link's own x axis as drawn.
+
+        None where its letters are at one place.
+        """
         if link == FRAME:
             return 0.0
         first, *others = self.ordered(link) or [""]
@@ -68,7 +72,10 @@ class DrawnLetters:
         return atan2(line.imag, line.real)
 
     def ordered(self, link: str) -> list[str]:
-        """Return a link's letters, the second at another place than the first wherever there is one."""
+        """Return a link's letters.
+
+        The second is at another place than the first wherever there is one.
+        """
         own = self.of[self.link[link]]
         other = next((k for k in own[1:] if not self._is_one(own[0], k)), None)
         return own if other is None else [own[0], other, *(k for k in own[1:] if k != other)]
@@ -77,14 +84,20 @@ class DrawnLetters:
         return abs(self.places[one] - self.places[other]) <= SAME * self.size
 
     def directed(self, link: str, along: complex, word: str) -> None:
-        """See to it that a link has a direction: one whose letters are at one place is given a letter `along`."""
+        """See to it that a link has a direction.
+
+        One whose letters are at one place is given a letter `along`.
+        """
         if self.axis(link) is None:
             own = self.of[self.link[link]]
             self.added(f"{self.link[link]} {word}", (self.places[own[0]] if own else 0j) + along, link)
 
 
 def size_of(drawing: Drawing) -> float:
-    """Return the diagonal of the box around all that is drawn; 1 where that is nothing."""
+    """Return the diagonal of the box around all that is drawn.
+
+    It is 1 where that is nothing.
+    """
     places = [point.at for point in drawing.points] + [guide.through for guide in drawing.guides]
     if not places:
         return 1.0
@@ -95,7 +108,7 @@ def size_of(drawing: Drawing) -> float:
 
 def _merged(drawing: Drawing, size: float) -> dict[str, str]:
     """Return points that guides have for themselves where their link has another: its key by theirs."""
-    guided = {guide.at for guide in (*drawing.guides, *drawing.arcs)}
+    guided = {guide.at for guide in drawing.guides} | {one.at for one in drawing.arcs}
     own = {point.key: point for point in drawing.points if len(point.links) == 1 and point.key in guided}
     found: dict[str, str] = {}
     for key, point in own.items():
@@ -110,7 +123,10 @@ def _stands_in(other: DrawnPoint, point: DrawnPoint, size: float) -> bool:
 
 
 def check(drawing: Drawing, problems: Problems) -> None:
-    """Note what no drawing may have: keys that are not there or twice, places that are not finite, no frame."""
+    """Note what no drawing may have.
+
+    Such are keys that are not there or twice, places that are not finite.
+    """
     keys = {link.key for link in drawing.links} | {FRAME}
     known = {point.key for point in drawing.points}
     if len(known) < len(drawing.points) or len(keys - {FRAME}) < sum(link.key != FRAME for link in drawing.links):
@@ -120,6 +136,7 @@ def check(drawing: Drawing, problems: Problems) -> None:
             problems.add(point.where, f"point {point.called!r} has no finite place")
         if not point.links or not keys.issuperset(point.links):
             problems.add(point.where, f"point {point.called!r} is of a link that is not there")
-    for pair in (*drawing.guides, *drawing.arcs):
+    guided: tuple[DrawnGuideway | DrawnArc, ...] = (*drawing.guides, *drawing.arcs)
+    for pair in guided:
         if not {pair.link, pair.on} <= keys or pair.at not in known:
             problems.add(pair.where, f"{pair.key!r} names a link or a point that is not there")

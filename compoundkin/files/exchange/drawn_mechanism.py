@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
-from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnGuide
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway
 from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters, check
 from compoundkin.files.exchange.drawn_loads import loads_of
 from compoundkin.files.exchange.drawn_pairs import pairs_of
@@ -112,13 +112,13 @@ def _shared(one: DrawnDriver, letters: DrawnLetters) -> list[str]:
     return [letter for letter in letters.of[letters.link[one.link]] if letter in two]
 
 
-def _along(guide: DrawnGuide, letters: DrawnLetters) -> float:
+def _along(guide: DrawnGuideway, letters: DrawnLetters) -> float:
     """Return how far along its line a guide's point is drawn, from where the line is said to run through."""
     gap = letters.places[letters.point[guide.at]] - guide.through
     return float((gap * np.exp(-1j * guide.angle)).real)
 
 
-def _shown(guide: DrawnGuide | None, one: DrawnDriver, letters: DrawnLetters) -> float:
+def _shown(guide: DrawnGuideway | None, one: DrawnDriver, letters: DrawnLetters) -> float:
     """Return the value that the drawing shows of a driver."""
     if guide is None:
         return float(np.angle(np.exp(1j * ((letters.axis(one.link) or 0.0) - (letters.axis(one.on) or 0.0)))))

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
-from compoundkin.files.exchange.drawing import Drawing, DrawnArc, DrawnGear, DrawnGuide, DrawnRack
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnArc, DrawnGear, DrawnGuideway, DrawnRack
 from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair, arc, belt, gear, rack, slide, slot
@@ -54,7 +54,7 @@ def _wheels(drawing: Drawing, letters: DrawnLetters) -> Iterator[str]:
         yield from (link for link in (line.rack, line.pinion) if link != FRAME)
 
 
-def _guide(guide: DrawnGuide, letters: DrawnLetters) -> Pair:
+def _guide(guide: DrawnGuideway, letters: DrawnLetters) -> Pair:
     at = letters.point[guide.at]
     through, words = _line(guide, letters)
     offset = (rect(1.0, -guide.angle) * (letters.places[at] - letters.places[through])).imag
@@ -69,7 +69,7 @@ def _guide(guide: DrawnGuide, letters: DrawnLetters) -> Pair:
     return made
 
 
-def _line(guide: DrawnGuide, letters: DrawnLetters) -> tuple[str, dict[str, Any]]:
+def _line(guide: DrawnGuideway, letters: DrawnLetters) -> tuple[str, dict[str, Any]]:
     """Return the letter that a guide runs through, and its direction: toward a letter, or by its angle."""
     if guide.ends:
         return letters.point[guide.ends[0]], {"toward": letters.point[guide.ends[1]]}

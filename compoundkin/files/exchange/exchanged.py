@@ -11,9 +11,9 @@ from compoundkin.model.mechanism import Mechanism
 
 @dataclass(frozen=True, repr=False)
 class Imported:
-    """A mechanism that was read, and in sentences what did not come across or was taken in a certain way.
+    """A mechanism that was read.
 
-    `form` is the word for the format.
+    `notes` are sentences on what did not come across or was taken in a certain way, `form` is the word for the format.
     """
 
     mechanism: Mechanism
@@ -28,9 +28,9 @@ class Imported:
 
 @dataclass(frozen=True, repr=False)
 class Exported:
-    """The content of a file for another program, and in sentences what did not come across.
+    """The content of a file for another program.
 
-    `form` is the word for the format.
+    `notes` are sentences on what did not come across, `form` is the word for the format.
     """
 
     content: bytes

@@ -13,7 +13,9 @@ LONGEST = 80
 
 
 def legal(name: str) -> str:
-    """Return a name that a link or a point may have; an empty one where nothing of it is left.
+    """Return a name that a link or a point may have.
+
+    It is empty where nothing of it is left.
 
     >>> legal(" coupler.0_tip "), legal("\\t")
     ('coupler-0_tip', '')
@@ -45,7 +47,10 @@ class NamesGiven:
         self.changed: list[tuple[str, str]] = []
 
     def give(self, wanted: str, otherwise: str) -> str:
-        """Return the name wanted, or the one nearest to it that can be had; note where it differs."""
+        """Return the name wanted, or the nearest that can be had.
+
+        It is noted where it differs.
+        """
         name = unused = legal(wanted) or legal(otherwise) or "x"
         for k in count(2):
             if unused not in self._used:

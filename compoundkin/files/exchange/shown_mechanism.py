@@ -14,12 +14,11 @@ from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.files.exchange.drawing import Drawing
+from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure import Structure, decompose
 
 # Places nearer to each other than this part of the size are one.
@@ -49,7 +48,10 @@ class ShownMechanism:
         return self.structure.mechanism
 
     def place(self, link: str, point: str | complex) -> complex:
-        """Return where a point of a link is, by its letter or its place in the link's frame."""
+        """Return where a point of a link is.
+
+        It is told by its letter or its place in the link's frame.
+        """
         own = self.points[link][point] if isinstance(point, str) else point
         return complex(self.poses[link].at(own).c[0])
 
@@ -64,8 +66,11 @@ class ShownMechanism:
         return {name: {k: complex(first_entry(p)) for k, p in own.items()} for name, own in placed.items()}
 
     @cached_property
-    def ends(self) -> Mapping[str, Ends]:
-        """The sides of the pairs that are written out, numbers in the links' frames, by the pairs' names."""
+    def ends(self) -> Mapping[str, tuple[Any, ...]]:
+        """The sides of the pairs that are written out, by the pairs' names.
+
+        They are numbers in the links' frames.
+        """
         geometry = self.mechanism.geometry
         return {
             pair.name: tuple(End(*map(_number, end)) for end in pair.ends(geometry))
@@ -80,7 +85,7 @@ class ShownMechanism:
     @cached_property
     def drawing(self) -> Drawing:
         """The mechanism as a drawing of this pose. Raises InvalidInput listing all that no drawing can say."""
-        from compoundkin.files.exchange.drawing_of import drawing_of
+        from compoundkin.files.exchange.mechanism_drawn import drawing_of
 
         return drawing_of(self)
 

@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnLink, DrawnPoint
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnLink, DrawnPoint
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from compoundkin.files.mechanism_files import dumps, loads

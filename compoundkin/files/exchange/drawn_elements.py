@@ -29,7 +29,10 @@ class DrawnLink:
 
 @dataclass(frozen=True)
 class DrawnPoint:
-    """A point where it is drawn: of one link a tracer, of two links or more a pin."""
+    """A point where it is drawn.
+
+    Of one link it is a tracer, of two links or more a pin.
+    """
 
     key: str
     at: complex
@@ -44,10 +47,11 @@ class DrawnPoint:
 
 
 @dataclass(frozen=True)
-class DrawnGuide:
-    """A point of `link` runs on a straight line of the link `on`: a slide does not turn in it, a pin in a slot does.
+class DrawnGuideway:
+    """A point of `link` runs on a straight line of the link `on`.
 
-    The line is the one through `through` at `angle` (radians), both in space as drawn. `ends` are two points of `on`
+    A slide does not turn on it, a pin in a slot does. The line is the one through `through` at `angle` (radians), both
+    in space as drawn. `ends` are two points of `on`
     that the program names on the line, the angle being that from the first to the second; `reach` is from where to
     where the point may go, measured along the line from `through`.
     """
@@ -114,9 +118,10 @@ class DrawnRack:
 
 @dataclass(frozen=True)
 class DrawnDriver:
-    """What is driven: `link` against `on`, at a pin or along a guide of the key `at`.
+    """A driver of `link` against `on`.
 
-    `speed` in rad/s, counterclockwise positive, or in lengths a second along the guide; None where the program has
+    It is at the pin or the guide of the key `at`. `speed` in rad/s, counterclockwise positive, or in lengths a second
+    along the guide; None where the program has
     none. `travel` is from where to where, measured from the pose as drawn (radians or lengths); None where the program
     does not say: a full turn.
     """
@@ -132,7 +137,10 @@ class DrawnDriver:
 
 @dataclass(frozen=True)
 class DrawnMass:
-    """The mass of a link, its inertia about the mass centre; `centre` is a place as drawn."""
+    """The mass of a link, its inertia about the mass centre.
+
+    `centre` is a place as drawn.
+    """
 
     link: str
     mass: float
@@ -141,8 +149,11 @@ class DrawnMass:
 
 
 @dataclass(frozen=True)
-class DrawnForce:
-    """A force on a link at a place as drawn, x + iy in the axes of the frame, or of the link where `turns`."""
+class DrawnLoad:
+    """A force on a link at a place as drawn.
+
+    It is x + iy in space as drawn; it goes round with its link where it `turns`.
+    """
 
     link: str
     at: complex
@@ -162,13 +173,13 @@ class Drawing:
     title: str
     links: tuple[DrawnLink, ...]
     points: tuple[DrawnPoint, ...]
-    guides: tuple[DrawnGuide, ...] = ()
+    guides: tuple[DrawnGuideway, ...] = ()
     arcs: tuple[DrawnArc, ...] = ()
     gears: tuple[DrawnGear, ...] = ()
     racks: tuple[DrawnRack, ...] = ()
     drivers: tuple[DrawnDriver, ...] = ()
     masses: tuple[DrawnMass, ...] = ()
-    forces: tuple[DrawnForce, ...] = ()
+    forces: tuple[DrawnLoad, ...] = ()
     outputs: tuple[str, ...] = ()
     unit: str = ""
     units: tuple[str, str, str] | None = None

@@ -11,14 +11,14 @@ import numpy as np
 
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawing import (
+from compoundkin.files.exchange.drawn_elements import (
     Drawing,
     DrawnArc,
     DrawnDriver,
-    DrawnForce,
     DrawnGear,
-    DrawnGuide,
+    DrawnGuideway,
     DrawnLink,
+    DrawnLoad,
     DrawnMass,
     DrawnPoint,
     DrawnRack,
@@ -27,6 +27,7 @@ from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.force import Force
+from compoundkin.model.mechanism import Mechanism
 
 # A driver that makes a turn but for so much of it makes a full one.
 _ROUNDING = 1e-9
@@ -46,33 +47,39 @@ def drawing_of(shown: ShownMechanism) -> Drawing:
     problems = [*_unsaid(shown)]
     if problems:
         raise InvalidInput(problems, heading=f"{mechanism.title!r} cannot be said in a drawing")
-    found: dict[str, list[Any]] = {"guides": [], "arcs": [], "gears": [], "racks": []}
+    found: dict[str, Any] = {"guides": [], "arcs": [], "gears": [], "racks": []}
     for pair in shown.pairs:
         kind, make = WAYS[pair.table]
         found[kind].append(make(shown, pair))
+    told: dict[str, Any] = {kind: tuple(items) for kind, items in found.items()}
     points = tuple(
         DrawnPoint(letter, shown.place(links[0], letter), links) for letter, links in mechanism.carriers.items()
     )
-    units = mechanism.units
-    masses = tuple(_masses(shown))
     forces, other = _forces(shown)
     return Drawing(
         mechanism.title,
         tuple(DrawnLink(name) for name in mechanism.links),
         points,
-        **{kind: tuple(items) for kind, items in found.items()},
+        **told,
         drivers=tuple(_driver(shown, one) for one in mechanism.drives),
-        masses=masses,
+        masses=tuple(_masses(shown)),
         forces=tuple(forces),
-        outputs=tuple(
-            dict.fromkeys(o for name in mechanism.outputs if (o := name.split(".")[0]) in mechanism.carriers)
-        ),
-        unit=mechanism.unit,
-        units=None if units is None else (units.length, units.mass, units.force),
-        gravity=complex(first_entry(mechanism.gravity)) if np.any(mechanism.gravity) else None,
-        source=mechanism.source,
+        **_about(mechanism),
         dropped=tuple(_dropped(shown, other)),
     )
+
+
+def _about(mechanism: Mechanism) -> dict[str, Any]:
+    """Return what is said of the whole: units, outputs, source, gravity."""
+    units = mechanism.units
+    owners = dict.fromkeys(name.split(".")[0] for name in mechanism.outputs)
+    return {
+        "outputs": tuple(owner for owner in owners if owner in mechanism.carriers),
+        "unit": mechanism.unit,
+        "units": None if units is None else (units.length, units.mass, units.force),
+        "gravity": complex(first_entry(mechanism.gravity)) if np.any(mechanism.gravity) else None,
+        "source": mechanism.source,
+    }
 
 
 def _unsaid(shown: ShownMechanism) -> Iterator[Problem]:
@@ -88,14 +95,14 @@ def _unsaid(shown: ShownMechanism) -> Iterator[Problem]:
         yield Problem(f"drives.{name}", f"{name!r} is led, not driven at a pair", "give a driver at a pair instead")
 
 
-def _guide(shown: ShownMechanism, pair: Any) -> DrawnGuide:
+def _guide(shown: ShownMechanism, pair: Any) -> DrawnGuideway:
     on, link = pair.members
     line, _ = shown.ends[pair.name]
     at = pair.letters[0]
     along = shown.direction(on, line.direction)
     ends = (pair.letters[1], pair.letters[2]) if len(pair.letters) > 2 else None
     through = shown.place(on, complex(line.point))
-    return DrawnGuide(
+    return DrawnGuideway(
         pair.name, "slide" if pair.table == "slides" else "slot", link, on, at, through, phase(along), ends=ends
     )
 
@@ -111,17 +118,11 @@ def _gear(shown: ShownMechanism, pair: Any) -> DrawnGear:
     first, second, carrier = pair.members
     is_belt = pair.table == "belts"
     plain, other = ("crossed belt", "belt") if is_belt else ("gears", "ring")
-    sizes = pair.radii or pair.teeth
-    one, two = (float(first_entry(size)) for size in sizes)
+    one, two = (float(first_entry(size)) for size in pair.radii or pair.teeth)
+    kind: Any = other if pair.turns_alike else plain
+    at, other_at = pair.letters
     return DrawnGear(
-        pair.name,
-        other if pair.turns_alike else plain,  # type: ignore[arg-type]
-        first,
-        second,
-        carrier,
-        *pair.letters,
-        sizes=(one, two),
-        in_teeth=pair.radii is None,
+        pair.name, kind, first, second, carrier, at, other_at, sizes=(one, two), in_teeth=pair.radii is None
     )
 
 
@@ -169,18 +170,19 @@ def _masses(shown: ShownMechanism) -> Iterator[DrawnMass]:
         )
 
 
-def _forces(shown: ShownMechanism) -> tuple[list[DrawnForce], int]:
+def _forces(shown: ShownMechanism) -> tuple[list[DrawnLoad], int]:
     """Return the forces that do not change in time, and how many other loads there are."""
     found = []
     for item in shown.mechanism.loads.values():
-        amount = item.force if isinstance(item, Force) else None
-        turns = amount is not None and item.fixed_in == item.link
-        if np.iscomplexobj(amount) and np.size(amount) == 1 and (turns or item.fixed_in == FRAME):
-            own = item.at if isinstance(item.at, str) else complex(first_entry(item.at))
-            force = complex(first_entry(amount))
-            place = shown.place(item.link, own)
+        load: Any = item if isinstance(item, Force) else None
+        if load is None or np.size(load.force) != 1 or not np.iscomplexobj(load.force):
+            continue
+        turns = load.fixed_in == load.link
+        if turns or load.fixed_in == FRAME:
+            force = complex(first_entry(load.force))
+            place = shown.place(load.link, load.at if isinstance(load.at, str) else complex(first_entry(load.at)))
             found.append(
-                DrawnForce(item.link, place, shown.direction(item.link, force) if turns else force, turns, item.name)
+                DrawnLoad(load.link, place, shown.direction(load.link, force) if turns else force, turns, load.name)
             )
     return found, len(shown.mechanism.loads) - len(found)
 
