@@ -17,7 +17,7 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
     {
         "mechanism": {".toml": "toml", ".json": "json"},
         "table": {".csv": "csv", ".json": "json", ".npz": "npz", ".parquet": "parquet"},
-        "picture": {".svg": "svg", ".png": "png", ".pdf": "pdf"},
+        "picture": {".svg": "svg", ".png": "png", ".pdf": "pdf", ".tex": "tikz"},
         "plot": {".png": "png", ".svg": "svg", ".pdf": "pdf"},
         "animation": {".gif": "gif", ".mp4": "mp4", ".svg": "svg"},
         "page": {".html": "html", ".htm": "html"},

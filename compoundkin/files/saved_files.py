@@ -139,9 +139,9 @@ def save(what: Any, path: str | os.PathLike[str]) -> None:
     """Save anything to a file in the form that its suffix tells.
 
     A mechanism is a .toml or .json file; a motion, its forces or a table .csv or .json (angles in degrees), .npz or
-    .parquet (radians); a picture .svg, .png, .pdf; a plot the same; an animation .gif, .mp4, .svg; a page .html; a
-    report .txt, .md, .json, .html; a compiled path .c, .py, .js, .m. Raises InvalidInput for another suffix, for what
-    cannot be saved, where the file cannot be written, or where a library is missing.
+    .parquet (radians); a picture .svg, .png, .pdf, .tex; a plot .svg, .png, .pdf; an animation .gif, .mp4, .svg; a
+    page .html; a report .txt, .md, .json, .html; a compiled path .c, .py, .js, .m. Raises InvalidInput for another
+    suffix, for what cannot be saved, where the file cannot be written, or where a library is missing.
 
     >>> import tempfile
     >>> from pathlib import Path

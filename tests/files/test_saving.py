@@ -66,7 +66,7 @@ def test_a_motion_is_saved_as_its_whole_table(tmp_path: Path) -> None:
     [
         ("plot", "a.gif", "a plot is not saved as '.gif', an animation is; plots end in .png, .svg, .pdf"),
         ("table", "a.xlsx", "a table is not saved as '.xlsx'; tables end in .csv, .json, .npz, .parquet"),
-        ("picture", "a", "the file has no suffix; pictures end in .svg, .png, .pdf"),
+        ("picture", "a", "the file has no suffix; pictures end in .svg, .png, .pdf, .tex"),
         ("mechanism", "a.md", "a mechanism is not saved as '.md', a report is; mechanism files end in .toml, .json"),
         ("page", "a.json", "a mechanism, a table, a report and a study are; pages end in .html"),
         ("report", "a.csv", "a report is not saved as '.csv', a table is; reports end in .txt, .md, .json, .html"),

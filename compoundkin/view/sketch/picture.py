@@ -16,6 +16,7 @@ from compoundkin.files.saved_files import Savable
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.shapes import Shape
 from compoundkin.view.sketch.svg import NATURAL, converted, inline, svg
+from compoundkin.view.sketch.tikz import tikz
 
 # How large the drawn part of a picture is, in picture units: at least and at most its longer side. The middle of the
 # links' lengths is drawn at least so long, if that is possible: many links make a large picture with fine lines.
@@ -160,10 +161,9 @@ def smooth(places: Number) -> Number:
 class Picture(Savable):
     """The shapes of a picture in picture units, with its size.
 
-    It is how large it is in them, and shown (`size`, pixels of its longer side).
-
-    Without a `size` texts are as large as those of a page, and no picture larger than a page. `window` tells where a
-    place of the mechanism is on it; None where a picture is not to scale.
+    It is how large it is in them, and shown (`size`, pixels of its longer side). Without a `size` texts are as
+    large as those of a page, and no picture larger than a page. `window` tells where a place of the mechanism is on it;
+    None where a picture is not to scale.
     """
 
     saved_as: ClassVar[Kind] = "picture"
@@ -179,9 +179,11 @@ class Picture(Savable):
     @cached_property
     def svg(self) -> str:
         """Its source as SVG."""
-        longer = max(self.width, self.height)
-        size = min(NATURAL * longer, PAGE) if self.size is None else self.size
-        return svg(self.shapes, self.width, self.height, size, self.title, self.description)
+        return svg(self.shapes, self.width, self.height, self._longer_side, self.title, self.description)
+
+    @property
+    def _longer_side(self) -> float:
+        return min(NATURAL * max(self.width, self.height), PAGE) if self.size is None else self.size
 
     @property
     def inline(self) -> str:
@@ -189,10 +191,13 @@ class Picture(Savable):
         return inline(self.shapes, self.width, self.height, self.title, self.description)
 
     def content(self, form: str) -> bytes:
-        """Return the bytes of a file in the form "svg", "png" or "pdf".
+        """Return the bytes of a file in the form "svg", "png", "pdf" or "tikz".
 
         Raises InvalidInput for PNG and PDF where CairoSVG is not installed.
         """
+        if form == "tikz":
+            told = self.title, self.description
+            return tikz(self.shapes, self.width, self.height, self._longer_side, *told).encode("utf-8")
         return self.svg.encode("utf-8") if form == "svg" else converted(self.svg, form)
 
     def _repr_svg_(self) -> str:

@@ -157,6 +157,16 @@ def page_css() -> str:
     return "\n".join((f":root{{{light}}}", asked, system, *rules))
 
 
+def declarations(name: str) -> dict[str, str]:
+    """Return the rules of a class on light paper, by their names.
+
+    >>> declarations("hatch")["stroke-width"]
+    '1'
+    """
+    inside = _rule(name, itemgetter(0)).partition("{")[2].removesuffix("}")
+    return dict(rule.split(":") for rule in inside.split(";"))
+
+
 def _sheets(names: Iterable[str]) -> tuple[str, str]:
     """The rules of classes on light paper, and those that differ on dark."""
     both = [(_rule(name, itemgetter(0)), _rule(name, itemgetter(1))) for name in sorted(names)]

@@ -1,0 +1,192 @@
+"""Shapes as TikZ: a document of LaTeX that stands alone, its picture with all its styles, to be edited by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from compoundkin.view.sketch.shapes import (
+    ArcShape,
+    Band,
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    ShapeGroup,
+    Strokes,
+    Text,
+)
+from compoundkin.view.sketch.sketch_style import declarations
+from compoundkin.view.sketch.svg import BASELINE, number
+from compoundkin.view.sketch.tex_text import tex_comment, tex_text
+
+# TeX's big points of a pixel: 72 and 96 to the inch.
+OF_PIXEL = 0.75
+# So many points of a line stand in a line of the file.
+POINTS_IN_LINE = 8
+ANCHORS = {"start": " west", "middle": "", "end": " east"}
+HALO = "halo"
+_SAME: Mapping[str, str] = {
+    "stroke-linecap": "line cap",
+    "stroke-linejoin": "line join",
+    "fill-opacity": "fill opacity",
+    "opacity": "opacity",
+}
+
+
+def tikz(shapes: Sequence[Shape], width: float, height: float, size: float, title: str, description: str = "") -> str:
+    r"""Return a LaTeX document of a picture of `width` by `height` picture units. It is as large as its PDF.
+
+    Its longer side has `size` pixels of 1/96 inch. All that the picture needs stands within it.
+
+    >>> print(tikz((), 100, 50, 200, "Empty").splitlines()[5])
+    \begin{tikzpicture}[
+    """
+    unit = OF_PIXEL * size / max(width, height)
+    names = sorted({name for style in _styles(shapes) for name in style.split()})
+    rules = {name: declarations(name) for name in names}
+    colours = sorted({value for own in rules.values() for value in own.values() if value.startswith("#")})
+    about = [tex_comment(text) for text in (title, description) if text]
+    head = [
+        *about,
+        "% Of a document of yours: \\usepackage{tikz} and the tikzpicture alone. Numbers are picture units, y upward.",
+        "\\RequirePackage{fix-cm}",
+        "\\documentclass[tikz]{standalone}",
+        "\\begin{document}",
+        "\\begin{tikzpicture}[",
+        f"  x={_length(unit)}, y={_length(unit)}, line width={_length(unit)}, inner sep=0pt,",
+        *(f"  ck-{name}/.style={{{', '.join(_style(name, own, unit))}}}," for name, own in rules.items()),
+        "]",
+        *(f"\\definecolor{{{_colour(one)}}}{{HTML}}{{{one[1:].upper()}}}" for one in colours),
+        f"\\useasboundingbox (0,0) rectangle ({number(width)},{number(height)});",
+    ]
+    return "\n".join([*head, *_commands(shapes, height, unit), "\\end{tikzpicture}", "\\end{document}", ""])
+
+
+def _styles(shapes: Iterable[Shape]) -> Iterator[str]:
+    for shape in shapes:
+        yield shape.style
+        if isinstance(shape, ShapeGroup):
+            yield from _styles(shape.shapes)
+
+
+def _colour(value: str) -> str:
+    return f"ck{value[1:]}" if value.startswith("#") else value
+
+
+def _length(value: float) -> str:
+    return f"{value:.3f}".rstrip("0").rstrip(".") + "bp"
+
+
+def _style(name: str, rules: Mapping[str, str], unit: float) -> Iterator[str]:
+    return _behind(rules, unit) if name == HALO else _options(rules, unit)
+
+
+def _options(rules: Mapping[str, str], unit: float) -> Iterator[str]:
+    """Yield what a class of the style sheet looks like, in words of TikZ."""
+    is_text = "font-size" in rules
+    for key, value in rules.items():
+        if key == "fill":
+            yield f"{'text' if is_text else 'fill'}={_colour(value)}"
+        elif key == "stroke":
+            yield f"draw={_colour(value)}"
+        elif key == "stroke-width":
+            yield f"line width={_length(float(value) * unit)}"
+        elif key == "stroke-dasharray":
+            yield f"dash pattern={_dashes(value, unit)}"
+        elif key == "font-size":
+            size = float(value.removesuffix("px")) * unit
+            yield f"font={_font(rules, size)}, anchor=base, yshift={_length(-BASELINE * size)}"
+        elif key in _SAME:
+            yield f"{_SAME[key]}={value}"
+
+
+def _dashes(lengths: str, unit: float) -> str:
+    parts = [_length(float(part) * unit) for part in lengths.split()]
+    return " ".join(f"{'off' if k % 2 else 'on'} {part}" for k, part in enumerate(parts))
+
+
+def _behind(rules: Mapping[str, str], unit: float) -> Iterator[str]:
+    """Yield what a halo looks like: TeX's letters have no edge, so that it is a box behind them."""
+    yield f"fill={_colour(rules['stroke'])}, inner sep={_length(float(rules['stroke-width']) * unit / 2.0)}"
+
+
+def _font(rules: Mapping[str, str], size: float) -> str:
+    slant = "\\itshape" if rules.get("font-style") == "italic" else ""
+    weight = "\\bfseries" if rules.get("font-weight") == "bold" else ""
+    return f"\\fontsize{{{_length(size)}}}{{{_length(1.2 * size)}}}{slant}{weight}\\selectfont"
+
+
+def _commands(shapes: Sequence[Shape], height: float, unit: float) -> Iterator[str]:
+    """Yield commands that draw shapes, one after another."""
+    for before, shape in pairwise([None, *shapes]):
+        if isinstance(shape, ShapeGroup):
+            if shape.title:
+                yield tex_comment(shape.title)
+            if shape.style:
+                yield f"\\begin{{scope}}[{_names(shape.style)}, transparency group]"
+            yield from _commands(shape.shapes, height, unit)
+            if shape.style:
+                yield "\\end{scope}"
+        elif isinstance(shape, Text):
+            if not _is_of_halo(shape, before):
+                yield _node(shape, height)
+        elif shape is not None:
+            band = f", line width={_length(shape.width * unit)}" if isinstance(shape, Band) else ""
+            yield f"\\path[{_names(shape.style)}{band}] {_way(shape, height)};"
+
+
+def _names(style: str) -> str:
+    # of two classes of one shape the later in the alphabet counts
+    return ", ".join(f"ck-{name}" for name in sorted(style.split()))
+
+
+def _is_of_halo(shape: Text, before: Shape | None) -> bool:
+    """Whether the text before is the same with a halo, which is a node with both."""
+    if not isinstance(before, Text) or HALO not in before.style.split():
+        return False
+    return (before.at, before.text) == (shape.at, shape.text)
+
+
+def _node(shape: Text, height: float) -> str:
+    turn = f"rotate={number(-shape.angle)}, " if shape.angle else ""
+    anchor = f", anchor=base{ANCHORS[shape.anchor]}" if shape.anchor != "middle" else ""
+    return f"\\node[{turn}{_names(shape.style)}{anchor}] at {_place(shape.at, height)} {{{tex_text(shape.text)}}};"
+
+
+def _place(point: complex, height: float) -> str:
+    return f"({number(point.real)},{number(height - point.imag)})"
+
+
+def _line(points: Sequence[complex], height: float) -> str:
+    places = [_place(point, height) for point in points]
+    rows = [places[k : k + POINTS_IN_LINE] for k in range(0, len(places), POINTS_IN_LINE)]
+    return "\n  -- ".join(" -- ".join(row) for row in rows)
+
+
+def _way(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape, height: float) -> str:
+    """The way of a shape's line."""
+    if isinstance(shape, CircleShape):
+        return f"{_place(shape.centre, height)} circle[radius={number(shape.radius)}]"
+    if isinstance(shape, ArcShape):
+        return _arc(shape, height)
+    if isinstance(shape, Strokes):
+        return "\n  ".join(_line(line, height) for line in shape.lines)
+    closed = isinstance(shape, Polygon) or (isinstance(shape, Band) and shape.closed)
+    return _line(shape.points, height) + (" -- cycle" if closed else "")
+
+
+def _arc(shape: ArcShape, height: float) -> str:
+    """An arc of at most half a turn about its middle, y upward."""
+    chord = (shape.stop - shape.start).conjugate()
+    radius = max(shape.radius, abs(chord) / 2.0)
+    off = (radius**2 - abs(chord) ** 2 / 4.0) ** 0.5
+    way = -1.0 if shape.sweep else 1.0
+    arm = -chord / 2.0 - 1j * way * off * (chord / abs(chord) if chord else 1.0)
+    start = float(np.rad2deg(np.angle(arm)))
+    turned = way * 2.0 * float(np.rad2deg(np.arcsin(min(1.0, abs(chord) / 2.0 / radius)))) if chord else 0.0
+    return (
+        f"{_place(shape.start, height)} arc[start angle={start:.2f}, delta angle={turned:.2f}, radius={number(radius)}]"
+    )
