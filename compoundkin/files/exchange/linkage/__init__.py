@@ -1,0 +1,1 @@
+"""`.linkage2`, the files of the Linkage program: read, and written."""

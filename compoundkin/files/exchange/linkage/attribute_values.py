@@ -1,0 +1,61 @@
+"""The values of an element's attributes: numbers, flags, ids; what is none is a problem of its line."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.exchange.xml_tree import XmlElement
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?")
+_WHOLE = re.compile(r"[+-]?\d{1,9}")
+_FLAGS = {"": False, "false": False, "true": True}
+
+
+@dataclass(frozen=True)
+class AttributeValues:
+    """An element's attributes as values. Those that are missing are false, 0 or nothing."""
+
+    element: XmlElement
+    problems: Problems
+
+    @property
+    def where(self) -> str:
+        """The element by its line and its id, for messages."""
+        named = self.element.attributes.get("id", "").strip()[:20]
+        return f"line {self.element.line}, {self.element.tag.lower()} {named}".rstrip()
+
+    def text(self, name: str) -> str:
+        """Return a text."""
+        return self.element.attributes.get(name, "").strip()
+
+    def number(self, name: str, otherwise: float = 0.0) -> float:
+        """Return a number."""
+        text = self.text(name)
+        value = float(text) if _NUMBER.fullmatch(text) else math.nan
+        if text and not math.isfinite(value):
+            self.problems.add(self.where, f"{name} {text[:40]!r} is not a number", "write it as 12.5")
+        return value if math.isfinite(value) else otherwise
+
+    def flag(self, name: str) -> bool:
+        """Return whether something holds."""
+        text = self.text(name).lower()
+        if text not in _FLAGS:
+            self.problems.add(self.where, f"{name} {text[:40]!r} is neither true nor false", "write true or false")
+        return _FLAGS.get(text, False)
+
+    def whole(self, name: str) -> int | None:
+        """Return a whole number, an id for one, or nothing."""
+        text = self.text(name)
+        if text and not _WHOLE.fullmatch(text):
+            self.problems.add(self.where, f"{name} {text[:40]!r} is not a whole number", "write it as 12")
+        return int(text) if _WHOLE.fullmatch(text) else None
+
+    def id(self) -> int | None:
+        """Return the id of an element that is nothing without one."""
+        found = self.whole("id")
+        if not self.text("id"):
+            self.problems.add(self.where, "it has no id", "give it one")
+        return found

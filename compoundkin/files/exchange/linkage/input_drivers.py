@@ -1,0 +1,72 @@
+"""What drives: inputs of connectors, and actuators, which are a barrel and a rod with a driven slide."""
+
+from __future__ import annotations
+
+from cmath import phase
+from collections.abc import Iterator
+from math import pi, radians
+
+from compoundkin.files.exchange.drawing import DrawnDriver, DrawnGuide
+from compoundkin.files.exchange.linkage.joined_links import JoinedLinks, rod
+from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink
+from compoundkin.model.geometry import FRAME
+
+# Turns a minute are clockwise there.
+CLOCKWISE = -1.0
+_SECONDS = 60.0
+
+
+def inputs_of(joined: JoinedLinks) -> Iterator[DrawnDriver]:
+    """Yield the drivers at connectors. At anchors against the frame, else against the link listed first."""
+    for one in joined.file.connectors.values():
+        if not one.input:
+            continue
+        bodies = joined.at(one.id)
+        if len(bodies) == 2:
+            yield _input(one, bodies[1], bodies[0])
+        else:
+            joined.problems.add(
+                one.where, f"it is an input, but {_why(one, bodies)}", "turn a link at it, or clear its input"
+            )
+
+
+def _input(one: LinkageConnector, link: str, on: str) -> DrawnDriver:
+    speed = None if one.manual or not one.rpm else CLOCKWISE * one.rpm * 2.0 * pi / _SECONDS
+    sense = CLOCKWISE if one.rpm >= 0 else -CLOCKWISE
+    travel = (0.0, sense * radians(abs(one.range))) if one.range else None
+    return DrawnDriver(link, on, str(one.id), speed, travel, where=one.where)
+
+
+def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:
+    if not one.anchor:
+        return "joins no two links that turn against each other"
+    return "no link turns at it: two anchors hold a link fast" if bodies == (FRAME,) else "holds several links"
+
+
+def actuators_of(joined: JoinedLinks) -> Iterator[tuple[DrawnGuide, DrawnDriver]]:
+    """Yield the slide in each actuator, and what drives it."""
+    for link in joined.links:
+        if not link.actuator or len(link.connectors) != 2:
+            continue
+        if not link.throw > 0:
+            joined.problems.add(link.where, "throw must be positive", "give the way that it moves by")
+        first, second = (joined.file.connectors[id_] for id_ in link.connectors)
+        held = set(joined.at(first.id)) & set(joined.at(second.id))
+        if first.at == second.at or held:
+            what = "one link holds both its ends" if held else "both its ends are at one place"
+            joined.problems.add(link.where, f"{what}: it cannot change its length", "pin it to two links")
+        else:
+            yield _actuator(link, first, second, joined)
+
+
+def _actuator(
+    link: LinkageLink, first: LinkageConnector, second: LinkageConnector, joined: JoinedLinks
+) -> tuple[DrawnGuide, DrawnDriver]:
+    """Return a slide along the line between two pins, driven from the length drawn to that and the throw."""
+    barrel, moving = joined.body(link.key), joined.body(rod(link))
+    angle = phase(second.at - first.at)
+    guide = DrawnGuide(link.key, "slide", moving, barrel, str(second.id), first.at, angle, where=link.where)
+    sense = -1.0 if link.cpm < 0 else 1.0
+    speed = sense * 2.0 * link.throw * abs(link.cpm) / _SECONDS if link.cpm else None
+    travel = (0.0, sense * link.throw)
+    return guide, DrawnDriver(moving, barrel, link.key, speed, travel, name=link.name, where=link.where)

@@ -1,0 +1,203 @@
+"""Which links of a file are one link: those fastened, held by two anchors, or joined by two connectors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from compoundkin.files.exchange.drawing import DrawnLink
+from compoundkin.files.exchange.linkage.linkage_records import (
+    Fastening,
+    LinkageConnector,
+    LinkageFile,
+    LinkageLink,
+)
+from compoundkin.files.exchange.problems import Problems
+from compoundkin.model.geometry import FRAME
+
+# No connector of a mechanism joins more; drawings of something else may.
+_MOST_AT_ONE = 40
+
+
+class JoinedLinks:
+    """The links of a file as rigid bodies, by keys. An actuator is two, a barrel and a rod."""
+
+    def __init__(self, file: LinkageFile, problems: Problems) -> None:
+        self.file, self.problems = file, problems
+        self.notes: list[str] = []
+        self._parent: dict[str, str] = {FRAME: FRAME}
+        self._at: dict[int, list[str]] = {id_: [FRAME] if c.anchor else [] for id_, c in file.connectors.items()}
+        self._named = set(_named(file))
+        self.links = [link for link in file.links if self._is_one(link)]
+        for link in self.links:
+            self._place(link)
+        self._fasten_all()
+        self._turn_together()
+        while self._join_once():
+            pass
+
+    def body(self, key: str) -> str:
+        """Return the key of the rigid body that a link is part of."""
+        while self._parent[key] != key:
+            self._parent[key] = self._parent[self._parent[key]]
+            key = self._parent[key]
+        return key
+
+    def at(self, connector: int) -> tuple[str, ...]:
+        """Return the bodies that meet at a connector, in the order of the file."""
+        return tuple(dict.fromkeys(map(self.body, self._at[connector])))
+
+    def moving_at(self, connector: int) -> tuple[str, ...]:
+        """Return those of them that move."""
+        return tuple(body for body in self.at(connector) if body != FRAME)
+
+    @property
+    def drawn(self) -> Iterator[DrawnLink]:
+        """Yield the moving bodies with their names."""
+        members: dict[str, list[LinkageLink]] = {}
+        for link in self.links:
+            members.setdefault(self.body(link.key), []).append(link)
+        for body, links in members.items():
+            if body != FRAME:
+                yield DrawnLink(body, _name(links), links[0].where)
+        for link in self.links:
+            if link.actuator and self.body(rod(link)) == rod(link):
+                yield DrawnLink(rod(link), f"{link.called} rod", link.where)
+
+    def _is_one(self, link: LinkageLink) -> bool:
+        """Return whether a link is more than the mark of one connector, whose ids are all there."""
+        known = [c for c in link.connectors if self._has(c, link)]
+        alone = len(known) == 1 and not (link.gear or link.actuator or _is_fastened(link.fastened))
+        used = alone and (self.file.connectors[known[0]].input or link.id in self._named)
+        if not known or (alone and not used):
+            if not known:
+                self.file.drop("link without connectors")
+            return False
+        return True
+
+    def _has(self, connector: int, link: LinkageLink) -> bool:
+        if connector in self.file.connectors:
+            return True
+        if connector not in self.file.drawings[1]:
+            self.problems.add(link.where, f"connector {connector} is not there", "take it out of the link")
+        return False
+
+    def _place(self, link: LinkageLink) -> None:
+        known = [c for c in link.connectors if c in self.file.connectors]
+        self._parent[link.key] = link.key
+        if not link.actuator:
+            for connector in known:
+                self._at[connector].append(link.key)
+            return
+        self._parent[rod(link)] = rod(link)
+        if len(known) != 2 or len(link.connectors) != 2:
+            what = f"an actuator has two connectors, this has {len(link.connectors)}"
+            self.problems.add(link.where, what, "pin further links to its ends")
+        for connector, part in zip(known[:2], (link.key, rod(link)), strict=False):
+            self._at[connector].append(part)
+
+    def _join(self, one: str, two: str) -> None:
+        one, two = self.body(one), self.body(two)
+        if one != two:
+            kept, gone = (two, one) if two == FRAME else (one, two)
+            self._parent[gone] = kept
+
+    def _fasten_all(self) -> None:
+        for link in self.links:
+            for other in self._fastened_to(link.fastened, link.where):
+                if link.actuator:
+                    self.problems.add(link.where, "an actuator cannot be fastened: it changes its length")
+                self._join(other, link.key)
+        for connector in self.file.connectors.values():
+            for other in self._fastened_to(connector.fastened, connector.where):
+                own = self._sole(connector, connector.where)
+                if own:
+                    self._join(other, own)
+                elif other not in self._at[connector.id]:
+                    self._at[connector.id].append(other)
+
+    def _fastened_to(self, fastened: Fastening, where: str) -> Iterator[str]:
+        """Yield the links that something is fastened to; pictures are none."""
+        if fastened.link is not None and fastened.link not in self.file.drawings[0]:
+            found = [link for link in self.links if link.id == fastened.link]
+            if len(found) == 1 and not found[0].actuator:
+                yield found[0].key
+            else:
+                self.problems.add(where, f"it is fastened to link {fastened.link}, {_of_those(found)}")
+        for id_ in fastened.connectors:
+            if id_ in self.file.connectors:
+                sole = self._sole(self.file.connectors[id_], where)
+                yield from [sole] if sole else []
+            elif id_ not in self.file.drawings[1]:
+                self.problems.add(where, f"it is fastened to connector {id_}, which is not there")
+
+    def _sole(self, connector: LinkageConnector, where: str) -> str:
+        """Return the one body at a connector, or nothing where it is in no link."""
+        bodies = self.at(connector.id)
+        if len(bodies) > 1:
+            what = f"it is fastened at {connector.called}, where several links meet"
+            self.problems.add(where, what, "fasten it to one of the links")
+        return bodies[0] if bodies else ""
+
+    def _turn_together(self) -> None:
+        """Join the links that an input turns: on an anchor all, else all but the one listed first."""
+        for connector in self.file.connectors.values():
+            if connector.input:
+                turned = self._at[connector.id][1:]
+                for other in turned[1:]:
+                    self._join(turned[0], other)
+
+    def _join_once(self) -> bool:
+        """Join the bodies that meet at two places, which cannot move against each other."""
+        met: dict[tuple[str, str], int] = {}
+        joined = False
+        for id_, connector in self.file.connectors.items():
+            bodies = self.at(id_)
+            if len(bodies) > _MOST_AT_ONE:
+                self.problems.add(connector.where, f"it joins {len(bodies)} links", f"at most {_MOST_AT_ONE} can meet")
+                bodies = ()
+            for one, two in combinations(sorted(bodies), 2):
+                first = met.setdefault((one, two), id_)
+                if self.file.connectors[first].at != connector.at and self.body(one) != self.body(two):
+                    self._join(one, two)
+                    self._tell((one, two), (first, id_))
+                    joined = True
+        return joined
+
+    def _tell(self, bodies: tuple[str, str], connectors: tuple[int, int]) -> None:
+        """Note that two links are one; a link on two anchors is one with the frame as a matter of course."""
+        if FRAME not in bodies:
+            one, two = (
+                next(link.called for link in self.links if link.key == body.split(" rod")[0]) for body in bodies
+            )
+            self.notes.append(
+                f"{one} and {two} share connectors {connectors[0]} and {connectors[1]}: they are one link"
+            )
+
+
+def rod(link: LinkageLink) -> str:
+    """Return the key of the moving part of an actuator, at its second connector."""
+    return f"{link.key} rod"
+
+
+def _is_fastened(fastened: Fastening) -> bool:
+    return fastened.link is not None or bool(fastened.connectors)
+
+
+def _named(file: LinkageFile) -> Iterator[int | None]:
+    """Yield the ids of links that a fastening or a ratio names."""
+    yield from (one.fastened.link for one in file.links)
+    yield from (one.fastened.link for one in file.connectors.values())
+    yield from (id_ for ratio in file.ratios for id_, _ in ratio.wheels)
+
+
+def _name(links: list[LinkageLink]) -> str:
+    """Return the names of the links that are one, or "link 0+1" by their ids."""
+    names = list(dict.fromkeys(link.name for link in links if link.name))
+    return "+".join(names) if names else "link " + "+".join(str(link.id) for link in links)
+
+
+def _of_those(found: list[LinkageLink]) -> str:
+    if not found:
+        return "which is not there"
+    return "which changes its length" if len(found) == 1 else f"and {len(found)} links have this id"

@@ -1,0 +1,57 @@
+"""The format of the Linkage program: XML in files with the suffix `.linkage2`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import ClassVar
+
+from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.contract import Readable
+from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.exchanged import Imported
+from compoundkin.files.exchange.linkage.linkage_reader import drawing_in
+from compoundkin.structure import decompose
+from compoundkin.structure.assur_groups import roman
+
+# The highest class of group that the program's own solver knows.
+DYADS = 2
+
+
+class LinkageFormat(Readable):
+    """Files of the Linkage program, which solves dyads only."""
+
+    name: ClassVar[str] = "linkage"
+    program: ClassVar[str] = "Linkage"
+    title: ClassVar[str] = "Linkage file (.linkage2)"
+    suffix: ClassVar[str] = ".linkage2"
+
+    def recognises(self, content: Content) -> bool:
+        """Return whether it begins as XML with an element `linkage2`, or nearly."""
+        return content.head.startswith("<") and "<linkage" in content.head
+
+    def read(self, content: Content) -> Imported:
+        """Return the mechanism, and what the program could not make of it."""
+        drawing, hints = drawing_in(content)
+        found = mechanism_of(drawing, self.name, content.where)
+        return replace(found, notes=(*found.notes, *_of_structure(found, hints)))
+
+
+def _of_structure(found: Imported, hints: str) -> list[str]:
+    """Return what is told of the structure: groups that the program cannot simulate, freedoms that nothing drives."""
+    structure = decompose(found.mechanism)
+    notes = []
+    for group in structure.groups:
+        if group.class_ > DYADS:
+            links = ", ".join(group.links)
+            notes.append(
+                f"Linkage cannot simulate it: {links} are an Assur group of class {roman(group.class_)}"
+                f" ({group.name}), and its solver knows dyads only; here all its configurations are found"
+            )
+    if not found.mechanism.drives:
+        notes.append("nothing drives it: no connector is an input, no link an actuator")
+    if hints and structure.faults:
+        notes.append(hints)
+    return notes
+
+
+FORMAT = LinkageFormat()

@@ -1,0 +1,98 @@
+"""From the text of a `.linkage2` file to a drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.drawing import Drawing, DrawnGear, DrawnGuide, DrawnPoint
+from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of
+from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
+from compoundkin.files.exchange.linkage.joining_hints import hint, unjoined
+from compoundkin.files.exchange.linkage.linkage_records import linkage_file
+from compoundkin.files.exchange.linkage.ratio_gears import gears_of
+from compoundkin.files.exchange.linkage.slider_guides import Slider, arcs_of, guides_of, limit_notes, sliders_of
+from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.exchange.xml_tree import xml_tree
+from compoundkin.model.geometry import FRAME
+
+
+def drawing_in(content: Content) -> tuple[Drawing, str]:
+    """Return the drawing in a file, and a hint.
+
+    The hint names connectors that may be meant to be joined. Raises InvalidInput with all that is wrong.
+    """
+    problems = Problems(content.where)
+    file = linkage_file(xml_tree(content.text, content.where), problems)
+    joined = JoinedLinks(file, problems)
+    size = _size([one.at for one in file.connectors.values()])
+    sliders, gears = sliders_of(joined), tuple(gears_of(joined))
+    actuators = list(actuators_of(joined))
+    guides = (*guides_of(sliders, size), *(guide for guide, _ in actuators))
+    drivers = (*inputs_of(joined), *(driver for _, driver in actuators))
+    hints = hint(list(unjoined(joined, size)))
+    _find_floating(joined, sliders, guides, gears, hints)
+    problems.raise_if_any()
+    points = tuple(_points(joined))
+    drawing = Drawing(
+        content.name or "Linkage",
+        tuple(joined.drawn),
+        points,
+        guides,
+        tuple(arcs_of(sliders)),
+        gears,
+        drivers=drivers,
+        outputs=tuple(point.key for point in points if file.connectors[int(point.key)].draw),
+        unit=file.unit,
+        source="a file of the Linkage program",
+        notes=(*file.notes, *joined.notes, *limit_notes(sliders, file.unit, size)),
+        dropped=tuple(file.dropped.items()),
+    )
+    return drawing, hints
+
+
+def _size(places: list[complex]) -> float:
+    """Return the diagonal of the box around all places; 1 where that is nothing."""
+    wide = max((p.real for p in places), default=0.0) - min((p.real for p in places), default=0.0)
+    high = max((p.imag for p in places), default=0.0) - min((p.imag for p in places), default=0.0)
+    return abs(complex(wide, high)) or 1.0
+
+
+def _points(joined: JoinedLinks) -> Iterator[DrawnPoint]:
+    for one in joined.file.connectors.values():
+        bodies = joined.at(one.id)
+        if bodies:
+            yield DrawnPoint(str(one.id), one.at, bodies, one.name, one.where)
+        else:
+            joined.file.drop("lone connector")
+
+
+def _find_floating(
+    joined: JoinedLinks, sliders: list[Slider], guides: tuple[DrawnGuide, ...], gears: tuple[DrawnGear, ...], hints: str
+) -> None:
+    """Note links that nothing joins to the frame, even by others."""
+    met = [set(joined.at(id_)) for id_ in joined.file.connectors]
+    met += [{*slider.bodies, slider.on} for slider in sliders]
+    met += [{guide.link, guide.on} for guide in guides] + [{gear.first, gear.second, gear.carrier} for gear in gears]
+    reached = _reached(met)
+    if not any(one.anchor for one in joined.file.connectors.values()):
+        joined.problems.add("", "no connector is an anchor: nothing is fixed", "make the fixed connectors anchors")
+        return
+    for link in joined.drawn:
+        if link.key not in reached:
+            what = f"{link.called} floats: nothing joins it to the anchors"
+            joined.problems.add(link.where, what, hints or "pin it to a link")
+
+
+def _reached(met: list[set[str]]) -> set[str]:
+    """Return the bodies that hang together with the frame."""
+    meets: dict[str, list[int]] = {}
+    for k, bodies in enumerate(met):
+        for body in bodies:
+            meets.setdefault(body, []).append(k)
+    reached, waiting = {FRAME}, [FRAME]
+    while waiting:
+        for k in meets.pop(waiting.pop(), ()):
+            waiting += met[k] - reached
+            reached |= met[k]
+    return reached
