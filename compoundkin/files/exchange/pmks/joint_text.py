@@ -1,0 +1,137 @@
+"""The text of PMKS: a record a line, fields by commas or blanks, and what stands beside them as key=value."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from compoundkin.files.exchange.pmks.joint_record import (
+    KINDS,
+    MOST_JOINTS,
+    JointDriver,
+    JointList,
+    JointRecord,
+    kind_of,
+    link_key,
+)
+from compoundkin.files.exchange.pmks.record_problems import driver_of, note_faults
+from compoundkin.files.exchange.problems import Problems
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
+_NO_ANGLE = ("nan", "-nan")
+_KEY = re.compile(r"\s*(name|s|d|e|f)\s*=(.*)", re.IGNORECASE)
+_FLAGS = re.compile(r"[tf+-]{1,4}", re.IGNORECASE)
+_TRUE, _WORDS = "true", ("true", "false")
+_FIELDS = re.compile(r"[,\s]+")
+_DRIVES = 3
+
+
+def number_of(word: str) -> float | None:
+    """Return the finite number that a word is, or None.
+
+    >>> number_of("-4e1"), number_of("1_0"), number_of("1e999"), number_of("nan")
+    (-40.0, None, None, None)
+    """
+    if not _NUMBER.fullmatch(word) or not math.isfinite(float(word)):
+        return None
+    return float(word)
+
+
+def drawn_angle(degrees: float) -> float:
+    """Return the direction of a line in radians, wrapped as PMKS does: between -90 and 90 degrees."""
+    return math.radians(math.remainder(degrees, 180.0))
+
+
+@dataclass
+class TextReader:
+    """Reads lines of PMKS. `problems` takes what is wrong, all of it."""
+
+    problems: Problems
+    records: list[JointRecord] = field(default_factory=list)
+    names: dict[str, str] = field(default_factory=dict)
+    keys: dict[str, str] = field(default_factory=dict)
+    shown: int = 0
+
+    def read(self, text: str) -> JointList:
+        """Return the joints of a text."""
+        for where, line in _lines(text):
+            if key := _KEY.fullmatch(line):
+                self.keys[key[1].lower()] = key[2].strip()
+            elif len(self.records) == MOST_JOINTS:
+                self.problems.add(where, f"there are more than {MOST_JOINTS} joints", "is it the right file?")
+                break
+            else:
+                self._record(where, _FIELDS.split(line.strip(", \t\r")))
+        return self.joints()
+
+    def joints(self) -> JointList:
+        """Return the joints read so far, or note what is wrong with them as a whole."""
+        speed = self._number("s")
+        index = self._number("d")
+        note_faults(self.records, self.problems)
+        driver, notes = driver_of(self.records, index, self.problems)
+        drivers = () if driver is None else (JointDriver(driver, speed=speed),)
+        dropped = {"setting of what is shown": self.shown, "setting of steps": len(self.keys.keys() & {"e", "f"})}
+        return JointList(tuple(self.records), self.names, drivers, self.keys.get("name", ""), notes, dropped)
+
+    def _number(self, key: str) -> float | None:
+        word = self.keys.get(key, "")
+        found = number_of(word)
+        if word and found is None:
+            self.problems.add(key, f"{word!r} is no number")
+        return found
+
+    def _record(self, where: str, words: list[str]) -> None:
+        places = [k for k, word in enumerate(words) if kind_of(word)]
+        kind = kind_of(words[places[-1]]) if places else None
+        if kind is None:
+            self.problems.add(where, f"no joint type {', '.join(KINDS[:2])}, {KINDS[2]} or {KINDS[3]}", _MEANT)
+            return
+        links, rest = words[: places[-1]], words[places[-1] + 1 :]
+        at = self._place(where, rest[:2])
+        angle, flags = self._angle_and_flags(where, rest[2:])
+        self.shown += any(flags[:_DRIVES])
+        for name in links:
+            self.names.setdefault(link_key(name), name)
+        keys = tuple(map(link_key, links))
+        if at is not None:
+            drives = len(flags) > _DRIVES and flags[_DRIVES]
+            self.records.append(JointRecord(kind, keys, at, drawn_angle(angle), drives, where=where))
+
+    def _place(self, where: str, words: list[str]) -> complex | None:
+        if len(words) < 2:
+            self.problems.add(where, "a coordinate is missing", _MEANT)
+            return None
+        found = [number_of(word) for word in words]
+        for word, number in zip(words, found, strict=True):
+            if number is None:
+                self.problems.add(where, f"the coordinate {word!r} is no finite number")
+        return None if None in found else complex(*(number or 0.0 for number in found))
+
+    def _angle_and_flags(self, where: str, words: list[str]) -> tuple[float, list[bool]]:
+        angle = 0.0
+        if words and (words[0].lower() in _NO_ANGLE or number_of(words[0]) is not None):
+            angle = number_of(words.pop(0)) or 0.0
+        if all(word.lower() in _WORDS for word in words) and len(words) <= _DRIVES + 1:
+            return angle, [word.lower() == _TRUE for word in words]
+        if len(words) == 1 and _FLAGS.fullmatch(words[0]):
+            return angle, [flag in "tT+" for flag in words[0]]
+        self.problems.add(where, f"{' '.join(words)!r} is neither an angle nor flags such as tfff", _MEANT)
+        return angle, []
+
+
+_MEANT = "a record is: links, type, x, y, angle, flags"
+
+
+def _lines(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the records and keys of a text with their places."""
+    lines = text.split("\n")
+    alone = sum(1 for line in lines if line.strip()) == 1
+    for number, line in enumerate(lines, 1):
+        pieces = [piece.removeprefix("mech=") for piece in line.strip().split("|")]
+        kept = [piece for piece in pieces if piece.strip(", \t\r")]
+        for k, piece in enumerate(kept, 1):
+            where = f"joint {k}" if alone and len(kept) > 1 else f"line {number}"
+            yield (f"{where}, joint {k}" if len(kept) > 1 and not alone else where), piece

@@ -1,0 +1,51 @@
+"""What programs that write joints as records can say, and how they may call links."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from compoundkin.files.exchange.drawing import DrawnLink
+from compoundkin.model.geometry import FRAME
+
+
+@dataclass(frozen=True)
+class Notation:
+    """Such a program. `illegal` are characters that names of links may not have, `is_ground` tells names of the frame.
+
+    `gears`: whether it has them; `most_drivers`: how many it takes; `slots_drive`: whether a pin in a slot can;
+    `loose_drivers`: whether a pin of two moving links can.
+    """
+
+    program: str
+    illegal: str
+    is_ground: Callable[[str], bool]
+    gears: bool
+    most_drivers: int
+    slots_drive: bool
+    loose_drivers: bool
+
+    def names(self, links: Iterable[DrawnLink]) -> Mapping[str, str]:
+        """Return a name for each link by its key, that the program takes and no other link has."""
+        found = {FRAME: "ground"}
+        for link in links:
+            if link.key == FRAME:
+                continue
+            wanted = re.sub(self.illegal, "_", link.called)
+            wanted = f"link_{wanted}" if self.is_ground(wanted) or not wanted else wanted
+            name, taken, count = wanted, set(found.values()), 1
+            while name in taken:
+                count += 1
+                name = f"{wanted}_{count}"
+            found[link.key] = name
+        return found
+
+
+def plain(number: float) -> str:
+    """Return a number with all its digits, the shortest way.
+
+    >>> plain(10.0), plain(-0.0), plain(0.1)
+    ('10', '0', '0.1')
+    """
+    return repr(number + 0.0).removesuffix(".0")

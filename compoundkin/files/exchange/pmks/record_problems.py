@@ -1,0 +1,71 @@
+"""What can be wrong with joints as a whole, and which of them is driven."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from compoundkin.files.exchange.pmks.joint_record import JointRecord
+from compoundkin.files.exchange.problems import Problems
+from compoundkin.model.geometry import FRAME
+
+_NUMBERS = {3: "three", 4: "four", 5: "five", 6: "six"}
+
+
+def note_faults(records: Sequence[JointRecord], problems: Problems, ground: str = "no ground link") -> None:
+    """Note what is wrong with the links of joints."""
+    # where a record could not be read, the ground may have been in it
+    if records and not problems.found and not any(FRAME in record.links for record in records):
+        problems.add("", ground, "call the link that stands still ground")
+    for record in records:
+        if not record.links:
+            problems.add(record.where, f"this {record.kind} joint names no link")
+        elif len(set(record.links)) < len(record.links):
+            twice = next(name for name in record.links if record.links.count(name) > 1)
+            problems.add(record.where, f"a joint of the link {twice.strip()!r} with itself", "name another link")
+        elif record.kind in ("P", "G") and len(record.links) > 2:
+            count = _NUMBERS.get(len(record.links), str(len(record.links)))
+            problems.add(record.where, f"{count} links at a {record.kind} joint", "it joins two; add R joints")
+        elif record.kind == "G" and len(record.links) < 2:
+            problems.add(record.where, "one link at a gear contact", "it names the two wheels")
+
+
+def driver_of(
+    records: Sequence[JointRecord], index: float | None, problems: Problems
+) -> tuple[int | None, tuple[str, ...]]:
+    """Return the number of the joint that drives, and notes on how it was found."""
+    if index is not None:
+        if index in range(len(records)):
+            return _checked(records, int(index), problems), ()
+        problems.add("d", f"there is no joint {index:g}", f"joints are 0 to {len(records) - 1}")
+        return None, ()
+    flagged = [k for k, record in enumerate(records) if record.drives]
+    if flagged:
+        first = records[flagged[0]].where
+        notes = (f"several joints are marked as driven, that of {first} is taken",) if flagged[1:] else ()
+        return _checked(records, flagged[0], problems), notes
+    found = next(_could_drive(records), None)
+    if found is None:
+        if records:
+            problems.add("", "no joint can drive", "an R or P joint of two links can")
+        return None, ()
+    return found, (f"no joint is marked as driven; the first that can be is taken, {records[found].where}",)
+
+
+def _could_drive(records: Iterable[JointRecord]) -> Iterator[int]:
+    return (k for k, record in enumerate(records) if record.kind in ("R", "P") and len(record.links) == 2)
+
+
+def _checked(records: Sequence[JointRecord], index: int, problems: Problems) -> int | None:
+    record = records[index]
+    if record.kind == "G":
+        what = "a gear contact cannot drive"
+    elif len(record.links) == 1:
+        what = "a tracer cannot drive"
+    elif record.kind == "RP":
+        what = "an RP joint cannot drive (two freedoms)"
+    elif len(record.links) > 2:
+        what = "a pin of more than two links cannot drive: it does not tell which two"
+    else:
+        return index
+    problems.add(record.where, what, "mark an R or P joint of two links")
+    return None

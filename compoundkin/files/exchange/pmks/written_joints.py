@@ -1,0 +1,48 @@
+"""Joints as the records of PMKS."""
+
+from __future__ import annotations
+
+from math import degrees, radians, remainder
+
+from compoundkin.files.exchange.drawing import Drawing
+from compoundkin.files.exchange.pmks.drawn_joints import joints_of, turned_back
+from compoundkin.files.exchange.pmks.joint_record import JointList, JointRecord, means_ground
+from compoundkin.files.exchange.pmks.notation import Notation, plain
+
+PMKS = Notation(
+    "PMKS",
+    illegal=r"[^\w-]",
+    is_ground=means_ground,
+    gears=True,
+    most_drivers=1,
+    slots_drive=False,
+    loose_drivers=True,
+)
+
+
+def pmks_joints(drawing: Drawing) -> JointList:
+    """Return a drawing as joints that PMKS can have: angles are within 90 degrees."""
+    joints = joints_of(drawing, PMKS)
+    return turned_back(joints, [radians(_degrees(record)) for record in joints.records])
+
+
+def record_lines(joints: JointList) -> list[str]:
+    """Return the joints as records, a line each."""
+    return [_line(record, joints) for record in joints.records]
+
+
+def pmks_notes(joints: JointList) -> tuple[str, ...]:
+    """Return what is told of joints that are written."""
+    points = ", ".join(record.name for record in joints.records if record.name)
+    return (*joints.notes, f"PMKS has no names of points; its joints are, in order, {points}")
+
+
+def _line(record: JointRecord, joints: JointList) -> str:
+    names = [joints.names[key] for key in record.links]
+    angle = [plain(_degrees(record))] if record.is_guide else []
+    flags = "tfft" if record.drives else "tfff"
+    return ",".join([*names, record.kind, plain(record.at.real), plain(record.at.imag), *angle, flags])
+
+
+def _degrees(record: JointRecord) -> float:
+    return remainder(degrees(record.angle), 180.0)
