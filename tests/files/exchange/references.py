@@ -32,17 +32,21 @@ def entries(form: str) -> list[dict[str, Any]]:
     return [one for one in _all() if one["format"] == form and "text" in one]
 
 
-def letter_at(shown: ShownMechanism, place: complex, tolerance: float) -> str:
-    """The point that is drawn at a place: samples and readers need not agree on letters."""
-    found = [k for k, links in shown.mechanism.carriers.items() if abs(shown.place(links[0], k) - place) <= tolerance]
+def letter_at(shown: ShownMechanism, place: complex, tolerance: float, name: str = "") -> str:
+    """The point that is drawn at a place: samples and readers need not agree on letters.
+
+    Of several that of this name, or else the one of most moving links: guides may have a point of their own there.
+    """
+    carriers = shown.mechanism.carriers
+    found = [k for k, links in carriers.items() if abs(shown.place(links[0], k) - place) <= tolerance]
     assert found, f"no point is drawn at {place}"
-    return found[0]
+    return max(found, key=lambda k: (k == name, len({*carriers[k]} - {"frame"})))
 
 
-def driven_by(shown: ShownMechanism, change: float) -> dict[str, float]:
-    """The values of the only driver, so much from the pose as drawn."""
+def driven_by(shown: ShownMechanism, change: float) -> dict[str, Any]:
+    """Values of the only driver, from the pose as drawn to one so much on: wheels count their turns from there."""
     (name,) = shown.values
-    return {name: shown.values[name] + change}
+    return {name: shown.values[name] + change * np.linspace(0.0, 1.0, 13)}
 
 
 def holds(mechanism: ck.Mechanism, sample: dict[str, Any]) -> None:
@@ -55,12 +59,12 @@ def holds(mechanism: ck.Mechanism, sample: dict[str, Any]) -> None:
     shown = shown_mechanism(mechanism)
     rows = {float(key): row for key, row in expected[kind].items()}
     first = rows.get(0.0)
-    letters = {name: letter_at(shown, complex(*place), 10 * tolerance) for name, place in (first or {}).items()} or {
-        name: name for name in next(iter(rows.values()))
-    }
+    letters = {
+        name: letter_at(shown, complex(*place), 10 * tolerance, name) for name, place in (first or {}).items()
+    } or {name: name for name in next(iter(rows.values()))}
     for change, row in rows.items():
         step = change if "extension" in kind else np.deg2rad(change)
         motion = ck.solve(mechanism, driven_by(shown, step), order=0)
         for name, place in row.items():
-            found = complex(np.ravel(motion.points[letters[name]].position)[0])
+            found = complex(np.ravel(motion.points[letters[name]].position)[-1])
             assert abs(found - complex(*place)) <= tolerance, (sample["id"], change, name, found, place)

@@ -10,9 +10,13 @@ from math import pi
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnGear, DrawnGuide, DrawnPoint, DrawnRack
+from compoundkin.files.exchange.drawn_pairs import GUIDE
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
 from compoundkin.files.exchange.pmks.notation import Notation
 from compoundkin.model.geometry import FRAME
+
+# Names of points that are at most so long are letters, perhaps with a digit.
+_LETTERS = 2
 
 
 def joints_of(drawing: Drawing, notation: Notation) -> JointList:
@@ -21,19 +25,27 @@ def joints_of(drawing: Drawing, notation: Notation) -> JointList:
     if problems:
         raise InvalidInput(problems, heading=f"{drawing.title!r} cannot be said in {notation.program}")
     driven = {driver.at: driver for driver in drawing.drivers}
-    guided = {guide.at: guide for guide in drawing.guides}
-    records: list[JointRecord] = []
-    for point in drawing.points:
-        if not (point.key in guided and point.links == (guided[point.key].link,)):
-            records += _pins(point, driven.get(point.key))
     places = {point.key: point for point in drawing.points}
-    records += (_line(guide, places[guide.at], driven.get(guide.key)) for guide in drawing.guides)
+    records: list[JointRecord] = []
+    for point in _in_order(drawing):
+        guides = [guide for guide in drawing.guides if guide.at == point.key]
+        if not any(point.links == (guide.link,) for guide in guides):
+            records += _pins(point, driven.get(point.key))
+        records += (_line(guide, point, driven.get(guide.key)) for guide in guides)
     records += (_contact(gear, places) for gear in drawing.gears)
     records += (_rack_contact(rack, places) for rack in drawing.racks)
     drivers = tuple(_driver(one, drawing, records) for one in drawing.drivers)
     names = notation.names(drawing.links)
     notes = (*drawing.notes, *_notes(drawing, names, notation))
     return JointList(tuple(records), names, drivers, drawing.title, notes)
+
+
+def _in_order(drawing: Drawing) -> list[DrawnPoint]:
+    """Return the points by their letters, where they are letters; without those that only mark a line."""
+    points = [point for point in drawing.points if not (len(point.links) == 1 and point.called.endswith(f" {GUIDE}"))]
+    if all(len(point.called) <= _LETTERS for point in points):
+        points.sort(key=lambda point: (len(point.called), point.called))
+    return points
 
 
 def _unsaid(drawing: Drawing, notation: Notation) -> Iterator[Problem]:

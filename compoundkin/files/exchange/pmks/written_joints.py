@@ -33,8 +33,9 @@ def record_lines(joints: JointList) -> list[str]:
 
 def pmks_notes(joints: JointList) -> tuple[str, ...]:
     """Return what is told of joints that are written."""
-    points = ", ".join(record.name for record in joints.records if record.name)
-    return (*joints.notes, f"PMKS has no names of points; its joints are, in order, {points}")
+    first = {record.name: number for number, record in reversed([*enumerate(joints.records)]) if record.name}
+    told = ", ".join(f"{name} is joint {number}" for name, number in sorted(first.items(), key=lambda one: one[1]))
+    return (*joints.notes, f"PMKS has no names of points: {told}, counted from 0")
 
 
 def _line(record: JointRecord, joints: JointList) -> str:
