@@ -9,7 +9,14 @@ from math import pi
 
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnGear, DrawnGuide, DrawnPoint, DrawnRack
+from compoundkin.files.exchange.drawn_elements import (
+    Drawing,
+    DrawnDriver,
+    DrawnGear,
+    DrawnGuideway,
+    DrawnPoint,
+    DrawnRack,
+)
 from compoundkin.files.exchange.drawn_pairs import GUIDE
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
 from compoundkin.files.exchange.pmks.notation import Notation
@@ -103,7 +110,7 @@ def _pins(point: DrawnPoint, driver: DrawnDriver | None) -> Iterator[JointRecord
     yield JointRecord("R", links, point.at, name=point.called)
 
 
-def _line(guide: DrawnGuide, point: DrawnPoint, driver: DrawnDriver | None) -> JointRecord:
+def _line(guide: DrawnGuideway, point: DrawnPoint, driver: DrawnDriver | None) -> JointRecord:
     """Return the record of a line: it is drawn through the point, which is where the point runs."""
     kind, links = "P" if guide.kind == "slide" else "RP", (guide.on, guide.link)
     return JointRecord(kind, links, point.at, guide.angle, driver is not None, point.called)  # type: ignore[arg-type]
@@ -129,7 +136,9 @@ def _driver(one: DrawnDriver, drawing: Drawing, records: Sequence[JointRecord]) 
     guides = {guide.key: guide for guide in drawing.guides}
     if one.at in guides:
         guide = guides[one.at]
-        index = next(k for k, r in enumerate(records) if r.drives and r.kind != "R" and r.links == (guide.on, guide.link))
+        index = next(
+            k for k, r in enumerate(records) if r.drives and r.kind != "R" and r.links == (guide.on, guide.link)
+        )
         # a slide of the frame on a link is read as one of the link on the frame
         speed = -one.speed if one.speed and guide.kind == "slide" and guide.link == FRAME else one.speed
         return JointDriver(index, speed=speed)

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
-from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnGuide, DrawnLink, DrawnPoint, GuideKind
+from compoundkin.files.exchange.drawn_elements import (
+    Drawing,
+    DrawnDriver,
+    DrawnGuideway,
+    DrawnLink,
+    DrawnPoint,
+    GuideKind,
+)
 from compoundkin.files.exchange.foreign_names import letters
 from compoundkin.files.exchange.pmks.joint_gears import drawn_wheels
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
@@ -80,7 +87,9 @@ def _names(joints: JointList) -> Iterator[tuple[str, str]]:
 def _points(joints: JointList, pins: Mapping[int, int]) -> tuple[DrawnPoint, ...]:
     links: dict[int, dict[str, None]] = {}
     for k, head in pins.items():
-        links.setdefault(head, {}).update(dict.fromkeys(sorted(held(joints.records[k]), key=joints.records[k].links.index)))
+        links.setdefault(head, {}).update(
+            dict.fromkeys(sorted(held(joints.records[k]), key=joints.records[k].links.index))
+        )
     named = [joints.records[head].name for head in links]
     given = islice(letters({*joints.names.values(), *named}), len(links))
     return tuple(
@@ -89,10 +98,10 @@ def _points(joints: JointList, pins: Mapping[int, int]) -> tuple[DrawnPoint, ...
     )
 
 
-def _guide(k: int, record: JointRecord, pin: int) -> DrawnGuide:
+def _guide(k: int, record: JointRecord, pin: int) -> DrawnGuideway:
     link, on = guided(record)
     kind: GuideKind = "slide" if record.kind == "P" else "slot"
-    return DrawnGuide(guide_key(k), kind, link, on, str(pin), record.at, record.angle, where=record.where)
+    return DrawnGuideway(guide_key(k), kind, link, on, str(pin), record.at, record.angle, where=record.where)
 
 
 def guide_key(joint: int) -> str:

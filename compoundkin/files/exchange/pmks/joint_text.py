@@ -73,7 +73,7 @@ class TextReader:
         note_faults(self.records, self.problems)
         driver, notes = driver_of(self.records, index, self.problems)
         drivers = () if driver is None else (JointDriver(driver, speed=speed),)
-        dropped = {"setting of what is seen": self.shown, "setting of steps": len(self.keys.keys() & {"e", "f"})}
+        dropped = {"display setting": self.shown, "step setting": len(self.keys.keys() & {"e", "f"})}
         return JointList(tuple(self.records), self.names, drivers, self.keys.get("name", ""), notes, dropped)
 
     def _number(self, key: str) -> float | None:

@@ -1,0 +1,121 @@
+"""PMKS: text, addresses and files, against the samples; what is refused, and there and back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.errors import InvalidInput
+from compoundkin.files.exchange.conversion import read, write
+from compoundkin.files.exchange.pmks.joint_drawing import point_keys
+from compoundkin.files.exchange.pmks.joint_record import JointRecord
+from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from tests.files.exchange.references import driven_by, entries, entry, holds
+
+
+@pytest.mark.parametrize("given", entries("pmks"), ids=lambda given: given["id"])
+def test_samples_hold_as_read_and_after_they_were_written(given):
+    got = read(given["text"])
+    holds(got.mechanism, given)
+    for form in ("pmks", "pmks-url"):
+        written = write(got.mechanism, form)
+        back = read(written.text)
+        assert back.form == form
+        holds(back.mechanism, given)
+        assert write(back.mechanism, form).text == written.text
+
+
+def test_names_titles_speeds_and_pairs_are_kept():
+    by = {sample["id"]: (read(sample["text"]).mechanism, sample["expected"]) for sample in entries("pmks")}
+    four, expected = by["pmks_text_four_bar"]
+    assert {"ground" if name == "frame" else name for name in four.links} == set(expected["links"])
+    assert sum(len(links) > 1 for links in four.carriers.values()) == expected["pins"]
+    assert sum(len(links) == 1 for links in four.carriers.values()) == expected["tracers"]
+    assert four.drives[0].link == expected["driver"]
+    inclined, expected = by["pmks_text_inclined_slider"]
+    assert (inclined.title, inclined.drives[0].speed) == (expected["title"], expected["speed_rad_s"])
+    for name in ("pmks_text_gears", "pmks_text_internal_gears"):
+        (pair,), expected = by[name][0].written_pairs, by[name][1]["gear"]
+        assert (list(pair.radii), pair.internal) == (expected["radii"], expected["internal"])
+        assert pair.carrier == "frame"
+    (slot,) = by["pmks_text_quick_return"][0].written_pairs
+    assert (slot.table, slot.members) == ("slots", ("arm", "crank"))
+    (slide,) = by["pmks_url_slider_crank"][0].written_pairs
+    assert (slide.table, set(slide.members)) == ("slides", {"slider", "frame"})
+
+
+@pytest.mark.parametrize("case", entry("pmks_text_refused")["cases"], ids=lambda case: case["reason"])
+def test_what_cannot_be_is_refused_with_its_reason(case):
+    with pytest.raises(InvalidInput) as told:
+        read(case["text"], "pmks")
+    assert case["reason"] in str(told.value).replace("\n", " ")
+
+
+def test_all_that_is_wrong_is_told_at_once_with_its_line():
+    text = "ground,a,R,0,zero\na,b,R,1e999,1\nb,c,R,2,2,up\nb,a,b,R,3,1\nd=77\nc,ground,R,4,0,0\ns=fast\nground R\n"
+    with pytest.raises(InvalidInput) as told:
+        read(text)
+    places = [problem.where for problem in told.value.problems]
+    assert places == ["line 1", "line 2", "line 3", "line 8", "s", "line 4", "d"]
+
+
+def test_racks_are_wheels_on_a_slide():
+    text = "ground,pinion,R,0,0,tfft\nground,rack,P,7,-3,0\npinion,rack,G,0,-2\nrack,R,9,-2.5\npinion,R,0,2\n"
+    mechanism = read(text).mechanism
+    for one in (mechanism, read(write(mechanism, "pmks").text).mechanism):
+        motion = ck.solve(one, driven_by(shown_mechanism(one), 1.0), order=0)
+        tip = next(k for k, links in one.carriers.items() if abs(one.sketch[k] - (9 - 2.5j)) < 1e-9)
+        assert np.ravel(motion.points[tip].position)[-1] == pytest.approx(9 + 2.0 - 2.5j)
+
+
+def test_pins_of_many_links_are_one_in_either_way_of_writing():
+    at_once = "0 a R 0 0 tfft\na b c R 4 3\nb 0 R 8 0\nc d R 5 7\nd 0 R 9 6\n"
+    in_two = "0 a R 0 0 tfft\na b R 4 3\nb c R 4 3\nb 0 R 8 0\nc d R 5 7\nd 0 R 9 6\n"
+    one, two = (read(text).mechanism for text in (at_once, in_two))
+    assert one.carriers == two.carriers
+    assert set(one.pins["B"]) == {"a", "b", "c"}
+    apart = [JointRecord("R", links, 1j) for links in (("a", "b"), ("c", "d"), ("b", "c"), ("e", "f"))]
+    assert point_keys(apart) == {0: 0, 1: 0, 2: 0, 3: 3}
+
+
+def test_a_driven_slide_goes_the_way_its_speed_tells():
+    text = "ground,ram,P,3,0,20,tfft\nram,rod,R,3,0\nrod,arm,R,6,5\narm,ground,R,0,6\ns=2\n"
+    mechanism = read(text).mechanism
+    for one in (mechanism, read(write(mechanism, "pmks").text).mechanism):
+        (drive,) = one.drives
+        assert (drive.link, drive.on, drive.speed) == ("ram", "frame", 2.0)
+        motion = ck.solve(one, driven_by(shown_mechanism(one), 0.5), order=0)
+        moved = np.diff(np.ravel(motion.points["A"].position)[[0, -1]])[0]
+        assert moved == pytest.approx(0.5 * np.exp(1j * np.deg2rad(20)))
+    turned = read(text.replace(",20,", ",200,")).mechanism
+    assert turned.written_pairs[0].angle == pytest.approx(np.deg2rad(20))
+
+
+def test_addresses_may_have_blanks_in_any_way_and_settings():
+    plain = "http://x.org/pmks.html?set=s50|f0.5&mech=0 a R 0 0 tfft|a b R 3 4|b 0 R 9 0&ts=M0,0L1,1"
+    for text in (plain, plain.replace(" ", "+"), plain.replace(" ", "%20"), plain.replace(" ", ",")):
+        got = read(text)
+        assert got.form == "pmks-url"
+        assert got.mechanism.drives[0].speed == 50.0
+        assert got.mechanism.sketch["B"] == 3 + 4j
+        assert any("step setting" in note for note in got.notes)
+    signs = read(plain.replace(" ", ",").replace("tfft", "+--+")).mechanism
+    assert signs.drives[0].link == "a"
+
+
+def test_what_pmks_has_no_words_for_is_refused_all_at_once():
+    mechanism = ck.Mechanism(
+        "two cranks",
+        ck.link("frame", A=0, D=4),
+        ck.link("one", A=0, B=1),
+        ck.link("two", D=0, C=1),
+        ck.belt("one", "two", carrier="frame", first_at="A", second_at="D", radii=(1, 1)),
+        ck.link("three", D=0, E=1),
+        ck.drive("one"),
+        ck.drive("three"),
+    )
+    with pytest.raises(InvalidInput) as told:
+        write(mechanism, "pmks")
+    assert "belt" in str(told.value)
+    assert "2 drivers ('one', 'three'); PMKS has one" in str(told.value)
