@@ -25,6 +25,8 @@ from compoundkin.structure import Structure, decompose
 _ROUNDING = 1e-6
 # A drawing is exact that is met to this part of the size: what rounding to printed digits never leaves.
 _DIGITS = 1e-9
+# What the arithmetic of a pose leaves of a place, as a part of the size.
+_LAST_DIGITS = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,10 +52,16 @@ class ShownMechanism:
     def place(self, link: str, point: str | complex) -> complex:
         """Return where a point of a link is.
 
-        It is told by its letter or its place in the link's frame.
+        It is told by its letter or its place in the link's frame. A letter that is drawn there but for rounding is
+        where it is drawn, so that files come back digit by digit.
         """
-        own = self.points[link][point] if isinstance(point, str) else point
-        return complex(self.poses[link].at(own).c[0])
+        if not isinstance(point, str):
+            return complex(self.poses[link].at(point).c[0])
+        place = complex(self.poses[link].at(self.points[link][point]).c[0])
+        drawn = self.mechanism.sketch.get(point)
+        if drawn is None or abs(first_entry(drawn) - place) > _LAST_DIGITS * self.mechanism.geometry.size:
+            return place
+        return complex(first_entry(drawn))
 
     def direction(self, link: str, own: complex) -> complex:
         """Return a direction of a link's frame in space."""

@@ -8,8 +8,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.errors import InvalidInput
 from compoundkin.files.exchange.conversion import read, write
-from compoundkin.files.exchange.pmks.joint_drawing import point_keys
 from compoundkin.files.exchange.pmks.joint_record import JointRecord
+from compoundkin.files.exchange.pmks.joint_sketch import point_keys
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from tests.files.exchange.references import driven_by, entries, entry, holds
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
 
@@ -18,8 +18,8 @@ from compoundkin.files.exchange.drawn_elements import (
     DrawnRack,
 )
 from compoundkin.files.exchange.drawn_pairs import GUIDE
+from compoundkin.files.exchange.pmks.joint_notation import Notation
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
-from compoundkin.files.exchange.pmks.notation import Notation
 from compoundkin.model.geometry import FRAME
 
 # Names of points that are at most so long are letters, perhaps with a digit.
@@ -79,7 +79,8 @@ def _undriven(drawing: Drawing, notation: Notation) -> Iterator[Problem]:
         called = ", ".join(repr(one.name or one.link) for one in drawing.drivers)
         yield Problem("drives", f"{len(drawing.drivers)} drivers ({called}); {program} has one")
     guides = {guide.key: guide for guide in drawing.guides}
-    wheels = {pair.key for pair in (*drawing.gears, *drawing.racks, *drawing.arcs)}
+    wheels = {*(one.key for one in drawing.gears), *(one.key for one in drawing.racks)}
+    wheels |= {one.key for one in drawing.arcs}
     for one in drawing.drivers:
         if one.at in wheels:
             yield Problem(one.at, f"{program} cannot drive it", "drive a pin or a slide")
@@ -152,7 +153,7 @@ def _points(record: JointRecord) -> tuple[str, ...]:
     return {"R": record.links, "G": ()}.get(record.kind, record.links[1:])
 
 
-def _notes(drawing: Drawing, names: dict[str, str], notation: Notation) -> Iterator[str]:
+def _notes(drawing: Drawing, names: Mapping[str, str], notation: Notation) -> Iterator[str]:
     """Yield in sentences what does not come across."""
     program = notation.program
     called = {link.key: link.called for link in drawing.links}
@@ -169,7 +170,10 @@ def _notes(drawing: Drawing, names: dict[str, str], notation: Notation) -> Itera
 
 
 def turned_back(joints: JointList, angles: Sequence[float]) -> JointList:
-    """Return joints with lines at other angles; a driver goes the other way where its line was turned around."""
+    """Return joints with lines at other angles.
+
+    A driver goes the other way where its line was turned around.
+    """
     records = [replace(record, angle=angle) for record, angle in zip(joints.records, angles, strict=True)]
     drivers = []
     for one in joints.drivers:

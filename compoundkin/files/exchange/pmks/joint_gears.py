@@ -29,7 +29,7 @@ class _Wheels:
 def drawn_wheels(
     records: Sequence[JointRecord], pins: Mapping[int, int], problems: Problems
 ) -> tuple[tuple[DrawnGear, ...], tuple[DrawnRack, ...]]:
-    """Return the gears and the racks of the contacts among joints; note what is wrong with them."""
+    """Return the gears and racks of the contacts among joints; note what is wrong."""
     gears, racks = [], []
     for k, contact in enumerate(records):
         if contact.kind != "G":
@@ -115,4 +115,4 @@ def _rack(
         names, rack, pinion = (names[1], names[0]), pinion, rack
     radius = abs(contact.at - records[pinion].at)
     angle = records[rack].angle
-    return DrawnRack(f"gear {k}", *names, str(pins[pinion]), contact.at, angle, radius, where=contact.where)
+    return DrawnRack(f"gear {k}", names[0], names[1], str(pins[pinion]), contact.at, angle, radius, where=contact.where)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, cast, get_args
+from typing import Literal, get_args
 
 from compoundkin.model.geometry import FRAME
 
@@ -19,10 +19,10 @@ _GROUND = ("0", "gnd", "grnd", "grond", "gound", "groud")
 
 @dataclass(frozen=True)
 class JointRecord:
-    """A joint: its links by their keys, where it is drawn, and the direction of its line in space (radians).
+    """A joint: its links by their keys, its place, the direction of its line.
 
-    The line of a slide or a slot is on the first link, the point on the others. Of one link it is a tracer. `name` is
-    that of the point, or nothing.
+    The direction is that in space as drawn (radians). The line of a slide or a slot is on the first link, the point on
+    the others. Of one link it is a tracer. `name` is that of the point, or nothing.
     """
 
     kind: JointKind
@@ -41,7 +41,10 @@ class JointRecord:
 
 @dataclass(frozen=True)
 class JointDriver:
-    """The record that is driven, by its number from 0; the record its link is driven towards, where there is one."""
+    """The record that is driven, by its number from 0.
+
+    `toward` is another record of the driven link, where its direction is counted by it.
+    """
 
     joint: int
     toward: int | None = None
@@ -67,11 +70,11 @@ def kind_of(word: str) -> JointKind | None:
     ('RP', None)
     """
     upper = word.upper()
-    return cast("JointKind", upper) if upper in KINDS else None
+    return next((kind for kind in KINDS if kind == upper), None)
 
 
 def link_key(name: str) -> str:
-    """Return the key of a link of PMKS by its name: all the names of the ground mean one link.
+    """Return the key of a link of PMKS by its name. All names of the ground mean one.
 
     >>> link_key("gnd"), link_key("Ground2"), link_key("crank")
     ('frame', 'frame', 'crank')
@@ -80,7 +83,7 @@ def link_key(name: str) -> str:
 
 
 def own_key(name: str) -> str:
-    """Return the key of a link that is not the frame, whatever it is called."""
+    """Return the key of a link that is not the frame."""
     return _OTHER_FRAME if name == FRAME else name
 
 

@@ -40,7 +40,7 @@ def number_of(word: str) -> float | None:
 
 
 def drawn_angle(degrees: float) -> float:
-    """Return the direction of a line in radians, wrapped as PMKS does: between -90 and 90 degrees."""
+    """Return the direction of a line in radians, between -90 and 90 degrees."""
     return math.radians(math.remainder(degrees, 180.0))
 
 
@@ -67,7 +67,7 @@ class TextReader:
         return self.joints()
 
     def joints(self) -> JointList:
-        """Return the joints read so far, or note what is wrong with them as a whole."""
+        """Return the joints read; note what is wrong with them as a whole."""
         speed = self._number("s")
         index = self._number("d")
         note_faults(self.records, self.problems)

@@ -9,9 +9,9 @@ from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
-from compoundkin.files.exchange.pmks.joint_drawing import drawing_of_joints
+from compoundkin.files.exchange.pmks.joint_notation import plain
+from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
 from compoundkin.files.exchange.pmks.joint_text import TextReader
-from compoundkin.files.exchange.pmks.notation import plain
 from compoundkin.files.exchange.pmks.written_joints import pmks_joints, pmks_notes, record_lines
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
@@ -27,7 +27,6 @@ class PmksFormat(Readable, Writable):
     name: ClassVar[str] = "pmks"
     program: ClassVar[str] = "PMKS"
     title: ClassVar[str] = "joints of PMKS"
-    suffix: ClassVar[str] = ".txt"
 
     def recognises(self, content: Content) -> bool:
         """Return whether one of the first lines is a record of a joint."""

@@ -9,7 +9,7 @@ from urllib.parse import quote, unquote
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.exchanged import Exported, Imported
-from compoundkin.files.exchange.pmks.notation import plain
+from compoundkin.files.exchange.pmks.joint_notation import plain
 from compoundkin.files.exchange.pmks.pmks_format import read_text
 from compoundkin.files.exchange.pmks.written_joints import pmks_joints, pmks_notes, record_lines
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism

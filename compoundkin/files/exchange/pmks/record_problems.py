@@ -32,7 +32,7 @@ def note_faults(records: Sequence[JointRecord], problems: Problems, ground: str 
 def driver_of(
     records: Sequence[JointRecord], index: float | None, problems: Problems
 ) -> tuple[int | None, tuple[str, ...]]:
-    """Return the number of the joint that drives, and notes on how it was found."""
+    """Return the number of the joint that drives, and notes on it."""
     if index is not None:
         if index in range(len(records)):
             return _checked(records, int(index), problems), ()

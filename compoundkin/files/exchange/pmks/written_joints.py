@@ -6,8 +6,8 @@ from math import degrees, radians, remainder
 
 from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks.drawn_joints import joints_of, turned_back
+from compoundkin.files.exchange.pmks.joint_notation import Notation, plain
 from compoundkin.files.exchange.pmks.joint_record import JointList, JointRecord, means_ground
-from compoundkin.files.exchange.pmks.notation import Notation, plain
 
 PMKS = Notation(
     "PMKS",

@@ -42,7 +42,7 @@ def drawing_of_joints(joints: JointList, problems: Problems, program: str) -> Dr
 
 
 def point_keys(records: Sequence[JointRecord]) -> Mapping[int, int]:
-    """Return of each joint that has a point the first joint of the same point.
+    """Return of each joint with a point the first joint of that point.
 
     Joints drawn at exactly one place that have a link in common are one point of it: so PMKS keeps pins of many links,
     and the pin of a block beside the line it runs on.
@@ -65,12 +65,12 @@ def point_keys(records: Sequence[JointRecord]) -> Mapping[int, int]:
 
 
 def held(record: JointRecord) -> set[str]:
-    """Return the links that hold the point of a joint: of a slide or a slot those that run on the line."""
+    """Return the links that hold the point of a joint."""
     return {guided(record)[0], *record.links[2:]} if record.is_guide else set(record.links)
 
 
 def guided(record: JointRecord) -> tuple[str, str]:
-    """Return the link that runs on a line and the link that has the line.
+    """Return the link that runs on a line and the one that has it.
 
     A slide is the same whichever has it: the frame does where it is one of the two, so that the driven one moves.
     """

@@ -27,7 +27,7 @@ class Notation:
     loose_drivers: bool
 
     def names(self, links: Iterable[DrawnLink]) -> Mapping[str, str]:
-        """Return a name for each link by its key, that the program takes and no other link has."""
+        """Return a name for each link by its key, such as the program takes."""
         found = {FRAME: "ground"}
         for link in links:
             if link.key == FRAME:
