@@ -6,7 +6,7 @@ from cmath import phase
 from collections.abc import Iterator
 from math import pi, radians
 
-from compoundkin.files.exchange.drawing import DrawnDriver, DrawnGuide
+from compoundkin.files.exchange.drawing import DrawnDriver, DrawnGuideway
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks, rod
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink
 from compoundkin.model.geometry import FRAME
@@ -43,7 +43,7 @@ def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:
     return "no link turns at it: two anchors hold a link fast" if bodies == (FRAME,) else "holds several links"
 
 
-def actuators_of(joined: JoinedLinks) -> Iterator[tuple[DrawnGuide, DrawnDriver]]:
+def actuators_of(joined: JoinedLinks) -> Iterator[tuple[DrawnGuideway, DrawnDriver]]:
     """Yield the slide in each actuator, and what drives it."""
     for link in joined.links:
         if not link.actuator or len(link.connectors) != 2:
@@ -61,11 +61,11 @@ def actuators_of(joined: JoinedLinks) -> Iterator[tuple[DrawnGuide, DrawnDriver]
 
 def _actuator(
     link: LinkageLink, first: LinkageConnector, second: LinkageConnector, joined: JoinedLinks
-) -> tuple[DrawnGuide, DrawnDriver]:
+) -> tuple[DrawnGuideway, DrawnDriver]:
     """Return a slide along the line between two pins, driven from the length drawn to that and the throw."""
     barrel, moving = joined.body(link.key), joined.body(rod(link))
     angle = phase(second.at - first.at)
-    guide = DrawnGuide(link.key, "slide", moving, barrel, str(second.id), first.at, angle, where=link.where)
+    guide = DrawnGuideway(link.key, "slide", moving, barrel, str(second.id), first.at, angle, where=link.where)
     sense = -1.0 if link.cpm < 0 else 1.0
     speed = sense * 2.0 * link.throw * abs(link.cpm) / _SECONDS if link.cpm else None
     travel = (0.0, sense * link.throw)

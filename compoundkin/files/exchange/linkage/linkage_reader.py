@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawing import Drawing, DrawnGear, DrawnGuide, DrawnPoint
+from compoundkin.files.exchange.drawing import Drawing, DrawnGear, DrawnGuideway, DrawnPoint
 from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.joining_hints import hint, unjoined
@@ -68,7 +68,11 @@ def _points(joined: JoinedLinks) -> Iterator[DrawnPoint]:
 
 
 def _find_floating(
-    joined: JoinedLinks, sliders: list[Slider], guides: tuple[DrawnGuide, ...], gears: tuple[DrawnGear, ...], hints: str
+    joined: JoinedLinks,
+    sliders: list[Slider],
+    guides: tuple[DrawnGuideway, ...],
+    gears: tuple[DrawnGear, ...],
+    hints: str,
 ) -> None:
     """Note links that nothing joins to the frame, even by others."""
     met = [set(joined.at(id_)) for id_ in joined.file.connectors]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import sqrt
 
-from compoundkin.files.exchange.drawing import DrawnArc, DrawnGuide
+from compoundkin.files.exchange.drawing import DrawnArc, DrawnGuideway
 from compoundkin.files.exchange.drawn_letters import SAME
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
@@ -86,7 +86,7 @@ def _slider(one: LinkageConnector, joined: JoinedLinks) -> Slider | None:
     return Slider(one, bodies, carriers[0], (limits[0], limits[1])) if bodies and carriers else None
 
 
-def guides_of(sliders: list[Slider], size: float) -> Iterator[DrawnGuide]:
+def guides_of(sliders: list[Slider], size: float) -> Iterator[DrawnGuideway]:
     """Yield slots and slides. Two sliders of one link in one line of another are a slide."""
     straight = [slider for slider in sliders if not slider.connector.radius]
     sliding: list[Slider] = []
@@ -124,11 +124,11 @@ def limit_notes(sliders: list[Slider], unit: str, size: float) -> Iterator[str]:
             yield f"{one.connector.called} is drawn {off:.4g} {unit} beside its slot"
 
 
-def _guide(one: Slider, link: str, kind: str, size: float) -> DrawnGuide:
+def _guide(one: Slider, link: str, kind: str, size: float) -> DrawnGuideway:
     """Return a guide. A pin that rounding has put beside the line is on it, so that line has an angle and no ends."""
     first, second = one.limits
     exact = kind == "slide" or one.off(one.connector.at) <= SAME * size
-    return DrawnGuide(
+    return DrawnGuideway(
         f"slider {one.connector.id}",
         "slide" if kind == "slide" else "slot",
         link,
