@@ -6,7 +6,7 @@ from cmath import phase
 from collections.abc import Iterator
 from math import pi, radians
 
-from compoundkin.files.exchange.drawing import DrawnDriver, DrawnGuideway
+from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks, rod
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink
 from compoundkin.model.geometry import FRAME

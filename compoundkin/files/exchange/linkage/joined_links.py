@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from compoundkin.files.exchange.drawing import DrawnLink
+from compoundkin.files.exchange.drawn_elements import DrawnLink
 from compoundkin.files.exchange.linkage.linkage_records import (
     Fastening,
     LinkageConnector,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawing import Drawing, DrawnGear, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway, DrawnPoint
 from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.joining_hints import hint, unjoined

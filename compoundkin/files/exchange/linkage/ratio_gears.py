@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from compoundkin.files.exchange.drawing import DrawnGear
+from compoundkin.files.exchange.drawn_elements import DrawnGear
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageLink, LinkageRatio
 from compoundkin.model.geometry import FRAME

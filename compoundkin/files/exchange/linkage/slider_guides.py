@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import sqrt
 
-from compoundkin.files.exchange.drawing import DrawnArc, DrawnGuideway
+from compoundkin.files.exchange.drawn_elements import DrawnArc, DrawnGuideway
 from compoundkin.files.exchange.drawn_letters import SAME
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
