@@ -1,0 +1,88 @@
+"""A share string out of a link or a file, its checks, and the sections it is made of."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from urllib.parse import quote, unquote
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.files.exchange.pmks_plus.packed_numbers import check_character, hash_of
+
+ADDRESS = "https://app.pmksplus.com/?"
+# How a share string begins: eight flags, decimals, integers, three units or more.
+_BEGINNING = re.compile(r"[0-9A-Za-z_-]{1,2}\.[0-9A-Za-z_,-]+\.[0-9A-Za-z_,-]+\.[0-9A-Za-z_-]{1,6}\.")
+_LINK = re.compile(r"https?://[^?#\s]*\?(?P<query>[^#\s]*)")
+_HASH = re.compile(r"\*(?P<hash>[0-9A-Za-z]{1,6})$")
+# Of what browsers leave as it is in a query, what we leave: nothing that a chat or a mail cuts a link at.
+_PLAIN = ",.-_~*"
+_AGAIN = "copy the link again, whole, from its first character to its last"
+
+
+@dataclass(frozen=True)
+class Sections:
+    """The settings, the records of joints, links and forces, and what follows."""
+
+    settings: tuple[str, str, str, str]
+    joints: tuple[str, ...]
+    links: tuple[str, ...]
+    forces: tuple[str, ...]
+    rest: tuple[str, ...]
+
+
+def is_share_string(text: str) -> bool:
+    """Return whether a text begins as a share string or its link does."""
+    return bool(_BEGINNING.match(_query(text)))
+
+
+def sections_of(text: str, where: str) -> Sections:
+    """Return the sections of a link or a share string. Raises InvalidInput where it is cut off or changed."""
+    body = _checked(_query(text), where)
+    records = iter(body.split("."))
+    one, two, three, four = (next(records, "") for _ in range(4))
+    joints, links, forces = (_until_empty(records) for _ in range(3))
+    for missing, section in (("joints", joints), ("links", links)):
+        if not section or section[-1]:
+            raise InvalidInput(Problem(where, f"it is cut off: its {missing} do not end", _AGAIN))
+    # links of before 2024 end with the forces
+    ends = forces[:-1] if forces and not forces[-1] else forces
+    return Sections((one, two, three, four), joints[:-1], links[:-1], ends, tuple(records))
+
+
+def link_of(body: str) -> str:
+    """Return the link of a share string without its check character."""
+    whole = body + check_character(body)
+    return ADDRESS + quote(whole, safe=_PLAIN)
+
+
+def _query(text: str) -> str:
+    """Return what follows the question mark of a link, or the text itself."""
+    stripped = text.strip()
+    found = _LINK.match(stripped)
+    return found["query"] if found else stripped
+
+
+def _checked(text: str, where: str) -> str:
+    """Return a share string without its check character. Names in links may be written with percent signs."""
+    for plain in (text, unquote(text)):
+        whole = plain
+        hashed = _HASH.search(whole)
+        if hashed:
+            whole = whole[: hashed.start()]
+            if hash_of(whole).lstrip("0") != hashed["hash"].lstrip("0"):
+                continue
+        if whole and whole[-1] == check_character(whole[:-1]):
+            return whole[:-1]
+    what = f"its check character {text[-1:]!r} does not fit its length of {len(text) - 1}: it is cut off or changed"
+    raise InvalidInput(Problem(where, what, _AGAIN))
+
+
+def _until_empty(records: Iterator[str]) -> tuple[str, ...]:
+    """Return the records up to the one that is empty, which ends a section, and that one."""
+    found: list[str] = []
+    for record in records:
+        found.append(record)
+        if not record:
+            break
+    return tuple(found)

@@ -1,0 +1,220 @@
+"""Share links of PMKS+: numbers, all ages of links, what is refused, and that what is written is read again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.base.errors import InvalidInput
+from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.exchanged import Imported
+from compoundkin.files.exchange.pmks_plus.packed_numbers import (
+    check_character,
+    hash_of,
+    packed_decimal,
+    packed_flags,
+    unpacked_decimal,
+    unpacked_flags,
+    unpacked_integer,
+)
+from compoundkin.files.exchange.pmks_plus.pmks_plus_format import FORMAT
+from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.model.loads.force import Force
+from tests.files.exchange.references import entries, entry, holds
+
+ADDRESS = "https://app.pmksplus.com/?"
+
+
+def read(body: str) -> Imported:
+    """Read a share string without its check character, or a whole link."""
+    text = body if body.startswith("http") else body + check_character(body)
+    assert FORMAT.recognises(Content(text.encode()))
+    return FORMAT.read(Content(text.encode()))
+
+
+def body_of(name: str) -> str:
+    return str(entry(name)["text"]).removeprefix(ADDRESS)[:-1]
+
+
+FOUR_BAR = body_of("pmksplus_old_four_bar")
+SLOT = body_of("pmksplus_floating_slot")
+BOOM = body_of("pmksplus_cylinder_boom")
+SLIDER = body_of("pmksplus_inclined_slider")
+
+
+@pytest.mark.parametrize("case", entry("pmksplus_numbers")["cases"], ids=str)
+def test_numbers_and_flags_are_those_of_the_grammar(case: dict[str, object]) -> None:
+    text, value = str(case.get("text")), case.get("value")
+    if "flags" in case:
+        bits = case["bits"]
+        assert isinstance(bits, list)
+        assert packed_flags(bits) == case["flags"]
+        assert list(unpacked_flags(str(case["flags"]), len(bits))) == [bool(bit) for bit in bits]
+    elif "length" in case:
+        assert check_character("x" * int(str(case["length"]))) == case["checksum"]
+    else:
+        assert (unpacked_decimal(text), packed_decimal(float(str(value)))) == (value, text)
+
+
+def test_every_number_of_three_decimals_comes_back() -> None:
+    rng = np.random.default_rng(1)
+    for value in [*rng.integers(-(2**47), 2**47, 200).tolist(), *range(-70, 70)]:
+        assert unpacked_decimal(packed_decimal(value / 1000.0)) == value / 1000.0
+    for wrong in ("", "!", "a b", "F" * 12, "_" * 11, "1.5", "é"):
+        with pytest.raises(ValueError, match=r"^"):
+            unpacked_integer(wrong)
+
+
+def test_the_hash_is_that_of_fowler_noll_and_vo() -> None:
+    # published for "" and "foobar": 811c9dc5 and bf9cf968; here in six digits of base 62
+    digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+    for text, published in (("", 0x811C9DC5), ("foobar", 0xBF9CF968)):
+        value = 0
+        for digit in hash_of(text):
+            value = value * 62 + digits.index(digit)
+        assert value == published
+
+
+@pytest.mark.parametrize("published", entries("pmks+"), ids=lambda published: published["id"])
+def test_links_of_all_ages(published: dict[str, object]) -> None:
+    mechanism = read(str(published["text"])).mechanism
+    holds(mechanism, published)
+    expected = published["expected"]
+    assert isinstance(expected, dict)
+    assert expected.get("unit", mechanism.unit) == mechanism.unit
+    assert list(expected.get("links", mechanism.links)) == list(mechanism.links)
+    assert len(mechanism.links) == expected.get("links_after_welding", len(mechanism.links))
+    (driver,) = mechanism.drives
+    assert expected.get("driver", driver.link) == driver.link
+    speed = expected.get("speed_rad_s", expected.get("speed"))
+    if speed is not None:
+        np.testing.assert_allclose(driver.speed, speed, rtol=1e-15)
+    if "outputs" in expected:
+        assert mechanism.outputs == tuple(f"{name}.position" for name in expected["outputs"])
+    if "mobility" in expected:
+        assert ck.decompose(mechanism).mobility.freedoms == expected["mobility"]
+
+
+@pytest.mark.parametrize("case", entry("pmksplus_refused")["cases"], ids=lambda case: case["reason"])
+def test_refusals_with_their_words(case: dict[str, str]) -> None:
+    words = {"cut off": "cut off", "check character": "check character"}
+    words |= {"a slot lacks one of carrier and two joints": "slot lacks one of carrier and two joints"}
+    words |= {"a link names a joint that is not there": "names a joint 'Z' that is not there"}
+    assert FORMAT.recognises(Content(case["text"].encode()))
+    with pytest.raises(InvalidInput, match=words[case["reason"]]):
+        FORMAT.read(Content(case["text"].encode()))
+
+
+# What is changed in a sound string, and what is then said; the program refuses the same, by its own tests of slots.
+WRONG = {
+    "unknown carrier": (SLOT, ",CD,C,D", ",ZZ,C,D", "joint P: its slot is on a link 'ZZ' that is not there"),
+    "unknown end": (SLOT, ",CD,C,D", ",CD,C,Q", "joint P: its slot is through a joint 'Q' that is not there"),
+    "one end twice": (SLOT, ",CD,C,D", ",CD,C,C", "its slot is through the joint 'C' twice"),
+    "ends of another link": (SLOT, ",CD,C,D", ",AB,C,D", "through 'C' and 'D', not of its carrier 'AB'"),
+    "through itself": (SLOT, ",CD,C,D", ",CD,C,P", "its slot is through itself"),
+    "grounded and carried": (SLOT, "1P,P", "5P,P", "it slides both on the frame and on the link 'CD'"),
+    "a slot of a pin": (SLOT, "0B,B,NS,0,0", "0B,B,NS,0,0,CD,C,D", "it has a slot and does not slide"),
+    "a cylinder on the frame": (SLIDER, "5P,P", "bP,P", "it is of a cylinder and does not slide on a link"),
+    "joints of one id": (FOUR_BAR, "0C,C", "0B,C", "joint B: 2 joints have this id"),
+    "links of one id": (FOUR_BAR, "YRCD,", "YRAB,", "link AB: 2 links have this id"),
+    "a link of no joints": (FOUR_BAR, "c5cae9,C,D,,", "c5cae9,,", "link CD: it has no joint"),
+    "a joint twice": (FOUR_BAR, "c5cae9,C,D,,", "c5cae9,C,C,,", "link CD: it names a joint twice"),
+    "a block of three": (SLIDER, ",C,P,,", ",B,C,P,,", "link CP: it is a block and has not one pin and one sliding"),
+    "no block": (SLIDER, "YPCP", "YRCP", "link CP: it has the sliding joint 'P' and is no block"),
+    "a number": (FOUR_BAR, "0B,B,Fe,VG,0", "0B,B,F!,VG,0", "joint B: its x 'F!' is no number"),
+    "no number": (FOUR_BAR, "0B,B,Fe,VG,0", "0B,B,Fe", "joint B: its y is missing"),
+    "a link of a later age": (FOUR_BAR, "YRCD", "ZRCD", "link CD: its beginning 'ZR' is none that is known"),
+    "an entry of a later age": (FOUR_BAR, "...JA", "...JA.QAB~CD", "the entry 'QAB~CD' is of a kind"),
+    "a unit": (FOUR_BAR, "0.101.", "0.701.", "its unit of length '7' is none that is known"),
+    "driven at a tracer": (FOUR_BAR, ".GP,P", ".IP,P", "joint P: it is driven and joins 1 links"),
+    "a force on nothing": (FOUR_BAR, "...JA", "..2F1,XY,F1,0,0,0,Fe,Fe..JA", "force F1: it is on a link 'XY'"),
+    "a force without direction": (FOUR_BAR, "...JA", "..2F1,CD,F1,0,0,0,0,Fe..JA", "force F1: it has no direction"),
+    "a force below zero": (FOUR_BAR, "...JA", "..2F1,CD,F1,0,0,0,Fe,0Fe..JA", "force F1: its size -1 is negative"),
+    "a guide on itself": (BOOM, "0,GN,G,N", "0,PC,P,C", "link 'PC' slides on itself"),
+    "no joints": (FOUR_BAR, FOUR_BAR[20:], "", "it is cut off"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_cannot_be_meant_is_told_with_its_element(case: str) -> None:
+    body, old, new, words = WRONG[case]
+    assert old in body
+    with pytest.raises(InvalidInput) as caught:
+        read(body.replace(old, new, 1))
+    assert words in str(caught.value)
+
+
+def test_all_problems_are_told_at_once() -> None:
+    wrong = FOUR_BAR.replace("0B,B,Fe,VG,0", "0B,B,F!,VG,0").replace("YRCD", "ZRCD").replace("A,B,,", "A,Z,,")
+    with pytest.raises(InvalidInput) as caught:
+        read(wrong)
+    assert [problem.where for problem in caught.value.problems] == ["joint B", "link CD", "link AB"]
+
+
+def test_inputs_that_turn_and_slide_have_their_own_speeds() -> None:
+    # 7.5 rpm of its own on a floating pin: the second link of the list against the first, as the app has it
+    floating = FOUR_BAR.replace(".6A,A", ".4A,A").replace("0C,C,1Tm,_W,0", "2C,C,1Tm,_W,0,,,,01rC")
+    (driver,) = read(floating).mechanism.drives
+    assert (driver.link, driver.on) == ("CD", "BCP")
+    assert driver.speed == pytest.approx(-7.5 * np.pi / 30.0, rel=1e-15)
+    both = read(BOOM.replace("4O,O", "6O,O")).mechanism
+    assert [(one.link, one.on, float(one.speed or 0)) for one in both.drives] == [
+        ("OC", "frame", pytest.approx(20 * np.pi / 30)),
+        ("PC", "GN", 5.0),
+    ]
+    still = read(FOUR_BAR.replace(".K,0.", ".0,0.")).mechanism
+    assert still.drives[0].speed is None or float(still.drives[0].speed) == 1.0
+
+
+def test_welds_are_of_the_parts_of_a_link_or_of_all_links() -> None:
+    # C welded, two links there: one link. With parts that meet there, the weld is theirs and a third link is pinned.
+    welded = FOUR_BAR.replace("0C,C", "8C,C").replace("4D,D", "0D,D")
+    assert list(read(welded).mechanism.links) == ["frame", "AB", "BCP"]
+    parts = "YRBCP,BCP,Fe,Fe,0,0,c5cae9,B,C,P,,BC,CP.NRBC,BC,0,0,0,0,,B,C,,.NRCP,CP,0,0,0,0,,C,P,,."
+    compound = FOUR_BAR.replace("0C,C", "8C,C").replace("YRBCP,BCP,Fe,Fe,0,0,c5cae9,B,C,P,,.", parts)
+    found = read(compound)
+    assert list(found.mechanism.links) == ["frame", "AB", "BCP", "CD"]
+    assert "at C parts of link BCP are welded; CD is pinned there" in found.notes
+
+
+def test_links_of_two_pins_in_common_are_one() -> None:
+    twin = FOUR_BAR.replace("YRCD", "YRBC2,BC2,Fe,Fe,0,0,c5cae9,B,C,,.YRCD")
+    found = read(twin)
+    assert len(found.mechanism.links) == 4
+    assert "links BC2 and BCP have two pins in common, and so are one link" in found.notes
+    rail = FOUR_BAR.replace(".GP,P", ".4P,P").replace("B,C,P", "B,C").replace("C,D,,", "C,D,,.YRDP,,0,0,0,0,,D,P,,")
+    found = read(rail)
+    assert list(found.mechanism.links) == ["frame", "AB", "BCP", "CD"]
+    assert "link DP is pinned to the frame twice, and so is part of it" in found.notes
+
+
+def test_masses_and_forces_are_in_the_units_of_the_program() -> None:
+    body = FOUR_BAR.replace("YRCD,CD,Fe,Fe,0,0", "YRCD,CD,VG,ku,1Tm,VG").replace("0P.", "0R.", 1)
+    body = body.replace("...JA", "..2F1,CD,push,1Tm,_W,2aM,_W,NS.1F2,AB,pull,Fe,VG,Fe,_W,Fe..JA")
+    mechanism = read(body).mechanism
+    assert mechanism.units is not None
+    assert (mechanism.units.length, mechanism.units.mass, mechanism.units.force) == ("cm", "g", "N")
+    rocker = mechanism.masses["CD"]
+    # 2 g, 3 kg cm^2 = 3000 g cm^2, at (6, 2) as drawn
+    assert (float(rocker.mass), float(rocker.inertia)) == (2.0, 3000.0)
+    centre = complex(mechanism.mass_centre(rocker))
+    assert shown_mechanism(mechanism).place("CD", centre) == pytest.approx(6.0 + 2.0j)
+    assert complex(mechanism.gravity) == pytest.approx(-9.81j)
+    push, pull = mechanism.loads["push"], mechanism.loads["pull"]
+    assert isinstance(push, Force)
+    assert isinstance(pull, Force)
+    assert (complex(push.force), push.fixed_in) == (1.5 + 0j, "frame")
+    # drawn up the crank from its pin, which points in and turns with it
+    assert abs(complex(pull.force)) == pytest.approx(1.0)
+    assert pull.fixed_in == "AB"
+
+
+def test_names_and_hashes_of_links_are_read_as_browsers_write_them() -> None:
+    named = FOUR_BAR.replace("YRCD,CD", "YRCD,Rocker arm é")
+    link = ADDRESS + (named + check_character(named)).replace(" ", "%20").replace("é", "%C3%A9")
+    assert "Rocker arm é" in read(link).mechanism.links
+    whole = FOUR_BAR + check_character(FOUR_BAR)
+    assert read(f"{ADDRESS}{whole}*{hash_of(whole)}").mechanism == read(FOUR_BAR).mechanism
+    with pytest.raises(InvalidInput, match="check character"):
+        read(f"{ADDRESS}{whole}*{hash_of(whole + 'x')}")
