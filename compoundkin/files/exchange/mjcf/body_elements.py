@@ -1,0 +1,88 @@
+"""The bodies of a model, one in another: where they are drawn, their joints, masses and points."""
+
+from __future__ import annotations
+
+from cmath import phase
+from xml.etree.ElementTree import Element, SubElement
+
+from compoundkin.files.exchange.mjcf.elementary_joints import ElementaryJoint
+from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink
+from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.model.geometry import FRAME
+
+
+def number(value: float) -> str:
+    """Return a number with all its digits.
+
+    >>> number(-0.0), number(0.1)
+    ('0.0', '0.1')
+    """
+    return repr(float(value) + 0.0)
+
+
+def place(value: complex) -> str:
+    """Return a place of the plane."""
+    return f"{number(value.real)} {number(value.imag)} 0"
+
+
+def site_name(plan: ModelPlan, letter: str, link: str) -> str:
+    """Return the name of a link's point.
+
+    It is the letter on the first link that has it.
+
+    >>> from compoundkin.files.exchange.mjcf.model_plan import plan_of
+    >>> from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> plan = plan_of(shown_mechanism(load_named("slider-crank")))
+    >>> site_name(plan, "A", "crank"), site_name(plan, "A", "rod")
+    ('A', 'A on rod')
+    """
+    return letter if plan.shown.mechanism.carriers[letter][0] == link else f"{letter} on {link}"
+
+
+def world_element(plan: ModelPlan) -> Element:
+    """Return the frame's body with all others in it."""
+    world = Element("worldbody")
+    _add_sites(plan, world, FRAME)
+    elements = {FRAME: world}
+    for name, (branch, link) in plan.bodies.items():
+        body = SubElement(elements[branch.parent], "body", {"name": name, **_pose(plan, branch, link)})
+        mass = plan.part(link)
+        SubElement(
+            body,
+            "inertial",
+            pos=place(mass.centre),
+            mass=number(mass.mass),
+            diaginertia=" ".join([number(mass.inertia)] * 3),
+        )
+        for joint in branch.joints:
+            _add_joint(plan, body, joint, link)
+        if name == link:
+            elements[link] = body
+            _add_sites(plan, body, link)
+    return world
+
+
+def _pose(plan: ModelPlan, branch: CarriedLink, link: str) -> dict[str, str]:
+    local = plan.pose(branch.parent).inverse().compose(plan.pose(link))
+    pos = place(complex(local.z.c[0]) * plan.units.length)
+    angle = phase(complex(local.u.c[0]))
+    return {"pos": pos, "euler": f"0 0 {number(angle)}"} if angle else {"pos": pos}
+
+
+def _add_joint(plan: ModelPlan, body: Element, joint: ElementaryJoint, link: str) -> None:
+    back = plan.pose(link).inverse()
+    scale = 1.0 if joint.is_hinge else plan.units.length
+    words = {"name": joint.name, "type": "hinge" if joint.is_hinge else "slide"}
+    if joint.is_hinge:
+        words |= {"pos": place(complex(back.at(joint.axis).c[0]) * plan.units.length), "axis": "0 0 1"}
+    else:
+        words |= {"axis": place(complex(back.u.c[0]) * joint.axis)}
+    if joint.reach is not None:
+        words["range"] = " ".join(number(end * scale) for end in joint.reach)
+    SubElement(body, "joint", words)
+
+
+def _add_sites(plan: ModelPlan, body: Element, link: str) -> None:
+    for letter, own in plan.shown.points[link].items():
+        SubElement(body, "site", name=site_name(plan, letter, link), pos=place(own * plan.units.length))

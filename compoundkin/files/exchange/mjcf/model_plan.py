@@ -1,0 +1,130 @@
+"""What is written of a mechanism as a model: its tree, what closes its loops, and which joints are tied."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import Pose
+from compoundkin.files.exchange.mjcf.body_masses import BodyMass, masses_of
+from compoundkin.files.exchange.mjcf.elementary_joints import GEARED, ElementaryJoint, JointChain, chain_of
+from compoundkin.files.exchange.mjcf.joint_ties import geared_tie, straight_tie
+from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink, JointTree, tree_of
+from compoundkin.files.exchange.mjcf.model_units import ModelUnits, units_of
+from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.model.geometry import FRAME
+
+# Bodies that stand on each other deeper are refused: they are written and read one in another.
+_DEEPEST = 200
+
+
+@dataclass(frozen=True)
+class ModelPlan:
+    """A mechanism as a tree of links with joints.
+
+    Loops at pins are closed by connecting them. At another pair that closes one, half of its second link is a body of
+    its own on the first, and both halves are welded: no mass is added. `halves` are such bodies, by their names, with
+    the links that they belong to; `ties` are numbers by joints, whose sum with the joints' coordinates stays zero.
+    """
+
+    shown: ShownMechanism
+    tree: JointTree
+    units: ModelUnits
+    masses: Mapping[str, BodyMass]
+    connected: tuple[JointChain, ...]
+    halves: Mapping[str, tuple[CarriedLink, str]]
+    ties: Mapping[str, Mapping[str, float]]
+    notes: tuple[str, ...]
+
+    @cached_property
+    def bodies(self) -> Mapping[str, tuple[CarriedLink, str]]:
+        """All bodies by name: how they are carried, and of which links they are."""
+        return {**{name: (own, name) for name, own in self.tree.carried.items()}, **self.halves}
+
+    @cached_property
+    def joints(self) -> Mapping[str, ElementaryJoint]:
+        """All joints by name."""
+        return {joint.name: joint for branch, _ in self.bodies.values() for joint in branch.joints}
+
+    def unit_of(self, joint: str) -> float:
+        """Return how much a unit of a joint's coordinate is in the model.
+
+        Slides are scaled, hinges are not.
+        """
+        return 1.0 if self.joints[joint].is_hinge else self.units.length
+
+    def pose(self, link: str) -> Pose:
+        """Return where a link is drawn."""
+        return self.shown.poses[link].trimmed(0)
+
+    @property
+    def size(self) -> float:
+        """The mechanism's size in the model's unit."""
+        return float(self.shown.mechanism.geometry.size * self.units.length)
+
+    def part(self, link: str) -> BodyMass:
+        """Return the mass of each of a link's bodies."""
+        count = sum(1 for _, own in self.bodies.values() if own == link)
+        return self.masses[link].shared(count)
+
+
+def plan_of(shown: ShownMechanism) -> ModelPlan:
+    """Return what is to be written of a mechanism. Raises InvalidInput listing all that no model can say."""
+    chains, problems = [], [*_led(shown)]
+    for pair in shown.structure.pairs:
+        chain = None if pair.table in GEARED else chain_of(shown, pair)
+        if chain is not None:
+            chains.append(chain)
+        elif pair.table not in GEARED:
+            what = f"a {pair.title} is neither a hinge nor a slide, nor made of such"
+            problems.append(Problem(pair.name, what, "leave it out, or write equivalent() of the mechanism"))
+    if problems:
+        raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
+    driven = {step.pair.name for step in shown.structure.driven.values()}
+    tree = tree_of(chains, driven)
+    _hold_bounds(shown, tree)
+    return _plan(shown, tree, driven)
+
+
+def _led(shown: ShownMechanism) -> Iterator[Problem]:
+    for lead in shown.mechanism.leads.values():
+        yield Problem(lead.name, "it is led along a path: no actuator does that", "drive a pin or a slide")
+
+
+def _hold_bounds(shown: ShownMechanism, tree: JointTree) -> None:
+    """Raise InvalidInput where links float, or stand too deep on each other."""
+    floating = [name for name in shown.mechanism.links if name != FRAME and name not in tree.carried]
+    problems = [Problem(name, "nothing joins it to the frame", "pin it, or lead it by a slide") for name in floating]
+    if not floating and tree.depth > _DEEPEST:
+        what = f"{tree.depth} links stand on each other, one body in another"
+        problems.append(Problem("links", what, f"at most {_DEEPEST} can be written"))
+    if problems:
+        raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
+
+
+def _plan(shown: ShownMechanism, tree: JointTree, driven: set[str]) -> ModelPlan:
+    units = units_of(shown.mechanism)
+    masses, told = masses_of(shown, units)
+    ties = {chain.pair.name: chain.tie for chain in _carrying(tree) if chain.tie}
+    ties.update(
+        {pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if pair.table in GEARED}
+    )
+    connected, halves = [], {}
+    for chain in tree.closing:
+        straight = straight_tie(tree, chain) if chain.tie else None
+        if straight is not None:
+            ties[chain.pair.name] = straight
+        elif chain.pair.table or chain.pair.name in driven:
+            first, second = chain.members
+            of, on, sign = (second, first, 1) if second != FRAME else (first, second, -1)
+            halves[f"{of} at {chain.pair.name}"] = (CarriedLink(of, on, chain, sign), of)
+            ties.update({chain.pair.name: chain.tie} if chain.tie else {})
+        else:
+            connected.append(chain)
+    return ModelPlan(shown, tree, units, masses, tuple(connected), halves, ties, told)
+
+
+def _carrying(tree: JointTree) -> Iterator[JointChain]:
+    return (branch.chain for branch in tree.carried.values())
