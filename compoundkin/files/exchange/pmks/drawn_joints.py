@@ -37,7 +37,7 @@ def joints_of(drawing: Drawing, notation: Notation) -> JointList:
     for point in _in_order(drawing):
         guides = [guide for guide in drawing.guides if guide.at == point.key]
         if not any(point.links == (guide.link,) for guide in guides):
-            records += _pins(point, driven.get(point.key))
+            records += _pins(point, driven.get(point.key), notation.splits_pins)
         records += (_line(guide, point, driven.get(guide.key)) for guide in guides)
     records += (_contact(gear, places) for gear in drawing.gears)
     records += (_rack_contact(rack, places) for rack in drawing.racks)
@@ -100,15 +100,16 @@ def _is_guided(rack: DrawnRack, drawing: Drawing) -> bool:
     )
 
 
-def _pins(point: DrawnPoint, driver: DrawnDriver | None) -> Iterator[JointRecord]:
+def _pins(point: DrawnPoint, driver: DrawnDriver | None, splits: bool) -> Iterator[JointRecord]:
     """Yield the record of a point; where it is driven the two links that are have one to themselves."""
     links = point.links
-    if driver is not None:
+    if driver is not None and (splits or len(links) == 2):
         yield JointRecord("R", (driver.on, driver.link), point.at, drives=True, name=point.called)
         links = (driver.link, *(name for name in links if name not in (driver.on, driver.link)))
         if len(links) == 1:
             return
-    yield JointRecord("R", links, point.at, name=point.called)
+        driver = None
+    yield JointRecord("R", links, point.at, drives=driver is not None, name=point.called)
 
 
 def _line(guide: DrawnGuideway, point: DrawnPoint, driver: DrawnDriver | None) -> JointRecord:

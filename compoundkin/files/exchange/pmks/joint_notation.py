@@ -16,6 +16,7 @@ class Notation:
 
     `gears`: whether it has them; `most_drivers`: how many it takes; `slots_drive`: whether a pin in a slot can;
     `loose_drivers`: whether a pin of two moving links can.
+    `splits_pins`: whether a driven pin of many links is two joints.
     """
 
     program: str
@@ -25,6 +26,7 @@ class Notation:
     most_drivers: int
     slots_drive: bool
     loose_drivers: bool
+    splits_pins: bool
 
     def names(self, links: Iterable[DrawnLink]) -> Mapping[str, str]:
         """Return a name for each link by its key, such as the program takes."""

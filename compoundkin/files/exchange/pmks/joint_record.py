@@ -43,12 +43,14 @@ class JointRecord:
 class JointDriver:
     """The record that is driven, by its number from 0.
 
-    `toward` is another record of the driven link, where its direction is counted by it.
+    `toward` is another record of the driven link, where its direction is counted by it. `link` is that driven
+    against the frame where the joint alone does not tell.
     """
 
     joint: int
     toward: int | None = None
     speed: float | None = None
+    link: str = ""
 
 
 @dataclass(frozen=True)

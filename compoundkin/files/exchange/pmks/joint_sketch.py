@@ -114,7 +114,7 @@ def _driver(driver: JointDriver, records: Sequence[JointRecord], pins: Mapping[i
     if record.is_guide:
         link, on = guided(record)
         return DrawnDriver(link, on, guide_key(driver.joint), driver.speed, where=record.where)
-    on, link = record.links[:2]
+    on, link = (FRAME, driver.link) if driver.link else record.links[:2]
     if link == FRAME:
         link, on = on, link
     return DrawnDriver(link, on, str(pins[driver.joint]), driver.speed, where=record.where)

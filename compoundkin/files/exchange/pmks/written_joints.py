@@ -17,6 +17,7 @@ PMKS = Notation(
     most_drivers=1,
     slots_drive=False,
     loose_drivers=True,
+    splits_pins=True,
 )
 
 

@@ -1,0 +1,1 @@
+"""pyslvs and Pyslvs-UI: expressions of mechanisms and project files."""
