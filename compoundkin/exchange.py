@@ -9,5 +9,6 @@ from __future__ import annotations
 
 from compoundkin.files.exchange.conversion import read, write
 from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkage
 
-__all__ = ["Exported", "Imported", "read", "write"]
+__all__ = ["Exported", "Imported", "from_pylinkage", "read", "write"]

@@ -1,0 +1,1 @@
+"""pylinkage: its JSON in and out, and its objects as they are."""
