@@ -195,4 +195,8 @@ def _dropped(shown: ShownMechanism, other_loads: int) -> Iterator[tuple[str, int
     yield "outline", len(mechanism.outlines)
     yield "published number", len(mechanism.expectations)
     yield "law of a driver", sum(one.law is not None for one in mechanism.drives)
-    yield "end of a guide", sum(getattr(pair, "reach", None) is not None for pair in shown.pairs)
+    yield "end of a guide", sum(_is_ended(pair) for pair in shown.pairs)
+
+
+def _is_ended(pair: Any) -> bool:
+    return any(key.name == "reach" and pair.reach is not None for key in pair.keys)
