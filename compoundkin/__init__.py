@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from compoundkin import equations as equations
     from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
+    from compoundkin import exchange as exchange
     from compoundkin import goals as goals
     from compoundkin import laws as laws
     from compoundkin import machine as machine
@@ -174,7 +175,8 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
-    *("equations", "equivalents", "errors", "goals", "laws", "machine", "performance", "plots", "profiles", "results"),
+    *("equations", "equivalents", "errors", "exchange", "goals", "laws", "machine", "performance", "plots"),
+    *("profiles", "results"),
 )
 
 

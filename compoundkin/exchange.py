@@ -7,8 +7,9 @@
 
 from __future__ import annotations
 
+from compoundkin.analysis.comparison.comparison_of_mechanisms import compare
 from compoundkin.files.exchange.conversion import read, write
-from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.known_formats import formats
 from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkage
 
-__all__ = ["Exported", "Imported", "from_pylinkage", "read", "write"]
+__all__ = ["compare", "formats", "from_pylinkage", "read", "write"]

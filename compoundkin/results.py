@@ -10,6 +10,14 @@ from __future__ import annotations
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
 from compoundkin.analysis.checks import Check, Finding
+from compoundkin.analysis.comparison.comparison_findings import (
+    ComparedDriver,
+    ComparedFact,
+    ComparedLength,
+    MechanismComparison,
+    PlaceDifference,
+    TurnDifference,
+)
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.interference.interference_findings import Interference, LinkClearance, LinkTouch
 from compoundkin.configurations.circuit_search import Circuits
@@ -32,6 +40,8 @@ from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.dynamics.work.power import Powers
+from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.known_formats import KnownFormat
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
@@ -69,11 +79,15 @@ __all__ = [
     "Characteristics",
     "Check",
     "Circuits",
+    "ComparedDriver",
+    "ComparedFact",
+    "ComparedLength",
     "CompiledPath",
     "Configuration",
     "Configurations",
     "DriverEffort",
     "Efficiency",
+    "Exported",
     "Finding",
     "Forces",
     "FrictionForces",
@@ -82,9 +96,11 @@ __all__ = [
     "GroupMode",
     "HeldConstraint",
     "HoldingEffort",
+    "Imported",
     "Interference",
     "Jacobian",
     "JaxPath",
+    "KnownFormat",
     "LiftOff",
     "LiftOffSpeed",
     "LinkClearance",
@@ -94,6 +110,7 @@ __all__ = [
     "LinkWrench",
     "LocalMinimum",
     "LoopEquations",
+    "MechanismComparison",
     "MobilityAnalysis",
     "Motion",
     "ObjectivePose",
@@ -108,6 +125,7 @@ __all__ = [
     "PathValues",
     "Picture",
     "PinForces",
+    "PlaceDifference",
     "Plot",
     "PointMotion",
     "PoseStretch",
@@ -125,6 +143,7 @@ __all__ = [
     "StudyResult",
     "Table",
     "ToleranceAnalysis",
+    "TurnDifference",
     "Undetermined",
     "Wedged",
     "Workspace",

@@ -74,8 +74,8 @@ def test_the_page_on_compiled_programs_is_true(tmp_path: Path) -> None:
         assert float(angles[0] - angles[1]) / 2e-4 == pytest.approx(float(slope[at]), rel=1e-7)
 
 
-@pytest.mark.parametrize("page", ["studies.md", "optimisation.md"])
-def test_the_pages_on_many_designs_print_what_they_show(
+@pytest.mark.parametrize("page", ["studies.md", "optimisation.md", "exchange/index.md"])
+def test_the_pages_on_many_designs_and_other_programs_print_what_they_show(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -29,7 +29,9 @@ VERBS = {
     "simulate": "How it moves under its masses and loads, in time.",
     "study": "Many designs: what dimensions do to figures, as a study file says.",
     "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
-    "export": "A function in C, Python, JavaScript or MATLAB, for programs of your own.",
+    "import": "A mechanism out of another program's file or link: PMKS+, Linkage, pyslvs and others.",
+    "export": "A file for another program, or a function in C, Python, JavaScript or MATLAB.",
+    "compare": "Two mechanisms side by side: structure, dimensions, how far apart they move.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",
@@ -38,8 +40,11 @@ VERBS = {
     "completion": "The script that completes commands in your shell.",
 }
 
-# Verbs whose file has another name, for what they ask for has a file of that name in its own room.
-_FILES = {"forces": "mechanism_forces", "study": "study_command", "tolerance": "tolerance_command"}
+# Verbs whose file has another name: that of a word of Python, or of a file in the room of what they ask for.
+_FILES = {
+    **{"compare": "comparison_command", "forces": "mechanism_forces", "import": "import_command"},
+    **{"study": "study_command", "tolerance": "tolerance_command"},
+}
 
 EPILOG = """\b
 Examples:
@@ -54,7 +59,7 @@ Exit codes:
   0  all is well
   2  wrong input: a file, an option, a mechanism that cannot be solved
   3  some poses cannot be assembled
-  4  a check failed, or a published number was not reproduced
+  4  a check failed, a published number was missed, or two mechanisms differ
 """
 
 

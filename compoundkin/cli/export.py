@@ -8,46 +8,78 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import SUFFIXES, alternatives, form_of
+from compoundkin.base.suffixes import SUFFIXES, form_of, suffix_for, suffix_of
 from compoundkin.cli.drive_options import MODE, assembly_modes, names
 from compoundkin.cli.file_options import loaded, mechanism_argument, to_file, write_new
+from compoundkin.cli.foreign_export import OF_POSES, exported, form_by_suffix, pictured, refuse
 from compoundkin.cli.shell import put, say
+from compoundkin.files.exchange import MODULES, READ_ONLY
 from compoundkin.model.attributes import OF_POINTS
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
 
 
-def _program(structure: Structure, form: str, asked: Mapping[str, Any]) -> str:
+def _program(structure: Structure, form: str, asked: Mapping[str, Any]) -> bytes:
     """A function in another language."""
     from compoundkin.cli.progress import working
     from compoundkin.programs.compilation import compile
 
+    refuse(form, asked, OF_POSES)
     modes = assembly_modes(structure, asked["modes"]) or None
     outputs = asked["outputs"] or _own_outputs(structure)
     with working("solving"):
-        return compile(structure, outputs, free=asked["free"], modes=modes).source(form, asked["name"])
+        text = compile(structure, outputs, free=asked["free"], modes=modes).source(form, asked["called"])
+    return text.encode("utf-8")
 
 
-# What can be exported, by the form: each form of a kind of files, and what makes its text.
-TARGETS: Mapping[str, Callable[[Structure, str, Mapping[str, Any]], str]] = {
+TIKZ = "tikz"
+# What can be exported, by the form: each language of programs and each format of other programs, and what makes it.
+TARGETS: Mapping[str, Callable[[Structure, str, Mapping[str, Any]], bytes]] = {
     **dict.fromkeys(SUFFIXES["program"].values(), _program),
+    **dict.fromkeys((name for name in MODULES if name not in READ_ONLY), exported),
+    TIKZ: pictured,
 }
 
 
+class WithTargets(click.Command):
+    """A command that lists what can be exported in its help."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the formats of other programs with their options, then the examples."""
+        from compoundkin.files.exchange.known_formats import writable_formats
+
+        rows = []
+        for one in writable_formats().values():
+            rows.append((one.name, f"{one.title} ({one.suffix})" if one.suffix else one.title))
+            rows += [(f"  --option {name}=...", text) for name, text in one.options.items()]
+        rows.append((TIKZ, f"the kinematic sketch for LaTeX ({suffix_for('picture', TIKZ)})"))
+        with formatter.section("Formats of other programs"):
+            formatter.write_dl(rows)
+        super().format_epilog(ctx, formatter)
+
+
 @click.command(
+    cls=WithTargets,
     epilog="""\b
 Examples:
+  compoundkin export six-bar -o six_bar.linkage2
+  compoundkin export six-bar --to pmks+ --at 35
   compoundkin export six-bar -o six_bar.c
   compoundkin export six-bar --to python --output G.position,bar.angle
   compoundkin export six-bar --free crank.D --free plate.C -o six_bar.js
-  compoundkin export linkage.toml --output P.acceleration -o linkage.m
-"""
+""",
 )
 @mechanism_argument
-@click.option("--to", "form", type=click.Choice(tuple(TARGETS)), help="As what; the suffix of PATH tells too.")
+@click.option("--to", "form", type=click.Choice(tuple(TARGETS)), metavar="FORM",
+              help="As what: c, python, javascript, matlab, or a format of another program (see below); the suffix "
+              "of PATH tells too.")  # fmt: skip
+@click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
+              help="For other programs: the pose, a driver's value, degrees or length; as drawn if left "
+              "out.")  # fmt: skip
+@click.option("--option", "options", multiple=True, metavar="NAME=VALUE", help="An option of the format.")
 @click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: names(given),
-              help="What it answers, such as G.velocity, bar.angle, slot.rate; repeat it, or write commas. "
+              help="What a function answers, such as G.velocity, bar.angle, slot.rate; repeat it, or write commas. "
               "The outputs of the file if left out, else all points.")  # fmt: skip
 @click.option("--free", "free", multiple=True, metavar="DIMENSION", callback=lambda _c, _p, given: names(given),
               help="A dimension that it is given, such as crank.D; repeat it, or write commas.")  # fmt: skip
@@ -55,27 +87,36 @@ Examples:
 @click.option(
     "--name", "name", metavar="NAME", default="", help="What the function is called; as the file if left out."
 )
-@to_file(f"Write it here: {alternatives('program')}; else to stdout.")
+@to_file("Write it here; else to stdout.")
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def command(file: str, path: str | None, form: str | None, force: bool, **asked: Any) -> None:
-    """Write a mechanism as a function in C, Python, JavaScript or MATLAB.
+    """Write a mechanism for another program, or as a function in another language.
 
-    It needs nothing else. It is given drivers' values (radians or lengths), their rates and free dimensions, and
-    answers the outputs.
+    Those are C, Python, JavaScript and MATLAB: a function is given drivers' values (radians or lengths), their rates
+    and free dimensions, and answers the outputs. Files of other programs hold one pose; what they cannot say is
+    refused, what does not come across is said.
     """
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.structure import decompose
 
     if form is None and path is None:
         raise InvalidInput(Problem("--to", "it is not said as what", f"give one of {', '.join(TARGETS)}"))
-    form = form or form_of("program", path or "")
-    asked["name"] = asked["name"] or Path(path or file).stem
-    text = TARGETS[form](decompose(loaded(file)), form, asked)
+    form = form or _form_of(path or "")
+    asked["called"] = asked["name"] or Path(path or file).stem
+    content = TARGETS[form](decompose(loaded(file)), form, asked)
     if path is None:
-        put(text.encode("utf-8"))
+        put(content)
     else:
-        write_new(Path(path), text.encode("utf-8"), force)
+        write_new(Path(path), content, force)
         say(f"Wrote {path}.")
+
+
+def _form_of(path: str) -> str:
+    """The form that a suffix tells: of programs in other languages, else of other programs' files."""
+    suffix = suffix_of(path)
+    if suffix == suffix_for("picture", TIKZ):
+        return TIKZ
+    return form_of("program", path) if suffix in SUFFIXES["program"] else form_by_suffix(path)
 
 
 def _own_outputs(structure: Structure) -> list[str]:

@@ -70,12 +70,18 @@ def mechanism_argument(command: F) -> F:
 
 
 def loaded(file: str) -> Mechanism:
-    """Load the mechanism of a file or of a name. Raises what is wrong with it."""
+    """Load the mechanism of a file or of a name. Raises what is wrong with it.
+
+    Files of other programs, and links that hold a mechanism, are files too.
+    """
+    from compoundkin.cli.foreign_import import imported, is_foreign
     from compoundkin.files import load
     from compoundkin.files.shipped_mechanisms import resolve
 
     if Path(file).is_dir():
         raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
+    if is_foreign(file):
+        return imported(file).mechanism
     # what is there but is no regular file, such as a pipe, is for `load` to judge
     return load(file if Path(file).exists() else resolve(file))
 

@@ -17,7 +17,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
         *("studies", "clusters", "tolerances", "optimisation", "compiled"),
-        *("cli", "file-format", "study-files", "programs_in_other_languages"),
+        *("cli", "file-format", "exchange/index", "study-files", "programs_in_other_languages"),
     ),
     "Understand it": ("theory", "friction", "notation"),
     "Examples": ("gallery/index", "catalog"),

@@ -28,6 +28,9 @@ MODULES = {
     "cam-profile": "cam_profile.cam_profile_format",
 }
 
+# Formats that are only read.
+READ_ONLY = ("linkage-sim",)
+
 
 def format_named(name: str) -> ExchangeFormat:
     """Return the format of a word."""

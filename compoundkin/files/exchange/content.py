@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +13,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 # What files and links may hold. The largest known are of some hundred kilobytes, and of ten.
 MOST_BYTES = 8_000_000
 MOST_OF_LINK = 200_000
+# A text with more full stops than this, and nothing that paths have, is a link without its address.
+_PARTS = 8
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,7 @@ def content_of(source: str | os.PathLike[str]) -> Content:
     Of a path it is the file, of a link or of a text of several lines that itself. Nothing is ever fetched. Raises
     InvalidInput for what cannot be read or is too large.
     """
-    if isinstance(source, str) and _is_itself(source):
+    if isinstance(source, str) and (_is_itself(source) or _is_pasted(source)):
         raw = source.encode("utf-8", "surrogatepass")
         if len(raw) > (MOST_BYTES if "\n" in source else MOST_OF_LINK):
             raise _too_large("the text", len(raw), MOST_BYTES if "\n" in source else MOST_OF_LINK)
@@ -85,6 +88,11 @@ def content_of(source: str | os.PathLike[str]) -> Content:
 def _is_itself(source: str) -> bool:
     """Return whether a text is what is to be read and no path: nothing is ever fetched."""
     return "\n" in source or "://" in source or source.lstrip()[:2] in ("M[", '{"') or "mech=" in source
+
+
+def _is_pasted(source: str) -> bool:
+    """Return whether a text is what follows a link's question mark. No file is called so, with this many parts."""
+    return source.count(".") > _PARTS and re.fullmatch(r"[\w.,:;+ -]+", source) is not None
 
 
 def _too_large(where: str, size: int, most: int) -> InvalidInput:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from contextlib import suppress
 from typing import Any
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.files.exchange import MODULES, format_named
-from compoundkin.files.exchange.content import Content, content_of
-from compoundkin.files.exchange.contract import Readable, Writable
+from compoundkin.files.exchange.content import content_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.known_formats import readable_formats, writable_formats
+from compoundkin.files.exchange.recognition import recognised
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from compoundkin.model.mechanism import Mechanism
 
@@ -29,12 +28,10 @@ def read(source: str | os.PathLike[str], form: str = "") -> Imported:
     ('crank', 'rod')
     """
     content = content_of(source)
-    known = {name: one for name, one in _formats() if isinstance(one, Readable)}
-    if form:
-        if form not in known:
-            raise InvalidInput(Problem("form", f"no format {form!r} is read", nearest(form, list(known))))
-        return known[form].read(content)
-    return _recognised(content, known).read(content)
+    known = readable_formats()
+    if form and form not in known:
+        raise InvalidInput(Problem("form", f"no format {form!r} is read", nearest(form, list(known))))
+    return recognised(content, known, form).read(content)
 
 
 @checked
@@ -48,7 +45,7 @@ def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None
     >>> write(load_named("slider-crank"), "pmks").text.splitlines()[0].split(",")[2]
     'R'
     """
-    known = {name: one for name, one in _formats() if isinstance(one, Writable)}
+    known = writable_formats()
     if form not in known:
         raise InvalidInput(Problem("form", f"no format {form!r} is written", nearest(form, list(known))))
     unknown = [name for name in options if name not in known[form].options]
@@ -56,20 +53,3 @@ def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None
         remedy = nearest(unknown[0], list(known[form].options))
         raise InvalidInput(Problem(unknown[0], f"{form} is written without it", remedy))
     return known[form].write(shown_mechanism(mechanism, at), **options)
-
-
-def _formats() -> list[tuple[str, Any]]:
-    found = []
-    for name in MODULES:
-        with suppress(ModuleNotFoundError):  # until all of them are there
-            found.append((name, format_named(name)))
-    return found
-
-
-def _recognised(content: Content, known: Mapping[str, Readable]) -> Readable:
-    """Return the format of a content. Raises InvalidInput where it is none that is known."""
-    for one in known.values():
-        if one.recognises(content):
-            return one
-    what = "it is no mechanism of a program that is known here"
-    raise InvalidInput(Problem(content.where, what, f"known: {', '.join(one.title for one in known.values())}"))

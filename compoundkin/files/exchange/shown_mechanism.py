@@ -17,12 +17,11 @@ from compoundkin.base.series import Number, Series
 from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import drawn_value
+from compoundkin.kinematics.nearest_pose import pose_nearest_to_drawing
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Structure, decompose
 
-# Places nearer to each other than this part of the size are one.
-_ROUNDING = 1e-6
 # A drawing is exact that is met to this part of the size: what rounding to printed digits never leaves.
 _DIGITS = 1e-9
 # What the arithmetic of a pose leaves of a place, as a part of the size.
@@ -115,7 +114,7 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
         what = f"it has {motion.inputs.designs} designs, a file of another program holds one"
         raise InvalidInput(Problem(mechanism.title, what, "give the dimensions of one design"))
     exact = _exactly_drawn(motion) if at is None else None
-    shown, pose = (motion, _nearest_to_drawing(motion)) if exact is None else (exact, 0)
+    shown, pose = (motion, pose_nearest_to_drawing(motion)) if exact is None else (exact, 0)
     return ShownMechanism(
         structure,
         {name: place.entry((0, pose)) for name, place in shown.poses.items()},
@@ -155,21 +154,6 @@ def _exactly_drawn(motion: Motion) -> Motion | None:
     off = [abs(complex(np.ravel(found.points[k].position)[0]) - complex(first_entry(p))) for k, p in sketch.items()
            if k in motion.mechanism.carriers]  # fmt: skip
     return found if max(off, default=np.inf) <= _DIGITS * motion.size else None
-
-
-def _nearest_to_drawing(motion: Motion) -> int:
-    """Return the index of the assembled pose nearest to the drawn points; of several that are, the first."""
-    known = np.flatnonzero(np.ravel(motion.failed) == 0)
-    if not known.size:
-        what = "no pose of its motion can be assembled"
-        raise NotAssembled(Problem(motion.mechanism.title, what, "gaps() tells why; name another pose"))
-    off = np.zeros(known.size)
-    for letter, drawn in motion.mechanism.sketch.items():
-        if letter in motion.mechanism.carriers:
-            places = np.ravel(motion.points[letter].position)
-            off += np.abs((places if places.size == 1 else places[known]) - first_entry(drawn)) ** 2
-    near = known[off <= off.min() + (_ROUNDING * motion.size) ** 2]
-    return int(near[0])
 
 
 def _number(value: Any) -> Number:

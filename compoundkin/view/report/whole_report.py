@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from math import prod
 from typing import TYPE_CHECKING, TypeAlias
 
+from compoundkin.analysis.comparison.comparison_findings import MechanismComparison
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.given_numbers import hold_design
@@ -18,6 +19,7 @@ from compoundkin.structure import Structure, decompose
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
+from compoundkin.view.report.comparison_report import comparison_report
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.optimum_report import optimum_report
 from compoundkin.view.report.report_data import Outcome
@@ -33,7 +35,7 @@ from compoundkin.view.report.tolerance_report import tolerance_report
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
-Studied: TypeAlias = StudyResult | ToleranceAnalysis | Optimum
+Studied: TypeAlias = StudyResult | ToleranceAnalysis | Optimum | MechanismComparison
 Reported: TypeAlias = Mechanism | Structure | Motion | Studied
 # So many rows with the least values of a figure are listed, and as many with the greatest.
 BEST = 3
@@ -49,7 +51,7 @@ def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Repo
     before the last: what is reported and checked is that design by itself, however many there are.
 
     Of a study the rows with the least and the greatest values of `outputs` are listed, of a tolerance analysis those
-    outputs are reported, and of an optimum its page plots them.
+    outputs are reported, and of an optimum its page plots them. A comparison of two mechanisms is reported as a whole.
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 
@@ -94,6 +96,8 @@ def _of_study(what: Studied, outputs: Sequence[str], design: int) -> Report:
         return tolerance_report(what, outputs)
     if isinstance(what, Optimum):
         return optimum_report(what, outputs)
+    if isinstance(what, MechanismComparison):
+        return comparison_report(what)
     return study_report(what, outputs, outputs, BEST)
 
 

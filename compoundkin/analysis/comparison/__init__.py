@@ -1,0 +1,1 @@
+"""Comparison: two mechanisms side by side, their structure, their dimensions, and how far apart they move."""

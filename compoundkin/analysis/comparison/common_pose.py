@@ -1,0 +1,146 @@
+"""A pose that two mechanisms have in common: from there their drivers are moved alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.analysis.comparison.compared_side import ComparedSide
+from compoundkin.analysis.comparison.like_stance import values_of_like_stance
+from compoundkin.analysis.comparison.point_partners import partners_by_name, partners_by_place, shares_places
+from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.series import Number
+from compoundkin.model.units import LENGTHS
+
+# So many steps of Newton are taken to a pose, from so many poses of a motion; steps below this are rounding.
+_STEPS, _STARTS, _STILL = 10, 2, 1e-13
+# Steps go on while they leave less than this part of the squares: near a pose that is found they leave far less.
+_LESS = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class CommonPose:
+    """Two mechanisms at one pose, with the points that stand for each other.
+
+    `values` and `other_values` are their drivers'. `matched_by` is "place" or "name".
+    """
+
+    one: ComparedSide
+    other: ComparedSide
+    values: Mapping[str, float]
+    other_values: Mapping[str, float]
+    points: Mapping[str, str]
+    matched_by: str
+
+    @property
+    def reversed(self) -> CommonPose:
+        """The same, the second first."""
+        points = {partner: letter for letter, partner in self.points.items()}
+        return CommonPose(self.other, self.one, self.other_values, self.values, points, self.matched_by)
+
+
+def common_pose(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
+    """Return a pose that both have. None where no place and too few names tell one."""
+    for scale in _scales(one, other):
+        found = _by_place(one, other.scaled(scale))
+        if found is not None:
+            return found
+    return _by_name(one, other.scaled(_scales(one, other)[0]))
+
+
+def _scales(one: ComparedSide, other: ComparedSide) -> list[float]:
+    """Return what lengths of the second may have to be multiplied by.
+
+    Units tell it; where one has none, what is read as written, else the power of ten that makes the two as large.
+    """
+    units = [LENGTHS.get(side.mechanism.unit) for side in (one, other)]
+    if units[0] and units[1]:
+        return [units[1] / units[0]]
+    ratio = one.size / other.size
+    power = float(10.0 ** np.round(np.log10(ratio))) if 0.0 < ratio < np.inf else 1.0
+    return list(dict.fromkeys((1.0, power)))
+
+
+def _by_place(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
+    """Find the pose in which one is shown in the motion of the other."""
+    at_one, at_other = (side.places(side.motion)[side.pose] for side in (one, other))
+    values = _found(one, other, at_other)
+    if values is not None:
+        return _matched(one, other, values, other.shown)
+    values = _found(other, one, at_one)
+    return None if values is None else _matched(one, other, one.shown, values)
+
+
+def _matched(
+    one: ComparedSide, other: ComparedSide, values: Mapping[str, float], other_values: Mapping[str, float]
+) -> CommonPose:
+    places = one.places(one.at(values)), other.places(other.at(other_values))
+    points = partners_by_place(one, places[0], other, places[1])
+    return CommonPose(one, other, values, other_values, points, "place")
+
+
+def _found(moving: ComparedSide, shown: ComparedSide, places: Number) -> dict[str, float] | None:
+    """Return the driver values at which a mechanism is where another is shown. None where it never comes there."""
+    for start in _starts(moving, shown, places):
+        try:
+            values = _approached(moving, shown, places, start)
+            there = moving.places(moving.at(values))[0]
+        except CompoundkinError:
+            continue
+        if shares_places(moving, there, shown, places):
+            return values
+    return None
+
+
+def _starts(moving: ComparedSide, shown: ComparedSide, places: Number) -> Iterator[dict[str, float]]:
+    """Yield the values of the pose that is shown, then of those nearest to the places."""
+    yield moving.shown
+    course = moving.places(moving.motion)
+    off = np.array([np.mean(np.abs(_offsets(moving, shown, row, places)[1]) ** 2) for row in course])
+    for pose in np.argsort(off)[:_STARTS]:
+        if np.isfinite(off[pose]):
+            yield moving.values(int(pose))
+
+
+def _offsets(moving: ComparedSide, shown: ComparedSide, at: Number, places: Number) -> tuple[Number, Number]:
+    """Return which points are led to places, and how far off they are. It is the marks of the one that has fewer."""
+    if len(moving.marks) <= len(shown.marks):
+        which = np.array([moving.letters.index(k) for k in moving.marks], dtype=int)
+        goals = places
+        nearest = np.abs(at[which][:, None] - goals).argmin(axis=1)
+        return which, goals[nearest] - at[which]
+    goals = places[[shown.letters.index(k) for k in shown.marks]]
+    which = np.abs(at[:, None] - goals).argmin(axis=0)
+    return which, goals - at[which]
+
+
+def _approached(
+    moving: ComparedSide, shown: ComparedSide, places: Number, start: Mapping[str, float]
+) -> dict[str, float]:
+    """Return the driver values at which the points are nearest to the places, by the method of Gauss and Newton."""
+    values, before = dict(start), np.inf
+    for _ in range(_STEPS):
+        there, rates = moving.rates(values)
+        which, off = _offsets(moving, shown, there, places)
+        rows = np.concatenate([rates[which].real, rates[which].imag])
+        step = np.zeros(0)
+        if np.isfinite(rows).all():
+            step = np.linalg.lstsq(rows, np.concatenate([off.real, off.imag]), rcond=None)[0]
+        for name, change in zip(values, step, strict=False):
+            values[name] += float(change)
+        far = float(np.sum(np.abs(off) ** 2))
+        if np.abs(step).max(initial=0.0) <= _STILL or far > _LESS * before:
+            break
+        before = far
+    return values
+
+
+def _by_name(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
+    """Return a pose by the names of points. None where no more than half of the marks have names in common."""
+    points = partners_by_name(one, other)
+    known = sum(k in points for k in one.marks)
+    if 2 * known <= min(len(one.marks), len(other.marks)):
+        return None
+    return CommonPose(one, other, one.shown, values_of_like_stance(one, other, points), points, "name")

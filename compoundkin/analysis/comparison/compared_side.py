@@ -1,0 +1,117 @@
+"""One of two mechanisms that are compared, as it moves by itself and at the pose nearest to its drawing."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.nearest_pose import pose_nearest_to_drawing
+from compoundkin.model.elements import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import Structure
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedSide:
+    """A mechanism solved over its drivers' own ranges. Its lengths count `scale` times."""
+
+    motion: Motion
+    pose: int
+    scale: float = 1.0
+
+    @property
+    def structure(self) -> Structure:
+        """What it is made of."""
+        return self.motion.structure
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.structure.mechanism
+
+    @cached_property
+    def letters(self) -> tuple[str, ...]:
+        """The points, without those that are only thought."""
+        thought = self.mechanism.led_links
+        return tuple(k for k, names in self.mechanism.carriers.items() if not thought.issuperset(names))
+
+    @cached_property
+    def fixed(self) -> frozenset[str]:
+        """The points of the frame."""
+        return frozenset(k for k in self.letters if FRAME in self.mechanism.carriers[k])
+
+    @cached_property
+    def marks(self) -> tuple[str, ...]:
+        """The points that a pose is known by. Those are the moving pins, or where there are none what moves."""
+        moving = [k for k in self.letters if k not in self.fixed]
+        return tuple(k for k in moving if k in self.mechanism.pins) or tuple(moving)
+
+    @property
+    def shown(self) -> dict[str, float]:
+        """The drivers' values at the pose nearest to the drawing."""
+        return self.values(self.pose)
+
+    @property
+    def size(self) -> float:
+        """The length scale."""
+        return self.motion.size * self.scale
+
+    def values(self, pose: int) -> dict[str, float]:
+        """Return the drivers' values at a pose of its own motion."""
+        return {name: float(np.ravel(drive.value)[pose]) for name, drive in self.motion.drives.items()}
+
+    def at(self, values: Mapping[str, Number], order: int = 1) -> Motion:
+        """Return its motion at other values of the drivers, quietly."""
+        return quietly_solved(self.structure, {k: np.atleast_1d(v) for k, v in values.items()}, order)
+
+    def rates(self, values: Mapping[str, float]) -> tuple[Number, Number]:
+        """Return where its points are, and how fast drivers move them.
+
+        Rates are those by each driver alone at unit speed, (points, drivers).
+        """
+        motions = [
+            quietly_solved(self.structure, values, 1, {name: float(name == moved) for name in values})
+            for moved in values
+        ]
+        found = [[np.ravel(motion.points[k].velocity)[0] for k in self.letters] for motion in motions]
+        return self.places(motions[0])[0], np.array(found).T * self.scale
+
+    def places(self, motion: Motion) -> Number:
+        """Return where its points are, (poses, points)."""
+        found = [np.broadcast_to(motion.points[k].position, motion.shape).ravel() for k in self.letters]
+        return np.stack(found, axis=-1) * self.scale
+
+    def scaled(self, scale: float) -> ComparedSide:
+        """Return it in another unit."""
+        return replace(self, scale=scale)
+
+
+def compared_side(structure: Structure) -> ComparedSide:
+    """Return a mechanism as it moves by itself. Raises InvalidInput for several designs, and as `solve`."""
+    motion = quietly_solved(structure, None, 1)
+    if motion.inputs.designs > 1:
+        what = f"it has {motion.inputs.designs} designs"
+        raise InvalidInput(Problem(motion.mechanism.title, what, "compare one design of it"))
+    return ComparedSide(motion, pose_nearest_to_drawing(motion))
+
+
+def quietly_solved(
+    structure: Structure,
+    values: Mapping[str, Number] | None,
+    order: int,
+    speed: Mapping[str, float] | None = None,
+) -> Motion:
+    """Return a motion without its warnings.
+
+    What is compared says itself what is not assembled.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return solve(structure, values, speed=speed, order=order)
