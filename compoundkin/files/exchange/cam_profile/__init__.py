@@ -1,0 +1,1 @@
+"""Profiles of cams and curved slots as tables of points for machining."""
