@@ -1,0 +1,1 @@
+"""Files of GeoGebra: a construction that can be dragged, as commands and as .ggb."""

@@ -1,0 +1,81 @@
+"""What is to be seen of a construction besides its points: links, wheels, and the curves of traced points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan2
+
+import numpy as np
+
+from compoundkin.files.exchange.geogebra.dragged_construction import Construction
+from compoundkin.files.exchange.geogebra.geogebra_xml import Window
+from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.kinematics import Motion
+from compoundkin.model.geometry import FRAME
+
+
+def add_shapes(
+    build: Construction, shown: ShownMechanism, points: Mapping[str, str], sliders: Mapping[str, str]
+) -> None:
+    """Add a segment or polygon for each link, a circle for each wheel, a locus for each traced point."""
+    for name, own in shown.points.items():
+        if name != FRAME:
+            _add_link(build, name, own, points)
+    for pair in shown.pairs:
+        if pair.table == "gears":
+            _add_wheels(build, shown, pair.name, pair.letters, points)
+    for letter in traced(shown):
+        for name, slider in sliders.items():
+            if build.is_slider(slider) and _moves(build, points[letter], slider):
+                index = letter if len(sliders) == 1 else f"{letter}-{name}"
+                build.shape("locus", ("c", index), "curve", "Locus", (points[letter], slider))
+
+
+def _add_link(build: Construction, name: str, own: Mapping[str, complex], points: Mapping[str, str]) -> None:
+    """Add a link of two points as a segment, one of more as a polygon, its points in a round."""
+    places: dict[complex, str] = {}
+    for letter, place in own.items():
+        places.setdefault(place, points[letter])
+    if len(places) == 2:
+        build.shape("segment", ("f", name), "link", "Segment", tuple(places.values()))
+    elif len(places) > 2:
+        middle = sum(places) / len(places)
+        order = sorted(places, key=lambda p: (round(atan2((p - middle).imag, (p - middle).real), 9), abs(p - middle)))
+        build.shape("polygon", ("f", name), "link", "Polygon", tuple(places[p] for p in order))
+
+
+def _add_wheels(
+    build: Construction, shown: ShownMechanism, name: str, axes: tuple[str, ...], points: Mapping[str, str]
+) -> None:
+    """Add the pitch circles of two gears, as wide as the distance of their axes lets them be."""
+    sizes = [abs(float(end.measure)) for end in shown.ends[name][:2]]
+    ring = shown.ends[name][0].measure * shown.ends[name][1].measure < 0
+    whole = abs(sizes[1] - sizes[0]) if ring else sizes[0] + sizes[1]
+    if not whole:
+        return
+    one, two = (points[letter] for letter in axes)
+    for k, own in enumerate((one, two)):
+        radius = f"Distance({one}, {two}) * {sizes[k]:.17g} / {whole:.17g}"
+        build.shape("conic", ("w", f"{name}-{k + 1}"), "wheel", "Circle", (own, radius))
+
+
+def window_of(motion: Motion) -> Window:
+    """Return the box of all points over the motion."""
+    known = np.ravel(motion.failed) == 0
+    rows = [np.ravel(motion.points[letter].position) for letter in motion.mechanism.carriers]
+    places = np.concatenate([row[known] if row.size > 1 else row for row in rows])
+    low, high = (complex(pick(places.real), pick(places.imag)) for pick in (np.min, np.max))
+    return Window(low, high)
+
+
+def traced(shown: ShownMechanism) -> list[str]:
+    """Return the points that the mechanism's outputs are about, those of moving links alone."""
+    mechanism = shown.mechanism
+    asked = dict.fromkeys(name.split(".")[0] for name in mechanism.outputs)
+    fixed = shown.points.get(FRAME, {})
+    return [letter for letter in asked if letter in mechanism.carriers and letter not in fixed]
+
+
+def _moves(build: Construction, point: str, slider: str) -> bool:
+    """Return whether a point depends on a slider."""
+    return slider in build.needs(point)

@@ -1,0 +1,123 @@
+"""The constructions of the five dyads: each says by a sign which of its two ways it stands, and needs no order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
+from compoundkin.files.exchange.geogebra.pair_sides import length_of, seen_from
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, at, named
+
+# How far beyond its range rounding takes the cosine of an angle that is flat.
+_FLAT = "1E-9"
+
+
+def rrr(dyad: DyadParts) -> None:
+    """Add an RRR dyad: the inner pin by the law of cosines, on a side of the way from one outer pin to the other."""
+    build, k = dyad.build, dyad.index
+    one, two = dyad.known(0).point, dyad.known(1).point
+    a, turned = length_of(build, dyad.inner[0].way.minus(dyad.outer[0].way), k)
+    b, other = length_of(build, dyad.inner[1].way.minus(dyad.outer[1].way), k)
+    d = build.helper("d", k, f"Distance({one}, {two})")
+    cosine = build.helper("q", k, f"({a}^2 + {d}^2 - {b}^2) / (2 * {a} * {d})")
+    opened = build.helper("γ", k, f"acos({rounded(cosine)}) / °")
+    line = seen_from(one, two)
+    # to the right of the way from outer pin to outer pin the three run counterclockwise
+    first = dyad.angle(0, f"{line} - {dyad.mode} * {opened}" + _less(turned))
+    pin = dyad.pin(at(one).plus(along(a, first.plus(turned))).text)
+    dyad.hold(0, one, dyad.outer[0].way, first)
+    if dyad.is_real(1):
+        dyad.hold(1, two, dyad.outer[1].way, dyad.angle(1, seen_from(two, pin) + _less(other)))
+
+
+def rrp(dyad: DyadParts) -> None:
+    """Add an RRP dyad: half a chord forward or backward along the line of its inner pin, from the foot on it."""
+    build, k = dyad.build, dyad.index
+    outer, guide = dyad.known(0).point, dyad.known(1)
+    a, turned = length_of(build, dyad.inner[0].way.minus(dyad.outer[0].way), k)
+    block = guide.angle.minus(dyad.outer[1].angle)
+    start = dyad.beside(guide.point, dyad.inner[1].way.minus(dyad.outer[1].way), block, f"S{k}")
+    line = _line(dyad, start, guide.angle, "")
+    foot = build.met(f"F{k}", "ClosestPoint", (line, outer), "helper")
+    square = build.helper("q", k, f"{a}^2 - Distance({outer}, {foot})^2")
+    chord = build.helper("h", k, f"sqrt({positive(square, a)})")
+    pin = dyad.pin(at(foot).plus(along(f"{dyad.mode} * {chord}", guide.angle)).text)
+    if dyad.is_real(0):
+        dyad.hold(0, outer, dyad.outer[0].way, dyad.angle(0, seen_from(outer, pin) + _less(turned)))
+    if dyad.is_real(1):
+        dyad.hold(1, pin, dyad.inner[1].way, block)
+
+
+def rpr(dyad: DyadParts) -> None:
+    """Add an RPR dyad: the guide turned until the pins have their distance across it."""
+    build, k = dyad.build, dyad.index
+    one, two = dyad.known(0).point, dyad.known(1).point
+    here = dyad.outer[0].way.minus(dyad.inner[0].way).turned(Angle().minus(dyad.inner[0].angle))
+    there = dyad.outer[1].way.minus(dyad.inner[1].way).turned(Angle().minus(dyad.inner[1].angle))
+    across = there.minus(here).rectangular("y")
+    line = seen_from(one, two)
+    if across == "0":
+        text = f"{line} + 90 * (1 - {dyad.mode})"
+    else:
+        e = build.helper("e", k, across)
+        square = build.helper("q", k, f"Distance({one}, {two})^2 - {e}^2")
+        text = f"{line} - atan2({e}, {dyad.mode} * sqrt({positive(square, e)})) / °"
+    guide = named(build.helper("ψ", k, text))
+    for j, point in enumerate((one, two)):
+        if dyad.is_real(j):
+            dyad.hold(j, point, dyad.outer[j].way, guide.minus(dyad.inner[j].angle))
+
+
+def prp(dyad: DyadParts) -> None:
+    """Add a PRP dyad: the inner pin where its two lines meet."""
+    guides = [dyad.known(j) for j in (0, 1)]
+    blocks = [guide.angle.minus(end.angle) for guide, end in zip(guides, dyad.outer, strict=True)]
+    lines = []
+    for j, (guide, block) in enumerate(zip(guides, blocks, strict=True)):
+        way = dyad.inner[j].way.minus(dyad.outer[j].way)
+        start = dyad.beside(guide.point, way, block, f"{'ST'[j]}{dyad.index}")
+        lines.append(_line(dyad, start, guide.angle, "ab"[j]))
+    pin = dyad.pin_met("Intersect", *lines)
+    for j, block in enumerate(blocks):
+        if dyad.is_real(j):
+            dyad.hold(j, pin, dyad.inner[j].way, block)
+
+
+def rpp(dyad: DyadParts) -> None:
+    """Add an RPP dyad: all its directions are known, so that two lines meet."""
+    outer, guide = dyad.known(0).point, dyad.known(1)
+    block = guide.angle.minus(dyad.outer[1].angle)
+    held = block.plus(dyad.inner[1].angle)
+    first = held.minus(dyad.inner[0].angle)
+    through = dyad.beside(outer, dyad.inner[0].way.minus(dyad.outer[0].way), first, f"S{dyad.index}")
+    start = dyad.beside(guide.point, dyad.inner[1].way.minus(dyad.outer[1].way), block, f"T{dyad.index}")
+    lines = _line(dyad, through, held, "a"), _line(dyad, start, guide.angle, "b")
+    met = dyad.runner_met("Intersect", *lines)
+    if dyad.is_real(0):
+        dyad.hold(0, outer, dyad.outer[0].way, first)
+    if dyad.is_real(1):
+        dyad.hold(1, met, dyad.inner[1].way, block)
+
+
+CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {"RRR": rrr, "RRP": rrp, "RPR": rpr, "PRP": prp, "RPP": rpp}
+
+
+def rounded(cosine: str) -> str:
+    """Return a cosine without what rounding adds to that of a flat angle."""
+    return f"If(1 < abs({cosine}) && abs({cosine}) < 1 + {_FLAT}, sgn({cosine}), {cosine})"
+
+
+def positive(square: str, length: str) -> str:
+    """Return a square without what rounding takes from zero."""
+    return f"If({square} < 0 && -{square} < {_FLAT} * {length}^2, 0, {square})"
+
+
+def _less(angle: Angle) -> str:
+    """Return what takes an angle off, as the end of a sum."""
+    return "" if angle.is_zero else f" - ({angle.text})"
+
+
+def _line(dyad: DyadParts, start: str, angle: Angle, index: str) -> str:
+    """Add the line of a guide, or one beside it; return its name."""
+    ahead = at(start).plus(along("1", angle)).text
+    return dyad.build.shape("line", ("g", f"{dyad.index}{index}"), "guide", "Line", (start, ahead))

@@ -1,0 +1,126 @@
+"""A construction as the XML that GeoGebra keeps, with colours, sizes and a window that holds the whole motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from compoundkin.files.exchange.geogebra.dragged_construction import Construction, ConstructionStep, Look
+from compoundkin.files.exchange.geogebra.polar_sums import number
+
+# The window in pixels, and how much of it is kept free on each side.
+_WIDTH, _HEIGHT, _MARGIN = 1000, 700, 90
+# Sliders are put one below the other, in pixels.
+_SLIDER_WIDTH, _SLIDER_LEFT, _SLIDER_TOP, _SLIDER_EVERY = 300, 30, 40, 45
+
+
+class Style(NamedTuple):
+    """How objects look: colour, whether they are seen and named, thickness or size, the kind of line, filling."""
+
+    colour: tuple[int, int, int]
+    is_seen: bool = True
+    is_named: bool = False
+    size: int = 0
+    dash: int = 0
+    filled: float = 0.0
+
+
+_STYLES: Mapping[Look, Style] = {
+    "slider": Style((176, 58, 46), is_named=True, size=8, filled=0.1),
+    "dimension": Style((97, 97, 97), is_seen=False),
+    "helper": Style((97, 97, 97), is_seen=False),
+    "fixed": Style((33, 33, 33), is_named=True, size=6),
+    "pin": Style((21, 101, 192), is_named=True, size=4),
+    "guide": Style((158, 158, 158), size=2, dash=15),
+    "link": Style((21, 101, 192), size=6, filled=0.15),
+    "wheel": Style((158, 158, 158), size=2, dash=10),
+    "curve": Style((176, 58, 46), size=3),
+}
+
+
+class Window(NamedTuple):
+    """The corners of what is to be seen."""
+
+    low: complex
+    high: complex
+
+
+def xml_of(build: Construction, title: str, window: Window) -> bytes:
+    """Return the text of the file."""
+    root = Element("geogebra", {"format": "5.0", "version": "5.0.609.0", "app": "classic", "platform": "w"})
+    _add_view(root, window)
+    kernel = SubElement(root, "kernel")
+    for name, value in (("continuous", "false"), ("decimals", "2"), ("angleUnit", "degree"), ("coordStyle", "0")):
+        SubElement(kernel, name, {"val": value})
+    inside = SubElement(root, "construction", {"title": title, "author": "", "date": ""})
+    sliders = 0
+    for step in build.steps:
+        _add_step(inside, step, sliders)
+        sliders += step.slider is not None
+    indent(root)
+    return b'<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="utf-8") + b"\n"
+
+
+def _add_view(root: Element, window: Window) -> None:
+    """Add the window, as large as the motion lets it be."""
+    wide, high = (window.high - window.low).real, (window.high - window.low).imag
+    scale = min((_WIDTH - 2 * _MARGIN) / (wide or high or 1.0), (_HEIGHT - 2 * _MARGIN) / (high or wide or 1.0))
+    middle = (window.low + window.high) / 2.0
+    view = SubElement(root, "euclidianView")
+    SubElement(view, "viewNumber", {"viewNo": "1"})
+    SubElement(view, "size", {"width": str(_WIDTH), "height": str(_HEIGHT)})
+    zero = {"xZero": _WIDTH / 2 - middle.real * scale, "yZero": _HEIGHT / 2 + middle.imag * scale}
+    places = {name: number(value) for name, value in (*zero.items(), ("scale", scale), ("yscale", scale))}
+    SubElement(view, "coordSystem", places)
+    SubElement(view, "evSettings", {"axes": "false", "grid": "false", "pointCapturing": "0"})
+
+
+def _add_step(inside: Element, step: ConstructionStep, sliders: int) -> None:
+    """Add a step: what it is made of, where it is not free, and how it looks."""
+    if step.command:
+        command = SubElement(inside, "command", {"name": step.command})
+        SubElement(command, "input", {f"a{k}": text for k, text in enumerate(step.arguments)})
+        SubElement(command, "output", {"a0": step.name})
+    elif not step.is_free:
+        kind = {"type": step.kind} if step.kind != "numeric" else {}
+        SubElement(inside, "expression", {"label": step.name, "exp": step.text, **kind})
+    element = SubElement(inside, "element", {"type": step.kind, "label": step.name})
+    _add_value(element, step)
+    _add_style(element, _STYLES[step.look])
+    if step.slider:
+        _add_slider(element, step, sliders)
+    if step.caption:
+        SubElement(element, "caption", {"val": step.caption})
+
+
+def _add_value(element: Element, step: ConstructionStep) -> None:
+    if step.kind == "numeric" and step.is_free:
+        SubElement(element, "value", {"val": number(step.slider.value if step.slider else step.numbers[0])})
+    elif step.numbers:
+        x, y = step.numbers
+        SubElement(element, "coords", {"x": number(x), "y": number(y), "z": "1"})
+
+
+def _add_style(element: Element, style: Style) -> None:
+    SubElement(element, "show", {"object": _word(style.is_seen), "label": _word(style.is_named)})
+    red, green, blue = map(str, style.colour)
+    SubElement(element, "objColor", {"r": red, "g": green, "b": blue, "alpha": number(style.filled)})
+    SubElement(element, "labelMode", {"val": "1" if element.get("type") == "numeric" else "0"})
+    if element.get("type") == "point":
+        SubElement(element, "pointSize", {"val": str(style.size or 3)})
+    elif style.size:
+        SubElement(element, "lineStyle", {"thickness": str(style.size), "type": str(style.dash)})
+
+
+def _add_slider(element: Element, step: ConstructionStep, sliders: int) -> None:
+    assert step.slider is not None
+    low, high, every = step.slider.low, step.slider.high, step.slider.step
+    place = {"x": str(_SLIDER_LEFT), "y": str(_SLIDER_TOP + _SLIDER_EVERY * sliders)}
+    fixed = {"absoluteScreenLocation": "true", "width": str(_SLIDER_WIDTH), "fixed": "true", "horizontal": "true"}
+    SubElement(element, "slider", {"min": number(low), "max": number(high), **fixed, **place})
+    SubElement(element, "animation", {"step": number(every), "speed": "1", "type": "0", "playing": "false"})
+
+
+def _word(value: bool) -> str:
+    return "true" if value else "false"

@@ -1,0 +1,150 @@
+"""From a mechanism to a construction: dimensions, sliders, then group by group in solving order."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
+from compoundkin.files.exchange.geogebra import driven_links, geared_constructions
+from compoundkin.files.exchange.geogebra.chosen_sides import ChosenSides, steps_of
+from compoundkin.files.exchange.geogebra.drawn_shapes import add_shapes
+from compoundkin.files.exchange.geogebra.dragged_construction import Construction, Slider
+from compoundkin.files.exchange.geogebra.dyad_constructions import CONSTRUCTIONS
+from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
+from compoundkin.files.exchange.geogebra.pair_sides import PairSides
+from compoundkin.files.exchange.geogebra.placed_bodies import InsideBody, PlacedBodies
+from compoundkin.files.exchange.geogebra.point_dimensions import link_points
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way
+from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.groups import GroupSolver, as_dyad
+
+_TABLE = "write a table of its positions instead: `compoundkin solve NAME -o positions.csv`"
+
+
+def construction_of(shown: ShownMechanism) -> Construction:
+    """Return the construction. Raises InvalidInput listing all that cannot be constructed."""
+    motion = ranged_motion(shown)
+    build = Construction()
+    sliders = {name: _slider(build, motion, name, value) for name, value in shown.values.items()}
+    chosen = ChosenSides(build, motion, sliders)
+    problems = [*_problems(motion, chosen)]
+    if problems:
+        raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be constructed as a whole")
+    placed = _constructed(build, motion, shown, sliders, chosen)
+    add_shapes(build, shown, placed.points, sliders)
+    return build
+
+
+def notes_of(shown: ShownMechanism) -> tuple[str, ...]:
+    """Return what does not come across: what is not of the motion, and what no construction prescribes."""
+    mechanism, notes = shown.mechanism, []
+    left = len(mechanism.items) - sum(1 for item in mechanism.items if not isinstance(item, LoadWord | LinkOutline))
+    if left:
+        notes.append(f"{counted(left, 'mass, load or outline', 'masses, loads and outlines')} left out")
+    for name, leads in _alone(shown).items():
+        notes.append(f"{name} has no range: it is the number {leads}")
+    return tuple(notes)
+
+
+def ranged_motion(shown: ShownMechanism) -> Motion:
+    """Return the motion over the drivers' own ranges."""
+    motion = shown.motion
+    if motion is not None and motion.inputs.poses > 1:
+        return motion
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return solve(shown.structure, order=1)
+    except (InvalidInput, NotAssembled, NotDetermined) as error:
+        what = f"it cannot be solved: {error.problems[0].what}"
+        raise InvalidInput(Problem(shown.mechanism.title, what, "drive it where it can be assembled")) from None
+
+
+def _slider(build: Construction, motion: Motion, name: str, value: float) -> str:
+    """Add the slider of a driver; a number where its range is a single value. Return its name."""
+    values, is_angle = np.ravel(motion.drives[name].value), motion.structure.driven_angles[name]
+    values, value = (np.round(np.rad2deg(values), 9), _nice(np.rad2deg(value))) if is_angle else (values, value)
+    stem, caption = ("φ", f"{name}, degrees") if is_angle else ("s", name)
+    low, high = float(values.min()), float(values.max())
+    if low == high:
+        return build.dimension(stem, name, low, caption)
+    return build.slide(stem, name, Slider(min(max(value, low), high), low, high, steps_of(values)), caption)
+
+
+def _nice(value: float) -> float:
+    near = round(float(value), 9)
+    return near if abs(near - value) < 1e-10 * max(1.0, abs(value)) else float(value)
+
+
+def _problems(motion: Motion, chosen: ChosenSides) -> Iterator[Problem]:
+    """Yield all that no construction of circles, lines and ratios says."""
+    for body in motion.structure.bodies:
+        for driven in body.driven:
+            if not driven_links.is_constructed(driven):
+                yield Problem(driven.pair.name, f"a driven {driven.pair.title} has no construction", _TABLE)
+    free: set[str] = set()  # links whose turns no driver tells
+    for solver in motion.solving_order.solvers:
+        if as_dyad(solver):
+            free.update(solver.group.links)
+            if not chosen.is_told(solver.index):
+                what = "it passes to its other mode, and several drivers say when"
+                yield Problem(_called(solver), what, _TABLE)
+        elif not geared_constructions.is_constructed(solver):
+            yield Problem(_called(solver), _why_not(solver), _TABLE)
+        else:
+            for link in sorted({name for pair in solver.group.outer for name in pair.members} & free):
+                if not chosen.can_count(link):
+                    yield Problem(link, "its full turns cannot be counted by the driver's", _TABLE)
+
+
+def _called(solver: GroupSolver) -> str:
+    return f"the group of {', '.join(solver.group.links)}"
+
+
+def _why_not(solver: GroupSolver) -> str:
+    """Say why a group has no construction here."""
+    group = solver.group
+    pairs = (*group.inner, *group.outer)
+    kinds = sorted({pair.title for pair in pairs if pair.held == 1 and not as_dyad(solver)})
+    if len(group.bodies) > 1 and not kinds:
+        return f"it is of class {group.class_}: no circles and lines give it one after the other"
+    return f"there is no construction for {', '.join(kinds) or 'its pairs'} of this kind"
+
+
+def _constructed(
+    build: Construction, motion: Motion, shown: ShownMechanism, sliders: Mapping[str, str], chosen: ChosenSides
+) -> PlacedBodies:
+    """Add all links, the driven ones of the frame first."""
+    order, size = motion.solving_order, motion.size
+    links = {name: link_points(build, name, own) for name, own in shown.points.items()}
+    pairs = (*shown.mechanism.written_pairs, *order.pairs.values())
+    sides = PairSides(build, links, motion.tracker.given.ends, pairs, size)
+    placed = PlacedBodies(build, links)
+    for body in motion.structure.bodies:
+        placed.join(body, driven_links.inside_body(build, body, sides, sliders))
+    placed.hold(motion.structure.ground, None)
+    for solver in order.solvers:
+        _add_group(placed, sides, solver, chosen)
+    return placed
+
+
+def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chosen: ChosenSides) -> None:
+    dyad = as_dyad(solver)
+    if dyad is None:
+        geared_constructions.add_mounted(
+            placed, sides, solver, lambda link: chosen.counted(link, placed.angle(link))
+        )
+        chosen.note_counted(placed.angle(solver.group.links[0]))
+        return
+    for body in dyad.bodies:
+        if body not in solver.group.bodies:
+            placed.join(body, {body.links[0]: InsideBody(Way(), Angle())})
+    index = dyad.letters[1]
+    mode = chosen.mode(solver.index, index) if dyad.modes == 2 else ""
+    CONSTRUCTIONS[dyad.name](DyadParts(placed, sides, dyad, index, mode))
+
+
