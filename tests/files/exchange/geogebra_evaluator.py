@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 NAME = r"[^\W\d_][^\W_]*'*(?:_\{[^}]+\}|_\w)?"
-TOKEN = re.compile(rf"\s*(?:(\d+(?:\.\d*)?(?:E[+-]?\d+)?)|({NAME})|(&&|[-+*/^(),;<°]))")
+TOKEN = re.compile(rf"\s*(?:(\d+(?:\.\d*)?(?:E[+-]?\d+)?)|({NAME})|(∧|[-+*/^(),;<°]))")
 
 
 def tokens(text: str) -> list[tuple[str, str]]:
@@ -20,7 +20,7 @@ def tokens(text: str) -> list[tuple[str, str]]:
     while at < len(text.rstrip()):
         match = TOKEN.match(text, at)
         assert match, f"{text!r} at {at}"
-        kind = ("number", "name", "sign")[[k for k in range(3) if match[k + 1]][0]]
+        kind = ("number", "name", "sign")[next(k for k in range(3) if match[k + 1])]
         found.append((kind, match[0].strip()))
         at = match.end()
     return [*found, ("end", "")]
@@ -98,7 +98,7 @@ class Reading:
 
     def both(self) -> Any:
         found = self.compared()
-        while self.next_is("&&"):
+        while self.next_is("∧"):
             found = found & self.compared()
         return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+
 import numpy as np
 
 from compoundkin.base.series import Number
@@ -36,6 +37,8 @@ class ChosenSides:
         for j in reversed(range(len(ordered) - 1)):
             if ordered[j] != ordered[j + 1]:
                 between = self._between(k, places[j], places[j + 1])
+                if not places[0] < between < places[-1]:  # at the very end of the range both are the same
+                    continue
                 text = f"If({self._moving} < {number(between)}, {number(ordered[j])}, {text})"
         return self._build.helper("m", index, text, caption)
 
@@ -72,7 +75,9 @@ class ChosenSides:
     def _driven(self) -> dict[str, Number]:
         angles = self._motion.structure.driven_angles
         rows = {name: np.ravel(drive.value) for name, drive in self._motion.drives.items()}
-        found = {name: row[self._known] if row.size > 1 else np.repeat(row, len(self._known)) for name, row in rows.items()}
+        found = {
+            name: row[self._known] if row.size > 1 else np.repeat(row, len(self._known)) for name, row in rows.items()
+        }
         return {name: np.rad2deg(row) if angles[name] else row for name, row in found.items()}
 
     def counted(self, link: str, angle: Angle) -> Angle:
@@ -81,8 +86,8 @@ class ChosenSides:
             return angle
         if link not in self._counted:
             per, middle = self._course(link) or (0.0, 0.0)
-            near = f"{number(per)} * {self._moving} + {number(middle)}" if per else number(middle)
-            text = f"{angle.text} - 360 * floor(({angle.text} - ({near})) / 360 + 0.5)"
+            off = angle.minus(Angle(rest=middle)).text + (f" - {number(per)} * {self._moving}" if per else "")
+            text = f"{angle.text} - 360 * floor(({off}) / 360 + 0.5)"
             self._counted[link] = named(self._build.helper("τ", link, text, f"angle of {link} with full turns"))
             self.note_counted(self._counted[link])
         return self._counted[link]

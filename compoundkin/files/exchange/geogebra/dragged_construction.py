@@ -62,6 +62,8 @@ class Construction:
     def __init__(self) -> None:
         self.names = ObjectNames()
         self.steps: list[ConstructionStep] = []
+        self.driven: dict[str, str] = {}  # the sliders of drivers, by these
+        self.sizes: dict[str, tuple[str, ...]] = {}  # the numbers of wheels: of gears two, of a wheel on a line one
 
     @property
     def lines(self) -> list[str]:
@@ -89,12 +91,18 @@ class Construction:
     def dimension(self, stem: str, index: str, value: float, caption: str = "") -> str:
         """Add a free number; return its name."""
         name = self.names.number(stem, index)
-        return self._add(ConstructionStep(name, "numeric", "dimension", number(value), (float(value),), caption=caption))
+        return self._add(
+            ConstructionStep(name, "numeric", "dimension", number(value), (float(value),), caption=caption)
+        )
 
     def free_point(self, letter: str, place: complex) -> str:
         """Add a point that can be dragged; return its name."""
         name, text = self.names.point(letter), f"({number(place.real)}, {number(place.imag)})"
         return self._add(ConstructionStep(name, "point", "fixed", text, (place.real, place.imag)))
+
+    def measured(self, stem: str, index: str, command: str, arguments: Sequence[str]) -> str:
+        """Add a number that a command gives; return its name."""
+        return self.shape("numeric", (stem, index), "helper", command, arguments)
 
     def helper(self, stem: str, index: str, text: str, caption: str = "") -> str:
         """Add a number that is computed; return its name."""
@@ -104,13 +112,17 @@ class Construction:
         """Add a vector that is not shown; return its name."""
         return self._add(ConstructionStep(self.names.number("v", index), "vector", "helper", text))
 
-    def point(self, letter: str, text: str, look: Look = "pin") -> str:
-        """Add a point by an expression; return its name."""
-        return self._add(ConstructionStep(self.names.point(letter), "point", look, text))
+    def point(self, letter: str, text: str) -> str:
+        """Add a point of a link by an expression; return its name."""
+        return self._add(ConstructionStep(self.names.point(letter), "point", "pin", text))
 
-    def met(self, letter: str, command: str, arguments: Sequence[str], look: Look = "pin") -> str:
-        """Add a point by a command; return its name."""
-        return self._command(self.names.point(letter), "point", look, command, arguments)
+    def helping_point(self, stem: str, index: str, text: str) -> str:
+        """Add a point of no link by an expression; return its name."""
+        return self._add(ConstructionStep(self.names.number(stem, index), "point", "helper", text))
+
+    def met(self, letter: str, command: str, arguments: Sequence[str]) -> str:
+        """Add a point of a link by a command; return its name."""
+        return self._command(self.names.point(letter), "point", "pin", command, arguments)
 
     def shape(self, kind: Kind, name: tuple[str, str], look: Look, command: str, arguments: Sequence[str]) -> str:
         """Add a line, a segment or another shape by a command; `name` is its letter and index. Return its name."""

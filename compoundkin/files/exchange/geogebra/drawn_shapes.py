@@ -12,6 +12,7 @@ from compoundkin.files.exchange.geogebra.geogebra_xml import Window
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs import Pair
 
 
 def add_shapes(
@@ -22,8 +23,7 @@ def add_shapes(
         if name != FRAME:
             _add_link(build, name, own, points)
     for pair in shown.pairs:
-        if pair.table == "gears":
-            _add_wheels(build, shown, pair.name, pair.letters, points)
+        _add_pair(build, shown, pair, points)
     for letter in traced(shown):
         for name, slider in sliders.items():
             if build.is_slider(slider) and _moves(build, points[letter], slider):
@@ -44,19 +44,20 @@ def _add_link(build: Construction, name: str, own: Mapping[str, complex], points
         build.shape("polygon", ("f", name), "link", "Polygon", tuple(places[p] for p in order))
 
 
-def _add_wheels(
-    build: Construction, shown: ShownMechanism, name: str, axes: tuple[str, ...], points: Mapping[str, str]
-) -> None:
-    """Add the pitch circles of two gears, as wide as the distance of their axes lets them be."""
-    sizes = [abs(float(end.measure)) for end in shown.ends[name][:2]]
-    ring = shown.ends[name][0].measure * shown.ends[name][1].measure < 0
-    whole = abs(sizes[1] - sizes[0]) if ring else sizes[0] + sizes[1]
-    if not whole:
-        return
-    one, two = (points[letter] for letter in axes)
-    for k, own in enumerate((one, two)):
-        radius = f"Distance({one}, {two}) * {sizes[k]:.17g} / {whole:.17g}"
-        build.shape("conic", ("w", f"{name}-{k + 1}"), "wheel", "Circle", (own, radius))
+def _add_pair(build: Construction, shown: ShownMechanism, pair: Pair, points: Mapping[str, str]) -> None:
+    """Add the way along a slide or slot, the pitch circles of gears, the circle of a wheel on a line."""
+    one, two = (*(points[letter] for letter in pair.letters[:2] if letter in points), "", "")[:2]
+    sizes = build.sizes.get(pair.name, ())
+    if pair.table in ("slides", "slots") and one and two and one != two:
+        build.shape("segment", ("g", f"{pair.name}-0"), "guide", "Segment", (two, one))
+    elif pair.table == "gears" and len(sizes) == 2:
+        ring = shown.ends[pair.name][0].measure * shown.ends[pair.name][1].measure < 0
+        whole = f"abs({sizes[1]} - {sizes[0]})" if ring else f"({sizes[0]} + {sizes[1]})"
+        for k, own in enumerate((one, two)):
+            radius = f"Distance({one}, {two}) * {sizes[k]} / {whole}"
+            build.shape("conic", ("w", f"{pair.name}-{k + 1}"), "wheel", "Circle", (own, radius))
+    elif len(sizes) == 1:
+        build.shape("conic", ("w", pair.name), "wheel", "Circle", (one, f"abs({sizes[0]})"))
 
 
 def window_of(motion: Motion) -> Window:

@@ -11,16 +11,16 @@ from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, na
 from compoundkin.structure.parts import Body, DrivenPair
 
 # From one side of a pair to the other by a value: offset and angle of the second link in the axes of the first.
-Step = Callable[[Construction, NamedEnd, NamedEnd, str, int], InsideBody]
+Step = Callable[[Construction, NamedEnd, NamedEnd, str, int, str], InsideBody]
 
 
-def turned(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int) -> InsideBody:
+def turned(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
     """Return a link turned about a pin."""
     angle = Angle(((sign, value),)) if value else Angle()
     return InsideBody(own.way.minus(other.way.turned(angle)), angle)
 
 
-def shifted(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int) -> InsideBody:
+def shifted(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
     """Return a block moved along its guide, or a guide along its block."""
     angle = own.angle.minus(other.angle)
     step = along(value, own.angle)
@@ -28,11 +28,12 @@ def shifted(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sig
     return InsideBody(moved.minus(other.way.turned(angle)), angle)
 
 
-def rolled(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int) -> InsideBody:
+def rolled(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
     """Return a wheel rolled along a line."""
-    radius = build.dimension("r", "", other.measure, "radius of the wheel, negative to the right of its line")
-    phase = f" - {build.dimension('s', '', own.measure, 'where the angle is zero')}" if own.measure else ""
-    angle = named(build.helper("θ", "", f"-({value}{phase}) / {radius} / °"))
+    radius = build.dimension("r", pair, other.measure, "radius of the wheel, negative to the right of its line")
+    build.sizes[pair] = (radius,)
+    phase = f" - {build.dimension('p', pair, own.measure, 'where the angle is zero')}" if own.measure else ""
+    angle = named(build.helper("θ", pair, f"-({value}{phase}) / {radius} / °"))
     middle = own.way.plus(along(value, own.angle)).plus(along(radius, own.angle.plus(Angle(rest=90.0))))
     return InsideBody(middle.minus(other.way.turned(angle)), angle)
 
@@ -58,7 +59,7 @@ def inside_body(
         value = "" if driven.is_passive else sliders[driven.drive.name]
         sign = pair.driven_by(driven.drive.link) * (1 if second else -1)
         own, other = sides.of(pair, 1 - second), sides.of(pair, second)
-        step = STEPS[pair.table](build, own, other, value, sign)
+        step = STEPS[pair.table](build, own, other, value, sign, pair.name)
         parent = found[driven.parent]
         offset = parent.offset.plus(step.offset.turned(parent.angle))
         found[driven.link] = InsideBody(offset, parent.angle.plus(step.angle))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
 from compoundkin.files.exchange.geogebra.pair_sides import length_of, seen_from
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, at, named
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, along, at, named
 
 # How far beyond its range rounding takes the cosine of an angle that is flat.
 _FLAT = "1E-9"
@@ -18,7 +18,7 @@ def rrr(dyad: DyadParts) -> None:
     one, two = dyad.known(0).point, dyad.known(1).point
     a, turned = length_of(build, dyad.inner[0].way.minus(dyad.outer[0].way), k)
     b, other = length_of(build, dyad.inner[1].way.minus(dyad.outer[1].way), k)
-    d = build.helper("d", k, f"Distance({one}, {two})")
+    d = build.measured("d", k, "Distance", (one, two))
     cosine = build.helper("q", k, f"({a}^2 + {d}^2 - {b}^2) / (2 * {a} * {d})")
     opened = build.helper("γ", k, f"acos({rounded(cosine)}) / °")
     line = seen_from(one, two)
@@ -36,9 +36,9 @@ def rrp(dyad: DyadParts) -> None:
     outer, guide = dyad.known(0).point, dyad.known(1)
     a, turned = length_of(build, dyad.inner[0].way.minus(dyad.outer[0].way), k)
     block = guide.angle.minus(dyad.outer[1].angle)
-    start = dyad.beside(guide.point, dyad.inner[1].way.minus(dyad.outer[1].way), block, f"S{k}")
+    start = dyad.beside(guide.point, dyad.inner[1].way.minus(dyad.outer[1].way), block, "S")
     line = _line(dyad, start, guide.angle, "")
-    foot = build.met(f"F{k}", "ClosestPoint", (line, outer), "helper")
+    foot = build.shape("point", ("F", k), "helper", "ClosestPoint", (line, outer))
     square = build.helper("q", k, f"{a}^2 - Distance({outer}, {foot})^2")
     chord = build.helper("h", k, f"sqrt({positive(square, a)})")
     pin = dyad.pin(at(foot).plus(along(f"{dyad.mode} * {chord}", guide.angle)).text)
@@ -75,9 +75,9 @@ def prp(dyad: DyadParts) -> None:
     lines = []
     for j, (guide, block) in enumerate(zip(guides, blocks, strict=True)):
         way = dyad.inner[j].way.minus(dyad.outer[j].way)
-        start = dyad.beside(guide.point, way, block, f"{'ST'[j]}{dyad.index}")
+        start = dyad.beside(guide.point, way, block, "ST"[j])
         lines.append(_line(dyad, start, guide.angle, "ab"[j]))
-    pin = dyad.pin_met("Intersect", *lines)
+    pin = dyad.pin_met((lines[0], lines[1]))
     for j, block in enumerate(blocks):
         if dyad.is_real(j):
             dyad.hold(j, pin, dyad.inner[j].way, block)
@@ -89,10 +89,10 @@ def rpp(dyad: DyadParts) -> None:
     block = guide.angle.minus(dyad.outer[1].angle)
     held = block.plus(dyad.inner[1].angle)
     first = held.minus(dyad.inner[0].angle)
-    through = dyad.beside(outer, dyad.inner[0].way.minus(dyad.outer[0].way), first, f"S{dyad.index}")
-    start = dyad.beside(guide.point, dyad.inner[1].way.minus(dyad.outer[1].way), block, f"T{dyad.index}")
+    through = dyad.beside(outer, dyad.inner[0].way.minus(dyad.outer[0].way), first, "S")
+    start = dyad.beside(guide.point, dyad.inner[1].way.minus(dyad.outer[1].way), block, "T")
     lines = _line(dyad, through, held, "a"), _line(dyad, start, guide.angle, "b")
-    met = dyad.runner_met("Intersect", *lines)
+    met = dyad.runner_met(lines)
     if dyad.is_real(0):
         dyad.hold(0, outer, dyad.outer[0].way, first)
     if dyad.is_real(1):
@@ -104,12 +104,12 @@ CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {"RRR": rrr, "RRP": r
 
 def rounded(cosine: str) -> str:
     """Return a cosine without what rounding adds to that of a flat angle."""
-    return f"If(1 < abs({cosine}) && abs({cosine}) < 1 + {_FLAT}, sgn({cosine}), {cosine})"
+    return f"If(1 < abs({cosine}) ∧ abs({cosine}) < 1 + {_FLAT}, sgn({cosine}), {cosine})"
 
 
 def positive(square: str, length: str) -> str:
     """Return a square without what rounding takes from zero."""
-    return f"If({square} < 0 && -{square} < {_FLAT} * {length}^2, 0, {square})"
+    return f"If({square} < 0 ∧ -{square} < {_FLAT} * {length}^2, 0, {square})"
 
 
 def _less(angle: Angle) -> str:

@@ -44,32 +44,31 @@ class DyadParts:
 
     def pin(self, expression: str) -> str:
         """Add the inner pin by an expression; return its name."""
-        return self._noted(self.build.point(self._pin_letter, expression, self._pin_look))
+        if not self.letter:
+            return self.build.helping_point("Q", self.index, expression)
+        return self._noted(self.letter, self.build.point(self.letter, expression))
 
-    def pin_met(self, command: str, *arguments: str) -> str:
-        """Add the inner pin as the result of a command; return its name."""
-        return self._noted(self.build.met(self._pin_letter, command, arguments, self._pin_look))
+    def pin_met(self, lines: tuple[str, str]) -> str:
+        """Add the inner pin where two lines meet; return its name."""
+        return self._met(self.letter, lines)
 
-    def _noted(self, name: str) -> str:
-        if self.inner[0].letter or self.inner[1].letter:
-            self.placed.points[self._pin_letter] = name
+    def runner_met(self, lines: tuple[str, str]) -> str:
+        """Add the point of the second body that runs in the first where two lines meet; return its name."""
+        return self._met(self.inner[1].letter, lines)
+
+    def _met(self, letter: str, lines: tuple[str, str]) -> str:
+        if not letter or letter in self.placed.points:
+            return self.build.shape("point", ("Q", self.index), "helper", "Intersect", lines)
+        return self._noted(letter, self.build.met(letter, "Intersect", lines))
+
+    def _noted(self, letter: str, name: str) -> str:
+        self.placed.points[letter] = name
         return name
 
-    def runner_met(self, command: str, *arguments: str) -> str:
-        """Add the point of the second body that runs in the first as the result of a command; return its name."""
-        letter = self.inner[1].letter
-        if not letter or letter in self.placed.points:
-            return self.build.met(f"M{self.index}", command, arguments, "helper")
-        self.placed.points[letter] = self.build.met(letter, command, arguments)
-        return self.placed.points[letter]
-
     @property
-    def _pin_letter(self) -> str:
-        return self.inner[0].letter or self.inner[1].letter or f"Q{self.index}"
-
-    @property
-    def _pin_look(self) -> str:
-        return "pin" if self.inner[0].letter or self.inner[1].letter else "helper"
+    def letter(self) -> str:
+        """The letter of the inner pin."""
+        return self.inner[0].letter or self.inner[1].letter
 
     def angle(self, k: int, text: str) -> Angle:
         """Add the angle of a body; return it. Nothing is added for a body that only stands for a pair."""
@@ -83,8 +82,8 @@ class DyadParts:
         """Whether a body is one of the mechanism, not one that stands for a pair."""
         return self.solver.bodies[k] in self.solver.group.bodies
 
-    def beside(self, point: str, way: Way, angle: Angle, letter: str) -> str:
+    def beside(self, point: str, way: Way, angle: Angle, stem: str) -> str:
         """Return the point a way off another one, that itself where there is none."""
         if not way.terms:
             return point
-        return self.build.point(letter, at(point).plus(way.turned(angle)).text, "helper")
+        return self.build.helping_point(stem, self.index, at(point).plus(way.turned(angle)).text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NamedTuple
 
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
@@ -76,7 +76,10 @@ def _turned(of: Mounted) -> Held:
 def _willis(of: Mounted) -> str:
     """Return the angle of a wheel or a carrier, by Willis's equation."""
     ends = [of.sides.of(of.higher, k) for k in range(3)]
-    sizes = [of.build.dimension("z", name, abs(end.measure)) for name, end in zip(of.higher.members, ends[:2])]
+    sizes = [
+        of.build.dimension("z", name, abs(end.measure)) for name, end in zip(of.higher.members, ends[:2], strict=False)
+    ]
+    of.build.sizes[of.higher.name] = tuple(sizes)
     phase = of.build.dimension("φ", of.higher.name, _degrees(ends[2].measure), "where the first is at zero, degrees")
     alike = ends[0].measure * ends[1].measure < 0
     sign, opposite = ("-", "+") if alike else ("+", "-")
@@ -119,10 +122,11 @@ def _shifted(of: Mounted) -> Held:
     ought = f"{phase} - {radius} * ({of.counted(pinion).minus(angle).text}) * °"
     slope = "" if way == pitch else f" / cos({way.minus(pitch).in_degrees})"
     step = of.build.helper("s", of.mount.pair.name, f"({gone} - ({ought})){slope}")
-    letter = of.own.letter or f"Q{of.mount.link}"
-    moved = of.build.point(letter, at(start).plus(along(step, way)).text, "pin" if of.own.letter else "helper")
-    if of.own.letter:
-        of.placed.points[letter] = moved
+    place = at(start).plus(along(step, way)).text
+    if not of.own.letter:
+        moved = of.build.helping_point("Q", of.mount.link, place)
+    else:
+        moved = of.placed.points[of.own.letter] = of.build.point(of.own.letter, place)
     return Held(moved, of.own.way, angle)
 
 
@@ -135,6 +139,7 @@ def _component(vector: str, angle: Angle) -> str:
 
 def _rack_numbers(of: Mounted, line: NamedEnd, wheel: NamedEnd) -> tuple[str, str]:
     radius = of.build.dimension("r", of.higher.name, wheel.measure, "pitch radius, negative to the right of the rack")
+    of.build.sizes[of.higher.name] = (radius,)
     return radius, of.build.dimension("p", of.higher.name, line.measure, "displacement where the pinion is at zero")
 
 
@@ -143,5 +148,3 @@ def _degrees(radians: float) -> float:
 
     near = round(degrees(radians), 9)
     return near if abs(degrees(radians) - near) < 1e-11 * max(1.0, abs(near)) else degrees(radians)
-
-

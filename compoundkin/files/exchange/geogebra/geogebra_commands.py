@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
-from compoundkin.files.exchange.geogebra.mechanism_construction import construction_of, notes_of
+from compoundkin.files.exchange.geogebra.construction_notes import notes_of
+from compoundkin.files.exchange.geogebra.mechanism_construction import construction_of
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 
@@ -20,8 +21,9 @@ class GeogebraCommands(Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the commands. Raises InvalidInput listing all groups that have no construction."""
-        text = "\n".join(construction_of(shown).lines) + "\n"
-        return Exported(text.encode(), self.name, notes_of(shown))
+        build = construction_of(shown)
+        text = "\n".join(build.lines) + "\n"
+        return Exported(text.encode(), self.name, notes_of(shown, build))
 
 
 FORMAT = GeogebraCommands()

@@ -8,9 +8,10 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
+from compoundkin.files.exchange.geogebra.construction_notes import notes_of
 from compoundkin.files.exchange.geogebra.drawn_shapes import window_of
 from compoundkin.files.exchange.geogebra.geogebra_xml import xml_of
-from compoundkin.files.exchange.geogebra.mechanism_construction import construction_of, notes_of, ranged_motion
+from compoundkin.files.exchange.geogebra.mechanism_construction import construction_of, ranged_motion
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # The day that every file in the archive bears, so that the same mechanism makes the same bytes: the earliest there is.
@@ -27,13 +28,14 @@ class GeogebraFile(Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the file. Raises InvalidInput listing all groups that have no construction."""
-        text = xml_of(construction_of(shown), shown.mechanism.title, window_of(ranged_motion(shown)))
+        build = construction_of(shown)
+        text = xml_of(build, shown.mechanism.title, window_of(ranged_motion(shown)))
         content = BytesIO()
         with ZipFile(content, "w") as archive:
             entry = ZipInfo("geogebra.xml", _DAY)
             entry.compress_type = ZIP_DEFLATED
             archive.writestr(entry, text)
-        return Exported(content.getvalue(), self.name, notes_of(shown))
+        return Exported(content.getvalue(), self.name, notes_of(shown, build))
 
 
 FORMAT = GeogebraFile()

@@ -13,6 +13,7 @@ from compoundkin.files.exchange.geogebra.polar_sums import number
 _WIDTH, _HEIGHT, _MARGIN = 1000, 700, 90
 # Sliders are put one below the other, in pixels.
 _SLIDER_WIDTH, _SLIDER_LEFT, _SLIDER_TOP, _SLIDER_EVERY = 300, 30, 40, 45
+_TURN = 360.0
 
 
 class Style(NamedTuple):
@@ -117,9 +118,10 @@ def _add_slider(element: Element, step: ConstructionStep, sliders: int) -> None:
     assert step.slider is not None
     low, high, every = step.slider.low, step.slider.high, step.slider.step
     place = {"x": str(_SLIDER_LEFT), "y": str(_SLIDER_TOP + _SLIDER_EVERY * sliders)}
+    kind = "1" if high - low == _TURN else "0"  # round and round, or there and back
     fixed = {"absoluteScreenLocation": "true", "width": str(_SLIDER_WIDTH), "fixed": "true", "horizontal": "true"}
     SubElement(element, "slider", {"min": number(low), "max": number(high), **fixed, **place})
-    SubElement(element, "animation", {"step": number(every), "speed": "1", "type": "0", "playing": "false"})
+    SubElement(element, "animation", {"step": number(every), "speed": "1", "type": kind, "playing": "false"})
 
 
 def _word(value: bool) -> str:

@@ -10,8 +10,8 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.files.exchange.geogebra import driven_links, geared_constructions
 from compoundkin.files.exchange.geogebra.chosen_sides import ChosenSides, steps_of
-from compoundkin.files.exchange.geogebra.drawn_shapes import add_shapes
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction, Slider
+from compoundkin.files.exchange.geogebra.drawn_shapes import add_shapes
 from compoundkin.files.exchange.geogebra.dyad_constructions import CONSTRUCTIONS
 from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
 from compoundkin.files.exchange.geogebra.pair_sides import PairSides
@@ -29,7 +29,9 @@ def construction_of(shown: ShownMechanism) -> Construction:
     """Return the construction. Raises InvalidInput listing all that cannot be constructed."""
     motion = ranged_motion(shown)
     build = Construction()
-    sliders = {name: _slider(build, motion, name, value) for name, value in shown.values.items()}
+    sliders = build.driven
+    for name in motion.drives:
+        sliders[name] = _slider(build, motion, name, shown.values.get(name))
     chosen = ChosenSides(build, motion, sliders)
     problems = [*_problems(motion, chosen)]
     if problems:
@@ -37,17 +39,6 @@ def construction_of(shown: ShownMechanism) -> Construction:
     placed = _constructed(build, motion, shown, sliders, chosen)
     add_shapes(build, shown, placed.points, sliders)
     return build
-
-
-def notes_of(shown: ShownMechanism) -> tuple[str, ...]:
-    """Return what does not come across: what is not of the motion, and what no construction prescribes."""
-    mechanism, notes = shown.mechanism, []
-    left = len(mechanism.items) - sum(1 for item in mechanism.items if not isinstance(item, LoadWord | LinkOutline))
-    if left:
-        notes.append(f"{counted(left, 'mass, load or outline', 'masses, loads and outlines')} left out")
-    for name, leads in _alone(shown).items():
-        notes.append(f"{name} has no range: it is the number {leads}")
-    return tuple(notes)
 
 
 def ranged_motion(shown: ShownMechanism) -> Motion:
@@ -64,10 +55,12 @@ def ranged_motion(shown: ShownMechanism) -> Motion:
         raise InvalidInput(Problem(shown.mechanism.title, what, "drive it where it can be assembled")) from None
 
 
-def _slider(build: Construction, motion: Motion, name: str, value: float) -> str:
+def _slider(build: Construction, motion: Motion, name: str, at: float | None) -> str:
     """Add the slider of a driver; a number where its range is a single value. Return its name."""
     values, is_angle = np.ravel(motion.drives[name].value), motion.structure.driven_angles[name]
-    values, value = (np.round(np.rad2deg(values), 9), _nice(np.rad2deg(value))) if is_angle else (values, value)
+    value = float(values[0] if at is None else at)
+    if is_angle:
+        values, value = np.round(np.rad2deg(values), 9), _plain(np.rad2deg(value))
     stem, caption = ("φ", f"{name}, degrees") if is_angle else ("s", name)
     low, high = float(values.min()), float(values.max())
     if low == high:
@@ -75,7 +68,7 @@ def _slider(build: Construction, motion: Motion, name: str, value: float) -> str
     return build.slide(stem, name, Slider(min(max(value, low), high), low, high, steps_of(values)), caption)
 
 
-def _nice(value: float) -> float:
+def _plain(value: float) -> float:
     near = round(float(value), 9)
     return near if abs(near - value) < 1e-10 * max(1.0, abs(value)) else float(value)
 
@@ -135,9 +128,7 @@ def _constructed(
 def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chosen: ChosenSides) -> None:
     dyad = as_dyad(solver)
     if dyad is None:
-        geared_constructions.add_mounted(
-            placed, sides, solver, lambda link: chosen.counted(link, placed.angle(link))
-        )
+        geared_constructions.add_mounted(placed, sides, solver, lambda link: chosen.counted(link, placed.angle(link)))
         chosen.note_counted(placed.angle(solver.group.links[0]))
         return
     for body in dyad.bodies:
@@ -146,5 +137,3 @@ def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chos
     index = dyad.letters[1]
     mode = chosen.mode(solver.index, index) if dyad.modes == 2 else ""
     CONSTRUCTIONS[dyad.name](DyadParts(placed, sides, dyad, index, mode))
-
-

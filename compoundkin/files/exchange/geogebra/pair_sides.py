@@ -77,6 +77,8 @@ class PairSides:
         if turned is None or abs((gap * turned.conjugate()).real) > _SAME * self._size:
             return start.plus(dimensioned(self._build, pair.name, gap, pair.name))
         offset = (gap * turned.conjugate()).imag
+        if abs(offset) <= _SAME * self._size:
+            return start
         name = self._build.dimension("e", pair.name, offset, f"how far {pair.name} is to the left of {from_letter}")
         return start.plus(along(name, angle.plus(Angle(rest=90.0))))
 
@@ -102,7 +104,7 @@ def length_of(build: Construction, way: Way, index: str) -> tuple[str, Angle]:
         (term,) = way.terms
         return term.what, term.angle.plus(Angle(rest=0.0 if term.sign > 0 else 180.0)) if term.angle else Angle()
     whole = build.vector(index, way.text)
-    return build.helper("a", index, f"Length({whole})"), named(build.helper("ε", index, f"{seen(whole)}"))
+    return build.measured("a", index, "Length", (whole,)), named(build.helper("ε", index, f"{seen(whole)}"))
 
 
 def direction(build: Construction, way: Way, index: str) -> Angle:

@@ -81,4 +81,4 @@ class PlacedBodies:
         if end.letter in self.points:
             return self.points[end.letter]
         place = self.place(link, end.way)
-        return place.point or self.build.point(f"Q{index}" if index.isalnum() else index, place.text, "helper")
+        return place.point or self.build.helping_point("Q", index, place.text)
