@@ -22,7 +22,7 @@ class ChosenSides:
         self._whole = set(sliders.values())
 
     def is_told(self, k: int) -> bool:
-        """Return whether the sign of a group is the same everywhere, or a matter of the one driver that moves."""
+        """Return whether a group has one sign, or one that a single driver tells."""
         return len(set(self._signs(k).tolist())) < 2 or (self._moving is not None and self._turns_once(k))
 
     def mode(self, k: int, index: str) -> str:
@@ -81,7 +81,7 @@ class ChosenSides:
         return {name: np.rad2deg(row) if angles[name] else row for name, row in found.items()}
 
     def counted(self, link: str, angle: Angle) -> Angle:
-        """Return the angle of a link with full turns counted; `angle` has it but for these."""
+        """Return the angle of a link with full turns counted; `angle` lacks these."""
         if self._is_counted(angle):
             return angle
         if link not in self._counted:
@@ -93,7 +93,7 @@ class ChosenSides:
         return self._counted[link]
 
     def can_count(self, link: str) -> bool:
-        """Return whether the angle of a link stays within half a turn of a multiple of the driver's."""
+        """Return whether a link keeps within a turn of some multiple of the driver."""
         return self._course(link) is not None
 
     def note_counted(self, angle: Angle) -> None:

@@ -19,7 +19,7 @@ Look = Literal["slider", "dimension", "helper", "fixed", "pin", "guide", "link",
 
 
 @dataclass(frozen=True)
-class Slider:
+class SliderRange:
     """What a slider begins with, and its range and step."""
 
     value: float
@@ -30,14 +30,14 @@ class Slider:
 
 @dataclass(frozen=True)
 class ConstructionStep:
-    """An object: a free number or point, an expression, or the result of a command. `text` is its right-hand side."""
+    """An object: free, an expression, or the result of a command. `text` is its right-hand side."""
 
     name: str
     kind: Kind
     look: Look
     text: str
     numbers: tuple[float, ...] = ()  # of a free number or point
-    slider: Slider | None = None
+    slider: SliderRange | None = None
     command: str = ""
     arguments: tuple[str, ...] = ()
     caption: str = ""
@@ -82,7 +82,7 @@ class Construction:
                 needed.update(_NAME.findall(step.text))
         return needed
 
-    def slide(self, stem: str, index: str, slider: Slider, caption: str) -> str:
+    def slide(self, stem: str, index: str, slider: SliderRange, caption: str) -> str:
         """Add a slider; return its name."""
         text = f"Slider({number(slider.low)}, {number(slider.high)}, {number(slider.step)})"
         name = self.names.number(stem, index)
@@ -125,7 +125,7 @@ class Construction:
         return self._command(self.names.point(letter), "point", "pin", command, arguments)
 
     def shape(self, kind: Kind, name: tuple[str, str], look: Look, command: str, arguments: Sequence[str]) -> str:
-        """Add a line, a segment or another shape by a command; `name` is its letter and index. Return its name."""
+        """Add a shape by a command; `name` is its letter and index. Return its name."""
         return self._command(self.names.number(*name), kind, look, command, arguments)
 
     def _command(self, name: str, kind: Kind, look: Look, command: str, arguments: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from math import atan2
 import numpy as np
 
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
-from compoundkin.files.exchange.geogebra.geogebra_xml import Window
+from compoundkin.files.exchange.geogebra.geogebra_xml import ShownWindow
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion
 from compoundkin.model.geometry import FRAME
@@ -18,7 +18,7 @@ from compoundkin.model.pairs import Pair
 def add_shapes(
     build: Construction, shown: ShownMechanism, points: Mapping[str, str], sliders: Mapping[str, str]
 ) -> None:
-    """Add a segment or polygon for each link, a circle for each wheel, a locus for each traced point."""
+    """Add segments and polygons for links, circles for wheels, loci of traced points."""
     for name, own in shown.points.items():
         if name != FRAME:
             _add_link(build, name, own, points)
@@ -60,13 +60,13 @@ def _add_pair(build: Construction, shown: ShownMechanism, pair: Pair, points: Ma
         build.shape("conic", ("w", pair.name), "wheel", "Circle", (one, f"abs({sizes[0]})"))
 
 
-def window_of(motion: Motion) -> Window:
+def window_of(motion: Motion) -> ShownWindow:
     """Return the box of all points over the motion."""
     known = np.ravel(motion.failed) == 0
     rows = [np.ravel(motion.points[letter].position) for letter in motion.mechanism.carriers]
     places = np.concatenate([row[known] if row.size > 1 else row for row in rows])
     low, high = (complex(pick(places.real), pick(places.imag)) for pick in (np.min, np.max))
-    return Window(low, high)
+    return ShownWindow(low, high)
 
 
 def traced(shown: ShownMechanism) -> list[str]:

@@ -13,7 +13,10 @@ _FLAT = "1E-9"
 
 
 def rrr(dyad: DyadParts) -> None:
-    """Add an RRR dyad: the inner pin by the law of cosines, on a side of the way from one outer pin to the other."""
+    """Add a dyad of three pins.
+
+    The inner pin is found by the law of cosines, on a side of the way from one outer pin to the other.
+    """
     build, k = dyad.build, dyad.index
     one, two = dyad.known(0).point, dyad.known(1).point
     a, turned = length_of(build, dyad.inner[0].way.minus(dyad.outer[0].way), k)
@@ -31,7 +34,10 @@ def rrr(dyad: DyadParts) -> None:
 
 
 def rrp(dyad: DyadParts) -> None:
-    """Add an RRP dyad: half a chord forward or backward along the line of its inner pin, from the foot on it."""
+    """Add a dyad of a rod and a block.
+
+    From the foot of the outer pin on the line of the inner one it is half a chord, forward or backward along the guide.
+    """
     build, k = dyad.build, dyad.index
     outer, guide = dyad.known(0).point, dyad.known(1)
     a, turned = length_of(build, dyad.inner[0].way.minus(dyad.outer[0].way), k)
@@ -49,7 +55,7 @@ def rrp(dyad: DyadParts) -> None:
 
 
 def rpr(dyad: DyadParts) -> None:
-    """Add an RPR dyad: the guide turned until the pins have their distance across it."""
+    """Add a guide and a block, turned until both pins fit."""
     build, k = dyad.build, dyad.index
     one, two = dyad.known(0).point, dyad.known(1).point
     here = dyad.outer[0].way.minus(dyad.inner[0].way).turned(Angle().minus(dyad.inner[0].angle))
@@ -69,7 +75,7 @@ def rpr(dyad: DyadParts) -> None:
 
 
 def prp(dyad: DyadParts) -> None:
-    """Add a PRP dyad: the inner pin where its two lines meet."""
+    """Add two blocks pinned to each other, where their two lines meet."""
     guides = [dyad.known(j) for j in (0, 1)]
     blocks = [guide.angle.minus(end.angle) for guide, end in zip(guides, dyad.outer, strict=True)]
     lines = []
@@ -84,7 +90,7 @@ def prp(dyad: DyadParts) -> None:
 
 
 def rpp(dyad: DyadParts) -> None:
-    """Add an RPP dyad: all its directions are known, so that two lines meet."""
+    """Add a link on a slide that slides, where two lines meet."""
     outer, guide = dyad.known(0).point, dyad.known(1)
     block = guide.angle.minus(dyad.outer[1].angle)
     held = block.plus(dyad.inner[1].angle)
@@ -99,7 +105,10 @@ def rpp(dyad: DyadParts) -> None:
         dyad.hold(1, met, dyad.inner[1].way, block)
 
 
-CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {"RRR": rrr, "RRP": rrp, "RPR": rpr, "PRP": prp, "RPP": rpp}
+# By the dyads' names.
+CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {
+    one.__name__.upper(): one for one in (rrr, rrp, rpr, prp, rpp)
+}
 
 
 def rounded(cosine: str) -> str:

@@ -53,7 +53,7 @@ class DyadParts:
         return self._met(self.letter, lines)
 
     def runner_met(self, lines: tuple[str, str]) -> str:
-        """Add the point of the second body that runs in the first where two lines meet; return its name."""
+        """Add the second body's point where two lines meet; return its name."""
         return self._met(self.inner[1].letter, lines)
 
     def _met(self, letter: str, lines: tuple[str, str]) -> str:
@@ -79,7 +79,7 @@ class DyadParts:
         self.placed.hold(self.solver.bodies[k], Held(point, own, angle))
 
     def is_real(self, k: int) -> bool:
-        """Whether a body is one of the mechanism, not one that stands for a pair."""
+        """Return whether a body is one of the mechanism, not for a pair."""
         return self.solver.bodies[k] in self.solver.group.bodies
 
     def beside(self, point: str, way: Way, angle: Angle, stem: str) -> str:

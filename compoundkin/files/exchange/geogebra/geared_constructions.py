@@ -45,7 +45,7 @@ class Mounted(NamedTuple):
 
 
 def is_constructed(solver: GroupSolver) -> bool:
-    """Return whether a group is one body on a pin or a slide, and a pair that moves it in proportion."""
+    """Return whether a group is one body that a pair moves in proportion."""
     pairs = (*solver.group.inner, *solver.group.outer)
     if len(solver.group.bodies) != 1 or len(pairs) != 2 or len(solver.group.links) != 1:
         return False

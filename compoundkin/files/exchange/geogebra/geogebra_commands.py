@@ -17,7 +17,6 @@ class GeogebraCommands(Writable):
     name: ClassVar[str] = "geogebra-commands"
     program: ClassVar[str] = "GeoGebra"
     title: ClassVar[str] = "GeoGebra commands"
-    suffix: ClassVar[str] = ".txt"
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the commands. Raises InvalidInput listing all groups that have no construction."""

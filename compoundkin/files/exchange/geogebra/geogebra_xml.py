@@ -17,7 +17,7 @@ _TURN = 360.0
 
 
 class Style(NamedTuple):
-    """How objects look: colour, whether they are seen and named, thickness or size, the kind of line, filling."""
+    """How objects look: colour, whether seen and named, size, line, filling."""
 
     colour: tuple[int, int, int]
     is_seen: bool = True
@@ -40,14 +40,14 @@ _STYLES: Mapping[Look, Style] = {
 }
 
 
-class Window(NamedTuple):
+class ShownWindow(NamedTuple):
     """The corners of what is to be seen."""
 
     low: complex
     high: complex
 
 
-def xml_of(build: Construction, title: str, window: Window) -> bytes:
+def xml_of(build: Construction, title: str, window: ShownWindow) -> bytes:
     """Return the text of the file."""
     root = Element("geogebra", {"format": "5.0", "version": "5.0.609.0", "app": "classic", "platform": "w"})
     _add_view(root, window)
@@ -60,10 +60,11 @@ def xml_of(build: Construction, title: str, window: Window) -> bytes:
         _add_step(inside, step, sliders)
         sliders += step.slider is not None
     indent(root)
-    return b'<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="utf-8") + b"\n"
+    text: str = tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{text}\n'.encode()
 
 
-def _add_view(root: Element, window: Window) -> None:
+def _add_view(root: Element, window: ShownWindow) -> None:
     """Add the window, as large as the motion lets it be."""
     wide, high = (window.high - window.low).real, (window.high - window.low).imag
     scale = min((_WIDTH - 2 * _MARGIN) / (wide or high or 1.0), (_HEIGHT - 2 * _MARGIN) / (high or wide or 1.0))

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.files.exchange.geogebra import driven_links, geared_constructions
 from compoundkin.files.exchange.geogebra.chosen_sides import ChosenSides, steps_of
-from compoundkin.files.exchange.geogebra.dragged_construction import Construction, Slider
+from compoundkin.files.exchange.geogebra.dragged_construction import Construction, SliderRange
 from compoundkin.files.exchange.geogebra.drawn_shapes import add_shapes
 from compoundkin.files.exchange.geogebra.dyad_constructions import CONSTRUCTIONS
 from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
@@ -65,7 +65,7 @@ def _slider(build: Construction, motion: Motion, name: str, at: float | None) ->
     low, high = float(values.min()), float(values.max())
     if low == high:
         return build.dimension(stem, name, low, caption)
-    return build.slide(stem, name, Slider(min(max(value, low), high), low, high, steps_of(values)), caption)
+    return build.slide(stem, name, SliderRange(min(max(value, low), high), low, high, steps_of(values)), caption)
 
 
 def _plain(value: float) -> float:

@@ -42,7 +42,7 @@ class ObjectNames:
         return self._unused("P", name)
 
     def number(self, stem: str, index: str) -> str:
-        """Return the name of a number, or of another object that is not a point."""
+        """Return the name of a number or of another object."""
         return self._unused(stem, index)
 
     def _unused(self, stem: str, index: str) -> str:

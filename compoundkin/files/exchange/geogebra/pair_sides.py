@@ -21,7 +21,7 @@ _SAME = 1e-12
 
 
 class NamedEnd(NamedTuple):
-    """A side of a pair: where it is from the link's first point on, in which direction, and by which letter."""
+    """A side of a pair: way from the link's first point, direction, letter, measure."""
 
     way: Way
     angle: Angle
@@ -30,7 +30,7 @@ class NamedEnd(NamedTuple):
 
 
 class PairSides:
-    """The sides of all pairs; the numbers that only a pair has become dimensions when they are first asked for."""
+    """The sides of all pairs. Numbers of a pair become dimensions when first asked for."""
 
     def __init__(
         self,
@@ -99,7 +99,7 @@ class PairSides:
 
 
 def length_of(build: Construction, way: Way, index: str) -> tuple[str, Angle]:
-    """Return the length of a way and its direction, computed where it has several parts."""
+    """Return the length and direction of a way, computed if it has several parts."""
     if len(way.terms) == 1 and way.terms[0].angle is not None:
         (term,) = way.terms
         return term.what, term.angle.plus(Angle(rest=0.0 if term.sign > 0 else 180.0)) if term.angle else Angle()
@@ -118,7 +118,7 @@ def seen(vector: str) -> str:
 
 
 def seen_from(start: str, end: str) -> str:
-    """Return the direction in degrees in which a point is seen from another, as an expression."""
+    """Return the direction of a point from another, in degrees, as an expression."""
     return f"atan2(y({end}) - y({start}), x({end}) - x({start})) / °"
 
 

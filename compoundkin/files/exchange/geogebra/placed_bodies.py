@@ -13,14 +13,14 @@ from compoundkin.structure.parts import Body
 
 
 class InsideBody(NamedTuple):
-    """Where a link's first point is from that of its body's base, in the axes of the base; and its angle there."""
+    """Where a link is in its body: from the base's first point on, and turned."""
 
     offset: Way
     angle: Angle
 
 
 class Held(NamedTuple):
-    """A body that is known: its place `own` is at the point `at`, its axes are turned by `angle`."""
+    """A known body: its place `own` is at the point `at`, turned by `angle`."""
 
     at: str
     own: Way
@@ -43,7 +43,7 @@ class PlacedBodies:
             self._body[name], self._inside[name] = body.links[0], inside[name]
 
     def hold(self, body: Body, held: Held | None) -> None:
-        """Note where a body is, None for the frame; add the points of its links that are not there yet."""
+        """Note where a body is, None for the frame; add its links' points."""
         self._held[body.links[0]] = held
         for name in body.links:
             for letter, way in self._links[name].ways.items() if name in self._links else ():
@@ -58,7 +58,7 @@ class PlacedBodies:
         return place.point is not None and place.point not in self.points.values()
 
     def in_body(self, link: str, way: Way) -> Way:
-        """Return a place of a link in the axes of its body, from the base's first point on."""
+        """Return a place of a link from its body's first point on."""
         inside = self._inside[link]
         return inside.offset.plus(way.turned(inside.angle))
 
@@ -77,7 +77,7 @@ class PlacedBodies:
         return own if held is None else held.angle.plus(own)
 
     def spot(self, link: str, end: NamedEnd, index: str) -> str:
-        """Return the point at which a side of a pair is, a helper where it has no letter."""
+        """Return the point of a side of a pair, a helper without a letter."""
         if end.letter in self.points:
             return self.points[end.letter]
         place = self.place(link, end.way)

@@ -15,7 +15,7 @@ _WRITTEN = 9
 
 
 class LinkPoints:
-    """The points of a link from the first of them on, in the link's own axes.
+    """The points of a link from the first of them on.
 
     `places` are the numbers, from the origin of the link's frame; `base` is the place of the first point.
     """
@@ -25,7 +25,7 @@ class LinkPoints:
 
 
 def link_points(build: Construction, name: str, places: Mapping[str, complex]) -> LinkPoints:
-    """Return a link's points, adding a free point for each of the frame, numbers for those of any other link."""
+    """Return a link's points, which are free in the frame, else dimensions."""
     if name == FRAME:
         return LinkPoints(places, {k: at(build.free_point(k, place)) for k, place in places.items()}, 0j)
     first = next((k for k, place in places.items() if place == 0), next(iter(places), ""))
@@ -35,7 +35,7 @@ def link_points(build: Construction, name: str, places: Mapping[str, complex]) -
 
 
 def dimensioned(build: Construction, index: str, place: complex, of: str) -> Way:
-    """Return a way by new numbers: a length and an angle, or two coordinates where somebody has written these."""
+    """Return a way by new numbers: length and angle, or coordinates if written so."""
     x, y = place.real, place.imag
     if not x and not y:
         return Way()

@@ -18,7 +18,7 @@ def number(value: float) -> str:
 
 @dataclass(frozen=True)
 class Angle:
-    """A sum of named angles, each with its sign, and of a number; in degrees."""
+    """A sum of named angles and of a number, in degrees."""
 
     names: tuple[tuple[int, str], ...] = ()
     rest: float = 0.0
@@ -82,7 +82,7 @@ def signed(terms: list[tuple[int, str]]) -> str:
 
 @dataclass(frozen=True)
 class WayTerm:
-    """A point by its name, where there is no angle; or a length in a direction."""
+    """A point by its name, or a length in a direction."""
 
     sign: int
     what: str
@@ -144,7 +144,7 @@ class Way:
         return None
 
     def rectangular(self, coordinate: str) -> str:
-        """Return a coordinate, "x" or "y", of a vector without points; "0" where it is none."""
+        """Return a coordinate of a vector without points, "0" where it is none."""
         terms = [(t.sign, _part(t.what, t.angle or Angle(), coordinate)) for t in self.terms]
         return signed(kept) if (kept := [(sign, text) for sign, text in terms if text]) else "0"
 
