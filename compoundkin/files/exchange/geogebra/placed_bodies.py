@@ -13,7 +13,7 @@ from compoundkin.structure.parts import Body
 
 
 class InsideBody(NamedTuple):
-    """Where a link is in its body: from the base's first point on, and turned."""
+    """Where a link is in its body's axes, from the base's first point on."""
 
     offset: Way
     angle: Angle
