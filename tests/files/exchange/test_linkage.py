@@ -194,7 +194,7 @@ def test_oscillating_and_manual_inputs() -> None:
     np.testing.assert_allclose(np.asarray(driver.values)[[0, -1]], [drawn, drawn - np.radians(40)], atol=1e-12)
     (manual,) = read(FOUR_BAR[0].replace(">", ' alwaysmanual="true">', 1), *FOUR_BAR[1:]).mechanism.drives
     plain = ck.drive("link 0")
-    assert (manual.values, manual.speed, manual.name) == (None, plain.speed, plain.name)  # type: ignore[union-attr]
+    assert (manual.values, manual.speed, manual.name) == (None, plain.speed, plain.name)
 
 
 def test_an_actuator_that_shortens_first() -> None:

@@ -7,34 +7,36 @@ from collections.abc import Iterator
 from math import pi, radians
 
 from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway
-from compoundkin.files.exchange.linkage.joined_links import JoinedLinks, rod
+from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
+from compoundkin.files.exchange.linkage.joined_links import rod
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink
 from compoundkin.model.geometry import FRAME
 
 # Turns a minute are clockwise there.
 CLOCKWISE = -1.0
-_SECONDS = 60.0
+SECONDS = 60.0
 
 
-def inputs_of(joined: JoinedLinks) -> Iterator[DrawnDriver]:
+def inputs_of(points: ConnectorPoints) -> Iterator[DrawnDriver]:
     """Yield the drivers at connectors. At anchors against the frame, else against the link listed first."""
+    joined = points.joined
     for one in joined.file.connectors.values():
         if not one.input:
             continue
         bodies = joined.at(one.id)
         if len(bodies) == 2:
-            yield _input(one, bodies[1], bodies[0])
+            yield _input(one, points.key(one.id), bodies[1], bodies[0])
         else:
             joined.problems.add(
                 one.where, f"it is an input, but {_why(one, bodies)}", "turn a link at it, or clear its input"
             )
 
 
-def _input(one: LinkageConnector, link: str, on: str) -> DrawnDriver:
-    speed = None if one.manual or not one.rpm else CLOCKWISE * one.rpm * 2.0 * pi / _SECONDS
+def _input(one: LinkageConnector, at: str, link: str, on: str) -> DrawnDriver:
+    speed = None if one.manual or not one.rpm else CLOCKWISE * one.rpm * 2.0 * pi / SECONDS
     sense = CLOCKWISE if one.rpm >= 0 else -CLOCKWISE
     travel = (0.0, sense * radians(abs(one.range))) if one.range else None
-    return DrawnDriver(link, on, str(one.id), speed, travel, where=one.where)
+    return DrawnDriver(link, on, at, speed, travel, where=one.where)
 
 
 def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:
@@ -43,8 +45,9 @@ def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:
     return "no link turns at it: two anchors hold a link fast" if bodies == (FRAME,) else "holds several links"
 
 
-def actuators_of(joined: JoinedLinks) -> Iterator[tuple[DrawnGuideway, DrawnDriver]]:
+def actuators_of(points: ConnectorPoints) -> Iterator[tuple[DrawnGuideway, DrawnDriver]]:
     """Yield the slide in each actuator, and what drives it."""
+    joined = points.joined
     for link in joined.links:
         if not link.actuator or len(link.connectors) != 2:
             continue
@@ -56,17 +59,17 @@ def actuators_of(joined: JoinedLinks) -> Iterator[tuple[DrawnGuideway, DrawnDriv
             what = "one link holds both its ends" if held else "both its ends are at one place"
             joined.problems.add(link.where, f"{what}: it cannot change its length", "pin it to two links")
         else:
-            yield _actuator(link, first, second, joined)
+            yield _actuator(link, first, second, points)
 
 
 def _actuator(
-    link: LinkageLink, first: LinkageConnector, second: LinkageConnector, joined: JoinedLinks
+    link: LinkageLink, first: LinkageConnector, second: LinkageConnector, points: ConnectorPoints
 ) -> tuple[DrawnGuideway, DrawnDriver]:
     """Return a slide along the line between two pins, driven from the length drawn to that and the throw."""
-    barrel, moving = joined.body(link.key), joined.body(rod(link))
+    barrel, moving = points.joined.body(link.key), points.joined.body(rod(link))
     angle = phase(second.at - first.at)
-    guide = DrawnGuideway(link.key, "slide", moving, barrel, str(second.id), first.at, angle, where=link.where)
+    guide = DrawnGuideway(link.key, "slide", moving, barrel, points.key(second.id), first.at, angle, where=link.where)
     sense = -1.0 if link.cpm < 0 else 1.0
-    speed = sense * 2.0 * link.throw * abs(link.cpm) / _SECONDS if link.cpm else None
+    speed = sense * 2.0 * link.throw * abs(link.cpm) / SECONDS if link.cpm else None
     travel = (0.0, sense * link.throw)
     return guide, DrawnDriver(moving, barrel, link.key, speed, travel, name=link.name, where=link.where)

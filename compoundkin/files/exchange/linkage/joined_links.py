@@ -32,9 +32,9 @@ class JoinedLinks:
         for link in self.links:
             self._place(link)
         self._fasten_all()
+        self._join_all()
         self._turn_together()
-        while self._join_once():
-            pass
+        self._join_all()
 
     def body(self, key: str) -> str:
         """Return the key of the rigid body that a link is part of."""
@@ -140,12 +140,16 @@ class JoinedLinks:
         return bodies[0] if bodies else ""
 
     def _turn_together(self) -> None:
-        """Join the links that an input turns: on an anchor all, else all but the one listed first."""
+        """Join the links that an input turns. On an anchor all, else all but the one listed first."""
         for connector in self.file.connectors.values():
             if connector.input:
-                turned = self._at[connector.id][1:]
-                for other in turned[1:]:
-                    self._join(turned[0], other)
+                bodies = self.at(connector.id)
+                for other in bodies[2:]:
+                    self._join(bodies[1], other)
+
+    def _join_all(self) -> None:
+        while self._join_once():
+            pass
 
     def _join_once(self) -> bool:
         """Join the bodies that meet at two places, which cannot move against each other."""

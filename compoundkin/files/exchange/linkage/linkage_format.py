@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.contract import Readable
+from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
-from compoundkin.files.exchange.exchanged import Imported
+from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.linkage.linkage_reader import drawing_in
-from compoundkin.structure import decompose
+from compoundkin.files.exchange.linkage.linkage_writer import linkage_text
+from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.structure import Structure, decompose
 from compoundkin.structure.assur_groups import roman
 
 # The highest class of group that the program's own solver knows.
 DYADS = 2
 
 
-class LinkageFormat(Readable):
+class LinkageFormat(Readable, Writable):
     """Files of the Linkage program, which solves dyads only."""
 
     name: ClassVar[str] = "linkage"
@@ -35,23 +38,31 @@ class LinkageFormat(Readable):
         found = mechanism_of(drawing, self.name, content.where)
         return replace(found, notes=(*found.notes, *_of_structure(found, hints)))
 
+    def write(self, shown: ShownMechanism, **options: Any) -> Exported:
+        """Return the file. Raises InvalidInput listing all that it cannot say."""
+        text, notes = linkage_text(shown)
+        return Exported(text.encode(), self.name, (*notes, *_beyond_dyads(shown.structure)))
 
-def _of_structure(found: Imported, hints: str) -> list[str]:
-    """Return what is told of the structure: groups that the program cannot simulate, freedoms that nothing drives."""
+
+def _of_structure(found: Imported, hints: str) -> Iterator[str]:
+    """Yield what is told of the structure: groups that the program cannot simulate, freedoms that nothing drives."""
     structure = decompose(found.mechanism)
-    notes = []
+    yield from _beyond_dyads(structure)
+    if not found.mechanism.drives:
+        yield "nothing drives it: no connector is an input, no link an actuator"
+    if hints and structure.faults:
+        yield hints
+
+
+def _beyond_dyads(structure: Structure) -> Iterator[str]:
+    """Yield which groups the program's own solver does not know."""
     for group in structure.groups:
         if group.class_ > DYADS:
             links = ", ".join(group.links)
-            notes.append(
+            yield (
                 f"Linkage cannot simulate it: {links} are an Assur group of class {roman(group.class_)}"
                 f" ({group.name}), and its solver knows dyads only; here all its configurations are found"
             )
-    if not found.mechanism.drives:
-        notes.append("nothing drives it: no connector is an input, no link an actuator")
-    if hints and structure.faults:
-        notes.append(hints)
-    return notes
 
 
 FORMAT = LinkageFormat()

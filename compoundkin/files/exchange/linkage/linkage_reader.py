@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway
+from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.joining_hints import hint, unjoined
@@ -26,23 +25,23 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
     file = linkage_file(xml_tree(content.text, content.where), problems)
     joined = JoinedLinks(file, problems)
     size = _size([one.at for one in file.connectors.values()])
-    sliders, gears = sliders_of(joined), tuple(gears_of(joined))
-    actuators = list(actuators_of(joined))
-    guides = (*guides_of(sliders, size), *(guide for guide, _ in actuators))
-    drivers = (*inputs_of(joined), *(driver for _, driver in actuators))
+    points = ConnectorPoints(joined)
+    sliders, gears = sliders_of(joined), tuple(gears_of(points))
+    actuators = list(actuators_of(points))
+    guides = (*guides_of(sliders, points, size), *(guide for guide, _ in actuators))
+    drivers = (*inputs_of(points), *(driver for _, driver in actuators))
     hints = hint(list(unjoined(joined, size)))
     _find_floating(joined, sliders, guides, gears, hints)
     problems.raise_if_any()
-    points = tuple(_points(joined))
     drawing = Drawing(
         content.name or "Linkage",
         tuple(joined.drawn),
-        points,
+        tuple(points.drawn),
         guides,
-        tuple(arcs_of(sliders)),
+        tuple(arcs_of(sliders, points)),
         gears,
         drivers=drivers,
-        outputs=tuple(point.key for point in points if file.connectors[int(point.key)].draw),
+        outputs=points.outputs,
         unit=file.unit,
         source="a file of the Linkage program",
         notes=(*file.notes, *joined.notes, *limit_notes(sliders, file.unit, size)),
@@ -56,15 +55,6 @@ def _size(places: list[complex]) -> float:
     wide = max((p.real for p in places), default=0.0) - min((p.real for p in places), default=0.0)
     high = max((p.imag for p in places), default=0.0) - min((p.imag for p in places), default=0.0)
     return abs(complex(wide, high)) or 1.0
-
-
-def _points(joined: JoinedLinks) -> Iterator[DrawnPoint]:
-    for one in joined.file.connectors.values():
-        bodies = joined.at(one.id)
-        if bodies:
-            yield DrawnPoint(str(one.id), one.at, bodies, one.name, one.where)
-        else:
-            joined.file.drop("lone connector")
 
 
 def _find_floating(

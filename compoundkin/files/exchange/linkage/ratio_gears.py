@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.files.exchange.drawn_elements import DrawnGear
+from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageLink, LinkageRatio
 from compoundkin.model.geometry import FRAME
@@ -12,8 +13,9 @@ from compoundkin.model.geometry import FRAME
 _KINDS = ("gears", "chain")
 
 
-def gears_of(joined: JoinedLinks) -> Iterator[DrawnGear]:
+def gears_of(points: ConnectorPoints) -> Iterator[DrawnGear]:
     """Yield the pairs of wheels. What is wrong with them is noted."""
+    joined = points.joined
     for k, ratio in enumerate(joined.file.ratios):
         wheels = _wheels(ratio, joined)
         if wheels is None:
@@ -28,7 +30,7 @@ def gears_of(joined: JoinedLinks) -> Iterator[DrawnGear]:
             what = f"links {wheels[0].id} and {wheels[1].id} have no common carrier of their axes"
             joined.problems.add(ratio.where, what, "hold both axes by one link, or anchor both")
         else:
-            yield _gear(f"ratio {k}", ratio, (first, second), carriers[0], axes, joined)
+            yield _gear(f"ratio {k}", ratio, (first, second), carriers[0], axes, points)
 
 
 def _wheels(ratio: LinkageRatio, joined: JoinedLinks) -> list[LinkageLink] | None:
@@ -52,16 +54,16 @@ def _wheels(ratio: LinkageRatio, joined: JoinedLinks) -> list[LinkageLink] | Non
 
 
 def _gear(
-    key: str, ratio: LinkageRatio, wheels: tuple[str, str], carrier: str, axes: list[int], joined: JoinedLinks
+    key: str, ratio: LinkageRatio, wheels: tuple[str, str], carrier: str, axes: list[int], points: ConnectorPoints
 ) -> DrawnGear:
     """Return the pair. Gears by teeth or shares of the distance; a chain may be of radii as large as its sizes."""
     one, two = (size for _, size in ratio.wheels)
     is_chain = ratio.kind == "chain"
     in_teeth = one == round(one) and two == round(two) and not (is_chain and ratio.by_size)
     if is_chain and ratio.by_size:
-        one, two = one * joined.file.scale, two * joined.file.scale
+        one, two = one * points.joined.file.scale, two * points.joined.file.scale
     elif not in_teeth:
-        places = [joined.file.connectors[axis].at for axis in axes]
+        places = [points.joined.file.connectors[axis].at for axis in axes]
         share = abs(places[1] - places[0]) / (one + two)
         one, two = one * share, two * share
     kind = "belt" if is_chain else "gears"
@@ -70,8 +72,8 @@ def _gear(
         "belt" if kind == "belt" else "gears",
         *wheels,
         carrier,
-        str(axes[0]),
-        str(axes[1]),
+        points.key(axes[0]),
+        points.key(axes[1]),
         (one, two),
         in_teeth,
         where=ratio.where,

@@ -9,6 +9,7 @@ from math import sqrt
 
 from compoundkin.files.exchange.drawn_elements import DrawnArc, DrawnGuideway
 from compoundkin.files.exchange.drawn_letters import SAME
+from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
 
@@ -86,7 +87,7 @@ def _slider(one: LinkageConnector, joined: JoinedLinks) -> Slider | None:
     return Slider(one, bodies, carriers[0], (limits[0], limits[1])) if bodies and carriers else None
 
 
-def guides_of(sliders: list[Slider], size: float) -> Iterator[DrawnGuideway]:
+def guides_of(sliders: list[Slider], points: ConnectorPoints, size: float) -> Iterator[DrawnGuideway]:
     """Yield slots and slides. Two sliders of one link in one line of another are a slide."""
     straight = [slider for slider in sliders if not slider.connector.radius]
     sliding: list[Slider] = []
@@ -96,18 +97,18 @@ def guides_of(sliders: list[Slider], size: float) -> Iterator[DrawnGuideway]:
             continue
         second = next((two for two in straight if two is not one and _is_slide(one, two, size)), None)
         if second is None:
-            yield _guide(one, one.bodies[0], "slot", size)
+            yield _guide(one, one.bodies[0], "slot", points, size)
             continue
         sliding.append(one)
         held.add(second.connector.id)
-        yield _guide(one, _common(one, second)[0], "slide", size)
+        yield _guide(one, _common(one, second)[0], "slide", points, size)
 
 
-def arcs_of(sliders: list[Slider]) -> Iterator[DrawnArc]:
+def arcs_of(sliders: list[Slider], points: ConnectorPoints) -> Iterator[DrawnArc]:
     """Yield circular slots."""
     for one in sliders:
         if one.connector.radius:
-            key, at = f"slider {one.connector.id}", str(one.connector.id)
+            key, at = f"slider {one.connector.id}", points.key(one.connector.id)
             yield DrawnArc(key, one.bodies[0], one.on, at, one.centre, one.radius, where=one.connector.where)
 
 
@@ -124,7 +125,7 @@ def limit_notes(sliders: list[Slider], unit: str, size: float) -> Iterator[str]:
             yield f"{one.connector.called} is drawn {off:.4g} {unit} beside its slot"
 
 
-def _guide(one: Slider, link: str, kind: str, size: float) -> DrawnGuideway:
+def _guide(one: Slider, link: str, kind: str, points: ConnectorPoints, size: float) -> DrawnGuideway:
     """Return a guide. A pin that rounding has put beside the line is on it, so that line has an angle and no ends."""
     first, second = one.limits
     exact = kind == "slide" or one.off(one.connector.at) <= SAME * size
@@ -133,10 +134,10 @@ def _guide(one: Slider, link: str, kind: str, size: float) -> DrawnGuideway:
         "slide" if kind == "slide" else "slot",
         link,
         one.on,
-        str(one.connector.id),
+        points.key(one.connector.id),
         first.at,
         phase(one.direction),
-        (str(first.id), str(second.id)) if exact else None,
+        (points.key(first.id), points.key(second.id)) if exact else None,
         where=one.connector.where,
     )
 
