@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -119,3 +121,91 @@ def test_what_pmks_has_no_words_for_is_refused_all_at_once():
         write(mechanism, "pmks")
     assert "belt" in str(told.value)
     assert "2 drivers ('one', 'three'); PMKS has one" in str(told.value)
+
+
+def test_files_hold_what_they_tell():
+    (sample,) = entries("pmks-json")
+    got = read(sample["text"])
+    assert got.form == "pmks-file"
+    holds(got.mechanism, sample)
+    (drive,) = got.mechanism.drives
+    expected = sample["expected"]
+    assert (got.mechanism.title, drive.link, drive.speed) == (expected["title"], expected["driver"], 10.0)
+
+
+def file_of(rows: str, driven: int = 0) -> str:
+    """A file of PMKS, of the rows of a text and the angles as they stand in it."""
+    joints = []
+    for row in rows.splitlines():
+        *links, kind, x, y, angle = row.split(",")
+        joints.append({"X": float(x), "Y": float(y), "Angle": float(angle), "TypeOfJoint": kind, "Links": links})
+    return json.dumps({"Joints": joints, "DrivingIndex": driven, "InputSpeed": 2, "Links": []})
+
+
+def test_angles_of_files_are_relative_to_links_of_two_fixed_joints():
+    sample = entry("pmks_text_quick_return")
+    turned = np.deg2rad(69.443954780417) - np.angle(28.089875327071 + 74.906334205524j)
+    rows = "ground,crank,R,0,0,NaN\narm,crank,RP,15,0,{}\narm,ground,R,0,-40,NaN\n{}"
+    of_two = rows.format(turned, "arm,R,28.089875327071,34.906334205524,0")
+    holds(read(file_of(of_two)).mechanism, sample)
+    third = "arm,R,28.089875327071,34.906334205524,0\narm,R,28,30,0"
+    of_three = rows.format(np.deg2rad(69.443954780417), third)
+    holds(read(file_of(of_three)).mechanism, sample)
+
+
+@pytest.mark.parametrize(
+    ("text", "reasons"),
+    [
+        ('{"Joints": [], "TypeOfJoint": 0}', ["no joints"]),
+        (
+            '{"Joints": [{"TypeOfJoint": "R", "X": NaN, "Links": ["a", "b"]}]}',
+            ["joint 0", "'X' is nan", "'Y' is missing"],
+        ),
+        (file_of("ground,a,P,0,0,NaN"), ["joint 0", "'Angle' is nan"]),
+        (file_of("ground,a,Q,0,0,0"), ["joint 0: no joint type R, P, RP or G"]),
+        (file_of("ground,a,R,0,0,0", 3), ["there is no joint 3"]),
+        ('{"TypeOfJoint": ' + "[" * 100_000, ["nested too deeply"]),
+    ],
+)
+def test_files_that_cannot_be_are_refused(text, reasons):
+    with pytest.raises(InvalidInput) as told:
+        read(text, "pmks-file")
+    assert all(reason in str(told.value) for reason in reasons)
+
+
+ROWS = "ground,crank,R,0,0\ncrank,rod,R,3,4\nrod,slider,R,10,0\nslider,ground,P,10,0,0\n"
+TABLES = {
+    "no heading": ROWS,
+    "heading": f"link names,type,x,y,angle\n{ROWS}",
+    "columns": "x,y,type,link 1,link 2,angle\n0,0,R,gnd,crank,\n3,4,R,crank,rod\n10,0,R,rod,slider\n10,0,P,slider,0\n",
+    "names": 'name;Links;Type;X [mm];Y [mm]\nA;ground crank;R;0,0;0\nB;"crank, rod";R;3,0;4\n'
+    "C;rod+slider;R;1e1;0,0\n;slider 0;P;10;0",
+    "tabs": "# SAM\n" + ROWS.replace(",", "\t").replace("3\t4", "3\t4,0"),
+}
+
+
+@pytest.mark.parametrize("kind", TABLES)
+def test_tables_of_joints_are_read_however_they_are_written(kind):
+    sample = entry("pmks_url_slider_crank")
+    got = read(TABLES[kind])
+    assert got.form == ("pmks" if kind == "no heading" else "joints")
+    holds(got.mechanism, sample)
+    written = write(got.mechanism, "joints")
+    back = read(written.text)
+    assert back.form == "joints"
+    holds(back.mechanism, sample)
+    assert write(back.mechanism, "joints").text == written.text
+
+
+def test_tables_keep_names_of_points_and_say_what_is_missing():
+    text = "name,links,type,x,y,driver\nhinge,ground crank,R,0,0,no\ncrank pin,crank rod,R,3,4,\n"
+    text += "wrist,rod slider,R,10,0,\n"
+    mechanism = read(f"{text}end,ground slider,P,10,0,yes\ns=2\nname=press, small\n").mechanism
+    assert {"hinge", "crank pin", "wrist"} <= set(mechanism.carriers)
+    assert (mechanism.drives[0].link, mechanism.drives[0].speed, mechanism.title) == ("slider", 2.0, "press, small")
+    again = read(write(mechanism, "joints").text).mechanism
+    assert {"hinge", "crank pin", "wrist"} <= set(again.carriers)
+    with pytest.raises(InvalidInput, match="line 5: a coordinate is missing"):
+        read(f"{text}end,ground slider,P,10,,yes\n")
+    with pytest.raises(InvalidInput, match="line 2: the coordinate '' is no finite number"):
+        read("links;type;x;y;angle\nground;crank;R;;5;20")

@@ -90,7 +90,8 @@ def _points(joints: JointList, pins: Mapping[int, int]) -> tuple[DrawnPoint, ...
         links.setdefault(head, {}).update(
             dict.fromkeys(sorted(held(joints.records[k]), key=joints.records[k].links.index))
         )
-    named = [joints.records[head].name for head in links]
+    own = {pins[k]: joints.records[k].name for k in sorted(pins, reverse=True) if joints.records[k].name}
+    named = [own.get(head, "") for head in links]
     given = islice(letters({*joints.names.values(), *named}), len(links))
     return tuple(
         DrawnPoint(str(head), joints.records[head].at, tuple(of), name or letter, joints.records[head].where)

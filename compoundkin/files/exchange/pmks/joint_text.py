@@ -53,18 +53,21 @@ class TextReader:
     names: dict[str, str] = field(default_factory=dict)
     keys: dict[str, str] = field(default_factory=dict)
     shown: int = 0
+    count: int = 0
 
     def read(self, text: str) -> JointList:
         """Return the joints of a text."""
         for where, line in _lines(text):
-            if key := _KEY.fullmatch(line):
-                self.keys[key[1].lower()] = key[2].strip()
-            elif len(self.records) == MOST_JOINTS:
-                self.problems.add(where, f"there are more than {MOST_JOINTS} joints", "is it the right file?")
-                break
-            else:
-                self._record(where, _FIELDS.split(line.strip(", \t\r")))
+            if not self.told(line):
+                self.record(where, _FIELDS.split(line.strip(", \t\r")))
         return self.joints()
+
+    def told(self, line: str) -> bool:
+        """Return whether a line is a key and its value, which is kept."""
+        key = _KEY.fullmatch(line)
+        if key:
+            self.keys[key[1].lower()] = key[2].strip()
+        return key is not None
 
     def joints(self) -> JointList:
         """Return the joints read; note what is wrong with them as a whole."""
@@ -83,7 +86,13 @@ class TextReader:
             self.problems.add(key, f"{word!r} is no number")
         return found
 
-    def _record(self, where: str, words: list[str]) -> None:
+    def record(self, where: str, words: list[str], name: str = "") -> None:
+        """Read the words of a record; note what is wrong with them."""
+        self.count += 1
+        if self.count > MOST_JOINTS:
+            if self.count == MOST_JOINTS + 1:
+                self.problems.add(where, f"there are more than {MOST_JOINTS} joints", "is it the right file?")
+            return
         places = [k for k, word in enumerate(words) if kind_of(word)]
         kind = kind_of(words[places[-1]]) if places else None
         if kind is None:
@@ -93,12 +102,12 @@ class TextReader:
         at = self._place(where, rest[:2])
         angle, flags = self._angle_and_flags(where, rest[2:])
         self.shown += any(flags[:_DRIVES])
-        for name in links:
-            self.names.setdefault(link_key(name), name)
+        for link in links:
+            self.names.setdefault(link_key(link), link)
         keys = tuple(map(link_key, links))
         if at is not None:
             drives = len(flags) > _DRIVES and flags[_DRIVES]
-            self.records.append(JointRecord(kind, keys, at, drawn_angle(angle), drives, where=where))
+            self.records.append(JointRecord(kind, keys, at, drawn_angle(angle), drives, name, where))
 
     def _place(self, where: str, words: list[str]) -> complex | None:
         if len(words) < 2:

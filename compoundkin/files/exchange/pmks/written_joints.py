@@ -21,10 +21,10 @@ PMKS = Notation(
 )
 
 
-def pmks_joints(drawing: Drawing) -> JointList:
+def pmks_joints(drawing: Drawing, notation: Notation = PMKS) -> JointList:
     """Return a drawing as joints that PMKS can have: angles are within 90 degrees."""
-    joints = joints_of(drawing, PMKS)
-    return turned_back(joints, [radians(_degrees(record)) for record in joints.records])
+    joints = joints_of(drawing, notation)
+    return turned_back(joints, [radians(drawn_degrees(record)) for record in joints.records])
 
 
 def record_lines(joints: JointList) -> list[str]:
@@ -41,10 +41,11 @@ def pmks_notes(joints: JointList) -> tuple[str, ...]:
 
 def _line(record: JointRecord, joints: JointList) -> str:
     names = [joints.names[key] for key in record.links]
-    angle = [plain(_degrees(record))] if record.is_guide else []
+    angle = [plain(drawn_degrees(record))] if record.is_guide else []
     flags = "tfft" if record.drives else "tfff"
     return ",".join([*names, record.kind, plain(record.at.real), plain(record.at.imag), *angle, flags])
 
 
-def _degrees(record: JointRecord) -> float:
+def drawn_degrees(record: JointRecord) -> float:
+    """Return the direction of a line in degrees, between -90 and 90."""
     return remainder(degrees(record.angle), 180.0)

@@ -1,0 +1,67 @@
+"""Tables of joints, which any program can make: read and written."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.contract import Readable, Writable
+from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.pmks.joint_notation import plain
+from compoundkin.files.exchange.pmks.joint_record import kind_of
+from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
+from compoundkin.files.exchange.pmks.joint_text import TextReader
+from compoundkin.files.exchange.pmks.table_rows import heading_of, lines_of, separator_of, table_rows
+from compoundkin.files.exchange.pmks.written_joints import PMKS, drawn_degrees, pmks_joints
+from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+
+_TABLE = replace(PMKS, program="a table of joints")
+HEADING = ("links", "type", "x", "y", "angle", "driver", "name")
+
+
+class JointTable(Readable, Writable):
+    """Tables of joints, as spreadsheets write them."""
+
+    name: ClassVar[str] = "joints"
+    program: ClassVar[str] = "any program"
+    title: ClassVar[str] = "table of joints"
+
+    def recognises(self, content: Content) -> bool:
+        """Return whether its first row is a heading, or a joint without commas."""
+        first = next(lines_of(content.head), "")
+        if not content.is_text:
+            return False
+        separator = separator_of(first)
+        cells = [cell.strip(' "') for cell in first.split(separator)]
+        return heading_of(cells) is not None or (separator != "," and len(cells) > 3 and any(map(kind_of, cells)))
+
+    def read(self, content: Content) -> Imported:
+        """Return the mechanism of a table."""
+        problems = Problems(content.where)
+        reader = TextReader(problems, keys={"name": content.name})
+        for row in table_rows(content.text, problems, reader.told):
+            reader.record(row.where, row.words, row.name)
+        return mechanism_of(drawing_of_joints(reader.joints(), problems, ""), self.name, content.where)
+
+    def write(self, shown: ShownMechanism, **options: Any) -> Exported:
+        """Return the table, with the names of the points."""
+        joints = pmks_joints(shown.drawing, _TABLE)
+        text = io.StringIO()
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow(HEADING)
+        for record in joints.records:
+            names = " ".join(joints.names[key] for key in record.links)
+            angle = plain(drawn_degrees(record)) if record.is_guide else ""
+            place = plain(record.at.real), plain(record.at.imag)
+            table.writerow((names, record.kind, *place, angle, "yes" if record.drives else "", record.name))
+        keys = [f"s={plain(one.speed)}" for one in joints.drivers if one.speed]
+        keys += [f"name={joints.title}"] if joints.title else []
+        return Exported((text.getvalue() + "".join(f"{key}\n" for key in keys)).encode(), self.name, joints.notes)
+
+
+FORMAT = JointTable()

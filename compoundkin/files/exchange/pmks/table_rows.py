@@ -1,0 +1,114 @@
+"""Rows of a table of joints: cells by commas, semicolons or tabulators, perhaps under a heading."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from compoundkin.files.exchange.pmks.joint_record import kind_of
+from compoundkin.files.exchange.problems import Problems
+
+_NAMES = re.compile(r"[\s,;&+]+")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:e[+-]?\d+)?", re.IGNORECASE)
+_YES = ("yes", "true", "1", "x", "y", "t", "driver", "driven")
+# What a column may be called, by what it is; all columns whose name has the word link are of links.
+_COLUMNS = {
+    "kind": ("type", "kind", "joint type"),
+    "x": ("x",),
+    "y": ("y",),
+    "angle": ("angle", "direction"),
+    "drives": ("driver", "driven", "drives", "input"),
+    "name": ("name", "joint", "point", "joint name", "point name"),
+}
+_LINK = "link"
+_NEEDED = {_LINK, "kind", "x", "y"}
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """A row as the words of a record, and the name of its point."""
+
+    words: list[str]
+    name: str
+    where: str
+
+
+def separator_of(text: str) -> str:
+    """Return what stands between the cells of a row.
+
+    >>> separator_of("a b;R;0,5;0"), separator_of("a,b,R,0,0")
+    (';', ',')
+    """
+    return next((sign for sign in ";\t" if sign in text), ",")
+
+
+def heading_of(cells: Sequence[str]) -> list[str] | None:
+    """Return what the columns are under these headings, or None where they are none.
+
+    >>> heading_of(["Link names", "type", "x", "y", "colour"])
+    ['link', 'kind', 'x', 'y', '']
+    """
+    found = []
+    for cell in cells:
+        word = re.sub(r"\s*[\[(].*", "", cell).strip().lower()
+        kinds = (kind for kind, words in _COLUMNS.items() if word in words)
+        found.append(_LINK if _LINK in word else next(kinds, ""))
+    return found if set(found) >= _NEEDED else None
+
+
+def lines_of(text: str) -> Iterator[str]:
+    """Yield the lines that are neither empty nor comments."""
+    return (line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#"))
+
+
+def table_rows(text: str, problems: Problems, told: Callable[[str], bool]) -> Iterator[TableRow]:
+    """Yield the rows of a table of joints, but comments and lines `told`."""
+    separator = separator_of(next(lines_of(text), ""))
+    heading: list[str] | None = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip(f"{separator} \t\r") or line.lstrip().startswith("#") or told(line):
+            continue
+        try:
+            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
+        except (csv.Error, ValueError):
+            problems.add(f"line {number}", "this is no row of a table", "cells are separated by commas")
+            continue
+        cells = [cell.strip() for cell in cells]
+        if heading is None and (found := heading_of(cells)):
+            heading = found
+        else:
+            yield _row(cells, heading, separator, f"line {number}")
+
+
+def _row(cells: list[str], heading: list[str] | None, separator: str, where: str) -> TableRow:
+    """Return a row by its columns, or as it stands where it has none or more cells than there are columns."""
+    if separator != ",":
+        cells = [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in cells]
+    by = {} if heading is None or len(cells) > len(heading) else _by_column(cells, heading)
+    if not by or kind_of(by["kind"]) is None:
+        return TableRow(_as_it_stands(cells), "", where)
+    words = [*_names(by[_LINK]), by["kind"], by["x"], by["y"]]
+    if by["x"] and by["y"]:
+        words += [by.get("angle", ""), "ffft" if by.get("drives", "").lower() in _YES else "ffff"]
+    return TableRow([word for word in words if word], by.get("name", ""), where)
+
+
+def _by_column(cells: list[str], heading: list[str]) -> dict[str, str]:
+    """Return the cells of a row by what they are; the columns of links make one."""
+    filled = [*cells, *[""] * (len(heading) - len(cells))]
+    by = {kind: cell for kind, cell in zip(heading, filled, strict=True) if kind}
+    by[_LINK] = " ".join(cell for kind, cell in zip(heading, filled, strict=True) if kind == _LINK)
+    return by
+
+
+def _as_it_stands(cells: list[str]) -> list[str]:
+    """Return the words of a row without columns. A place keeps its cells, so that none stands in for another."""
+    last = max((k for k, cell in enumerate(cells) if kind_of(cell)), default=len(cells))
+    place, others = cells[last : last + 3], cells[last + 3 :]
+    return [*_names(" ".join(cells[:last])), *place, *(cell for cell in others if cell)]
+
+
+def _names(text: str) -> list[str]:
+    return [word for word in _NAMES.split(text) if word]
