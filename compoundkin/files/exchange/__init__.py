@@ -29,7 +29,7 @@ MODULES = {
 }
 
 # Formats that are only read.
-READ_ONLY = ("linkage-sim",)
+READ_ONLY = ("linkage-sim", "pmks-file")
 
 
 def format_named(name: str) -> ExchangeFormat:

@@ -14,6 +14,7 @@ from compoundkin.files.exchange.pmks.joint_record import JointRecord
 from compoundkin.files.exchange.pmks.joint_sketch import point_keys
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from tests.files.exchange.references import driven_by, entries, entry, holds
+from tests.files.exchange.shown_catalog import shown
 
 
 @pytest.mark.parametrize("given", entries("pmks"), ids=lambda given: given["id"])
@@ -209,3 +210,19 @@ def test_tables_keep_names_of_points_and_say_what_is_missing():
         read(f"{text}end,ground slider,P,10,,yes\n")
     with pytest.raises(InvalidInput, match="line 2: the coordinate '' is no finite number"):
         read("links;type;x;y;angle\nground;crank;R;;5;20")
+
+
+@pytest.mark.parametrize(
+    "name", ["planetary-train", "rack-and-pinion-steering", "hydraulic-crane", "elliptic-trammel", "class-iii-six-bar"]
+)
+def test_mechanisms_of_the_catalog_come_back(name):
+    one = shown(name).mechanism
+    for form in ("pmks", "joints"):
+        back = read(write(one, form).text).mechanism
+        places = {k: shown(name).place(links[0], k) for k, links in one.carriers.items()}
+        first, second = (driven_by(shown_mechanism(mechanism), 0.05) for mechanism in (one, back))
+        a, b = ck.solve(one, first, order=0, hint=places), ck.solve(back, second, order=0)
+        rows = {k: b.points[k].position.ravel()[[0, -1]] for k in back.carriers}
+        for k, place in places.items():
+            moved = [row[1] for row in rows.values() if abs(row[0] - place) < 1e-9 * a.size]
+            assert min(abs(one - a.points[k].position.ravel()[-1]) for one in moved) < 1e-9 * a.size

@@ -34,7 +34,7 @@ class PmksFile(Readable):
 
     name: ClassVar[str] = "pmks-file"
     program: ClassVar[str] = "PMKS"
-    title: ClassVar[str] = "file of PMKS"
+    title: ClassVar[str] = "PMKS file (.pmks)"
 
     def recognises(self, content: Content) -> bool:
         """Return whether it is JSON with the joints of PMKS."""

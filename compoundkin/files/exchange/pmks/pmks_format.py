@@ -26,7 +26,7 @@ class PmksFormat(Readable, Writable):
 
     name: ClassVar[str] = "pmks"
     program: ClassVar[str] = "PMKS"
-    title: ClassVar[str] = "joints of PMKS"
+    title: ClassVar[str] = "PMKS text"
 
     def recognises(self, content: Content) -> bool:
         """Return whether one of the first lines is a record of a joint."""

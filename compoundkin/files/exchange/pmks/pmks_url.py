@@ -24,7 +24,7 @@ class PmksUrl(Readable, Writable):
 
     name: ClassVar[str] = "pmks-url"
     program: ClassVar[str] = "PMKS"
-    title: ClassVar[str] = "address of PMKS"
+    title: ClassVar[str] = "PMKS address (mech=...)"
 
     def recognises(self, content: Content) -> bool:
         """Return whether it is an address with `mech=` in its query."""

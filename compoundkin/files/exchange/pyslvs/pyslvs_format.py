@@ -19,7 +19,7 @@ class PyslvsFormat(Readable, Writable):
 
     name: ClassVar[str] = "pyslvs"
     program: ClassVar[str] = PROGRAM
-    title: ClassVar[str] = "expression M[...] of pyslvs"
+    title: ClassVar[str] = "pyslvs expression M[...]"
 
     def recognises(self, content: Content) -> bool:
         """Return whether it begins with M[, perhaps after comments."""

@@ -31,7 +31,7 @@ class PyslvsProject(Readable, Writable):
 
     name: ClassVar[str] = "pyslvs-project"
     program: ClassVar[str] = "Pyslvs-UI"
-    title: ClassVar[str] = "project of Pyslvs-UI"
+    title: ClassVar[str] = "Pyslvs-UI project (.pyslvs)"
     suffix: ClassVar[str] = ".pyslvs"
 
     def recognises(self, content: Content) -> bool:
