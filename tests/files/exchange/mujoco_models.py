@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 
 from compoundkin.files.exchange.exchanged import Exported
+from compoundkin.files.exchange.mjcf.body_masses import units_of
 from compoundkin.files.exchange.mjcf.mjcf_format import FORMAT
-from compoundkin.files.exchange.mjcf.model_units import units_of
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.results import Motion
 

@@ -40,8 +40,11 @@ def site_name(plan: ModelPlan, letter: str, link: str) -> str:
     return letter if plan.shown.mechanism.carriers[letter][0] == link else f"{letter} on {link}"
 
 
-def world_element(plan: ModelPlan) -> Element:
-    """Return the frame's body with all others in it."""
+def body_elements(plan: ModelPlan) -> dict[str, Element]:
+    """Return the bodies of all links, each in that of its parent.
+
+    The first is the frame's.
+    """
     world = Element("worldbody")
     _add_sites(plan, world, FRAME)
     elements = {FRAME: world}
@@ -60,7 +63,7 @@ def world_element(plan: ModelPlan) -> Element:
         if name == link:
             elements[link] = body
             _add_sites(plan, body, link)
-    return world
+    return elements
 
 
 def _pose(plan: ModelPlan, branch: CarriedLink, link: str) -> dict[str, str]:

@@ -1,12 +1,23 @@
-"""The spanning tree of a mechanism's joints, and what is left to close its loops."""
+"""The spanning tree of a mechanism's joints, what is left to close its loops, and which joints are tied.
+
+A tie is of wheels whose turns, and the ways of what they roll on, are in proportion: a sum over joints of the tree.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from compoundkin.base.arrays import first_entry
 from compoundkin.files.exchange.mjcf.elementary_joints import RACK, ElementaryJoint, JointChain
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
+
+# Hinges nearer to an axis than this part of the way from it are at it; numbers below are zero.
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -109,3 +120,50 @@ def _branches(taken: Iterable[JointChain]) -> dict[str, CarriedLink]:
                 found[link] = CarriedLink(link, parent, chain, sign)
                 reached.append(link)
     return found
+
+
+def geared_tie(tree: JointTree, pair: Pair, ends: Ends) -> Mapping[str, float]:
+    """Return the tie of two wheels.
+
+    Seen from the carrier, the second turns back by the ratio for one turn of the first.
+    """
+    first, second, carrier = pair.members
+    ratio = float(first_entry(ends[0].measure) / first_entry(ends[1].measure))
+    terms = [(joint, ratio * sign) for joint, sign in tree.between(carrier, first)]
+    terms += [(joint, 1.0 * sign) for joint, sign in tree.between(carrier, second)]
+    return _summed((joint.name, number) for joint, number in terms if joint.is_hinge)
+
+
+def still_tie(tree: JointTree, link: str, on: str) -> Mapping[str, float]:
+    """Return the tie of a link that does not turn on another."""
+    return _summed((joint.name, 1.0 * sign) for joint, sign in tree.between(on, link) if joint.is_hinge)
+
+
+def straight_tie(tree: JointTree, chain: JointChain) -> Mapping[str, float] | None:
+    """Return the tie of a rack and its pinion.
+
+    The way between them is of slides, then of hinges at its axis. None where it is another way, on
+    which what the pinion rolls is no sum of coordinates.
+    """
+    along, *_, axis = chain.joints
+    way = list(tree.between(*chain.members))
+    slides = [joint for joint, _ in way if not joint.is_hinge]
+    hinges = [joint for joint, _ in way if joint.is_hinge]
+    if along.is_hinge or [joint for joint, _ in way] != slides + hinges or not _at(hinges, axis.axis):
+        return None
+    terms = []
+    for joint, sign in way:
+        part = chain.tie[axis.name] if joint.is_hinge else float((along.axis.conjugate() * joint.axis).real)
+        terms.append((joint.name, sign * part))
+    return _summed(terms)
+
+
+def _at(hinges: Iterable[ElementaryJoint], place: complex) -> bool:
+    return all(abs(joint.axis - place) <= _ROUNDING * max(abs(joint.axis), abs(place)) for joint in hinges)
+
+
+def _summed(terms: Iterable[tuple[str, float]]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for name, number in terms:
+        found[name] = found.get(name, 0.0) + number
+    return {name: number for name, number in found.items() if not np.isclose(number, 0.0, rtol=0.0, atol=_ROUNDING)}

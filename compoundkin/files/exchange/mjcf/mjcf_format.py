@@ -5,24 +5,22 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any, ClassVar
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, indent, tostring
 
-from compoundkin.base.arrays import TURN, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
-from compoundkin.files.exchange.mjcf.body_elements import number, place, world_element
+from compoundkin.files.exchange.mjcf.body_elements import body_elements
+from compoundkin.files.exchange.mjcf.body_shapes import add_shapes
 from compoundkin.files.exchange.mjcf.constraint_elements import constraint_elements
-from compoundkin.files.exchange.mjcf.driver_elements import driver_elements, fastest
+from compoundkin.files.exchange.mjcf.driver_elements import driver_elements
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan, plan_of
+from compoundkin.files.exchange.mjcf.model_settings import camera, printable, settings, step_of
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.model.geometry import FRAME
 
-# The longest step (seconds), and how many make a turn of the fastest driver, or a way of six sizes.
-_LONGEST, _STEPS = 1e-3, 2000
-# Constraints and drivers catch up in so many steps: two is the least that MuJoCo takes as asked for.
-_CATCH_UP = 2.0
-# How hard constraints are, from MuJoCo's 0.9 to 0.95 where they are soft to 1: they stand for pairs.
-_HARD = "0.999 0.9999 0.001"
+# In how many steps drivers catch up.
+_OF_DRIVERS = 2.0
 # MuJoCo's own name of the frame.
 _WORLD = "world"
 
@@ -53,23 +51,16 @@ class MjcfFormat(Writable):
 
 def _model(plan: ModelPlan, notes: tuple[str, ...]) -> Element:
     """Return the whole model."""
-    mechanism, world = plan.shown.mechanism, world_element(plan)
+    bodies = body_elements(plan)
+    world = bodies[FRAME]
     _hold_names(world)
-    model = Element("mujoco", model=_printable(mechanism.title))
-    SubElement(model, "compiler", angle="radian", autolimits="true")
-    rate = fastest(plan)
-    step = min(_LONGEST, TURN / rate / _STEPS) if rate else _LONGEST
-    fall = complex(first_entry(mechanism.gravity))
-    option = SubElement(model, "option", timestep=number(step), integrator="implicitfast", gravity=place(fall))
-    SubElement(option, "flag", contact="disable")
-    defaults = SubElement(model, "default")
-    SubElement(defaults, "equality", solref=f"{number(_CATCH_UP * step)} 1", solimp=_HARD)
-    custom = SubElement(model, "custom")
-    for k, note in enumerate(notes):
-        SubElement(custom, "text", name=f"note {k + 1}", data=_printable(note))
+    add_shapes(plan, bodies)
+    world.append(camera(plan))
+    model = Element("mujoco", model=printable(plan.shown.mechanism.title))
+    model.extend(settings(plan, notes))
     model.append(world)
     model.extend(constraint_elements(plan))
-    model.extend(driver_elements(plan, world, 1.0 / (_CATCH_UP * step)))
+    model.extend(driver_elements(plan, world, 1.0 / (_OF_DRIVERS * step_of(plan))))
     return model
 
 
@@ -81,7 +72,7 @@ def _notes(plan: ModelPlan) -> Iterator[str]:
     if laws:
         yield f"laws of time are not in a model: {', '.join(laws)} keeps the speed of this pose"
     for free in plan.shown.structure.passive:
-        yield f"{free}: nothing holds that in a model"
+        yield f"{free}: it is held as it is drawn"
     left = Counter(item.title for item in mechanism.loads.values())
     left.update({"friction": len(mechanism.frictions), "pretension": len(mechanism.pretensions)})
     told = [f"{title} ({count})" for title, count in left.items() if count]
@@ -93,13 +84,13 @@ def _hold_names(world: Element) -> None:
     """Raise InvalidInput where two bodies, joints or points would have one name."""
     named = Counter((element.tag, element.get("name", "")) for element in world.iter() if element.get("name"))
     named["body", _WORLD] += 1
-    twice = [Problem(name, f"two of one name: {tag}") for (tag, name), count in named.items() if count > 1]
+    twice = [
+        Problem(name, f"two of one name: {tag}", "call one of them otherwise")
+        for (tag, name), count in named.items()
+        if count > 1
+    ]
     if twice:
         raise InvalidInput(twice, heading="a model of MuJoCo has every name once")
-
-
-def _printable(text: str) -> str:
-    return "".join(c if c.isprintable() else " " for c in text)
 
 
 FORMAT = MjcfFormat()

@@ -8,11 +8,16 @@ from functools import cached_property
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.files.exchange.mjcf.body_masses import BodyMass, masses_of
-from compoundkin.files.exchange.mjcf.elementary_joints import GEARED, ElementaryJoint, JointChain, chain_of
-from compoundkin.files.exchange.mjcf.joint_ties import geared_tie, straight_tie
-from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink, JointTree, tree_of
-from compoundkin.files.exchange.mjcf.model_units import ModelUnits, units_of
+from compoundkin.files.exchange.mjcf.body_masses import BodyMass, ModelUnits, masses_of, units_of
+from compoundkin.files.exchange.mjcf.elementary_joints import GEARED, RACK, ElementaryJoint, JointChain, chain_of
+from compoundkin.files.exchange.mjcf.joint_tree import (
+    CarriedLink,
+    JointTree,
+    geared_tie,
+    still_tie,
+    straight_tie,
+    tree_of,
+)
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.geometry import FRAME
 
@@ -64,6 +69,10 @@ class ModelPlan:
         """The mechanism's size in the model's unit."""
         return float(self.shown.mechanism.geometry.size * self.units.length)
 
+    def layer(self, link: str) -> int:
+        """Return how many links lie below a link."""
+        return 0 if link == FRAME else 1 + list(self.tree.carried).index(link)
+
     def part(self, link: str) -> BodyMass:
         """Return the mass of each of a link's bodies."""
         count = sum(1 for _, own in self.bodies.values() if own == link)
@@ -111,9 +120,11 @@ def _plan(shown: ShownMechanism, tree: JointTree, driven: set[str]) -> ModelPlan
     ties.update(
         {pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if pair.table in GEARED}
     )
+    for free in shown.structure.passive:
+        ties[f"{free.link} on {free.on}"] = still_tie(tree, free.link, free.on)
     connected, halves = [], {}
     for chain in tree.closing:
-        straight = straight_tie(tree, chain) if chain.tie else None
+        straight = straight_tie(tree, chain) if chain.pair.table == RACK else None
         if straight is not None:
             ties[chain.pair.name] = straight
         elif chain.pair.table or chain.pair.name in driven:
