@@ -79,7 +79,7 @@ def test_what_is_refused_has_its_words(case: dict[str, str]) -> None:
 def test_all_problems_are_told_at_once_with_their_lines() -> None:
     wrong = (
         connector(0, 0, 0, 'anchor="yes" slider="true"', limits(1, 9)),
-        connector(1, 1, 0, 'rpm="nan"'),
+        connector(1, 1, 0, 'rpm="nan" slideradius="1e99"'),
         connector(1, 1, 0),
         link(0, 0, 1, 7),
         link(1, 1, more='fastenlink="8"'),
@@ -89,10 +89,11 @@ def test_all_problems_are_told_at_once_with_their_lines() -> None:
         read(*wrong, program='units="Feet"', where="a.linkage2")
     said = str(error.value)
     for part in (
-        "a.linkage2: 9 problems",
+        "a.linkage2: 10 problems",
         "line 1, program: there is no unit 'Feet'",
         "line 2, connector 0: anchor 'yes' is neither true nor false",
         "line 3, connector 1: rpm 'nan' is not a number",
+        "line 3, connector 1: slideradius '1e99' is beyond all drawings",
         "line 4, connector 1: there are two connectors 1, the first in line 3",
         "line 5, link 0: connector 7 is not there",
         "line 6, link 1: it is fastened to link 8, which is not there",
@@ -192,6 +193,8 @@ def test_oscillating_and_manual_inputs() -> None:
     (driver,) = read(*swing).mechanism.drives
     drawn = np.angle(10 + 30j)
     np.testing.assert_allclose(np.asarray(driver.values)[[0, -1]], [drawn, drawn - np.radians(40)], atol=1e-12)
+    (note,) = read(*swing).notes
+    assert note == "connector 0 oscillates over 40 degrees: that is its range here, at constant speed"
     (manual,) = read(FOUR_BAR[0].replace(">", ' alwaysmanual="true">', 1), *FOUR_BAR[1:]).mechanism.drives
     plain = ck.drive("link 0")
     assert (manual.values, manual.speed, manual.name) == (None, plain.speed, plain.name)

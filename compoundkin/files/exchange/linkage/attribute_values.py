@@ -10,6 +10,8 @@ from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.xml_tree import XmlElement
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?")
+# No number of a drawing is larger; what is computed of such stays finite.
+_LARGEST = 1e12
 _WHOLE = re.compile(r"[+-]?\d{1,9}")
 _FLAGS = {"": False, "false": False, "true": True}
 
@@ -35,9 +37,10 @@ class AttributeValues:
         """Return a number."""
         text = self.text(name)
         value = float(text) if _NUMBER.fullmatch(text) else math.nan
-        if text and not math.isfinite(value):
-            self.problems.add(self.where, f"{name} {text[:40]!r} is not a number", "write it as 12.5")
-        return value if math.isfinite(value) else otherwise
+        if text and not abs(value) <= _LARGEST:
+            what = "is not a number" if math.isnan(value) else "is beyond all drawings"
+            self.problems.add(self.where, f"{name} {text[:40]!r} {what}", "write it as 12.5")
+        return value if abs(value) <= _LARGEST else otherwise
 
     def flag(self, name: str) -> bool:
         """Return whether something holds."""

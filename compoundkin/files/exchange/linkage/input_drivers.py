@@ -25,6 +25,7 @@ def inputs_of(points: ConnectorPoints) -> Iterator[DrawnDriver]:
             continue
         bodies = joined.at(one.id)
         if len(bodies) == 2:
+            joined.notes += _told(one)
             yield _input(one, points.key(one.id), bodies[1], bodies[0])
         else:
             joined.problems.add(
@@ -37,6 +38,14 @@ def _input(one: LinkageConnector, at: str, link: str, on: str) -> DrawnDriver:
     sense = CLOCKWISE if one.rpm >= 0 else -CLOCKWISE
     travel = (0.0, sense * radians(abs(one.range))) if one.range else None
     return DrawnDriver(link, on, at, speed, travel, where=one.where)
+
+
+def _told(one: LinkageConnector) -> Iterator[str]:
+    """Yield what of an input is taken in another way."""
+    if one.manual:
+        yield f"{one.called} is moved by hand there: it turns at 1 rad/s here"
+    if one.range:
+        yield f"{one.called} oscillates over {abs(one.range):g} degrees: that is its range here, at constant speed"
 
 
 def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:

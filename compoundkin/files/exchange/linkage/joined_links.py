@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 
 from compoundkin.files.exchange.drawn_elements import DrawnLink
@@ -28,9 +29,14 @@ class JoinedLinks:
         self._parent: dict[str, str] = {FRAME: FRAME}
         self._at: dict[int, list[str]] = {id_: [FRAME] if c.anchor else [] for id_, c in file.connectors.items()}
         self._named = set(_named(file))
-        self.links = [link for link in file.links if self._is_one(link)]
+        self.links = [link for link in map(self._with_known, file.links) if self._is_one(link)]
         for link in self.links:
             self._place(link)
+        for id_, connector in file.connectors.items():
+            if len(self._at[id_]) > _MOST_AT_ONE:
+                problems.add(
+                    connector.where, f"it joins {len(self._at[id_])} links", f"at most {_MOST_AT_ONE} can meet"
+                )
         self._fasten_all()
         self._join_all()
         self._turn_together()
@@ -64,9 +70,13 @@ class JoinedLinks:
             if link.actuator and self.body(rod(link)) == rod(link):
                 yield DrawnLink(rod(link), f"{link.called} rod", link.where)
 
+    def _with_known(self, link: LinkageLink) -> LinkageLink:
+        """Return a link with those of its connectors that are there."""
+        return replace(link, connectors=tuple(c for c in link.connectors if self._has(c, link)))
+
     def _is_one(self, link: LinkageLink) -> bool:
-        """Return whether a link is more than the mark of one connector, whose ids are all there."""
-        known = [c for c in link.connectors if self._has(c, link)]
+        """Return whether a link is more than the mark of one connector."""
+        known = link.connectors
         alone = len(known) == 1 and not (link.gear or link.actuator or _is_fastened(link.fastened))
         used = alone and (self.file.connectors[known[0]].input or link.id in self._named)
         if not known or (alone and not used):
@@ -83,15 +93,15 @@ class JoinedLinks:
         return False
 
     def _place(self, link: LinkageLink) -> None:
-        known = [c for c in link.connectors if c in self.file.connectors]
+        known = link.connectors
         self._parent[link.key] = link.key
         if not link.actuator:
             for connector in known:
                 self._at[connector].append(link.key)
             return
         self._parent[rod(link)] = rod(link)
-        if len(known) != 2 or len(link.connectors) != 2:
-            what = f"an actuator has two connectors, this has {len(link.connectors)}"
+        if len(known) != 2:
+            what = f"an actuator has two connectors, this has {len(known)}"
             self.problems.add(link.where, what, "pin further links to its ends")
         for connector, part in zip(known[:2], (link.key, rod(link)), strict=False):
             self._at[connector].append(part)
@@ -156,10 +166,7 @@ class JoinedLinks:
         met: dict[tuple[str, str], int] = {}
         joined = False
         for id_, connector in self.file.connectors.items():
-            bodies = self.at(id_)
-            if len(bodies) > _MOST_AT_ONE:
-                self.problems.add(connector.where, f"it joins {len(bodies)} links", f"at most {_MOST_AT_ONE} can meet")
-                bodies = ()
+            bodies = self.at(id_) if len(self._at[id_]) <= _MOST_AT_ONE else ()
             for one, two in combinations(sorted(bodies), 2):
                 first = met.setdefault((one, two), id_)
                 if self.file.connectors[first].at != connector.at and self.body(one) != self.body(two):

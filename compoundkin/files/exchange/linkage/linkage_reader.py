@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway
+from compoundkin.files.exchange.drawn_mechanism import MOST
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
@@ -15,6 +16,9 @@ from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.xml_tree import xml_tree
 from compoundkin.model.geometry import FRAME
 
+# More notes of one kind are counted.
+_MOST_NOTES = 8
+
 
 def drawing_in(content: Content) -> tuple[Drawing, str]:
     """Return the drawing in a file, and a hint.
@@ -23,6 +27,9 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
     """
     problems = Problems(content.where)
     file = linkage_file(xml_tree(content.text, content.where), problems)
+    if len(file.connectors) + len(file.links) > MOST:
+        problems.add("", f"it has more than {MOST} connectors and links", "look whether it is the right file")
+        problems.raise_if_any()
     joined = JoinedLinks(file, problems)
     size = _size([one.at for one in file.connectors.values()])
     points = ConnectorPoints(joined)
@@ -44,10 +51,17 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
         outputs=points.outputs,
         unit=file.unit,
         source="a file of the Linkage program",
-        notes=(*file.notes, *joined.notes, *limit_notes(sliders, file.unit, size)),
+        notes=(*_few(file.notes), *_few(joined.notes), *limit_notes(sliders, file.unit, size)),
         dropped=tuple(file.dropped.items()),
     )
     return drawing, hints
+
+
+def _few(notes: list[str]) -> list[str]:
+    """Return some notes, and how many more there are."""
+    return (
+        notes if len(notes) <= _MOST_NOTES else [*notes[:_MOST_NOTES], f"and {len(notes) - _MOST_NOTES} more like this"]
+    )
 
 
 def _size(places: list[complex]) -> float:

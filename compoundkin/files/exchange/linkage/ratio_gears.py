@@ -21,7 +21,7 @@ def gears_of(points: ConnectorPoints) -> Iterator[DrawnGear]:
         if wheels is None:
             continue
         first, second = (joined.body(link.key) for link in wheels)
-        axes = [next(c for c in link.connectors if c in joined.file.connectors) for link in wheels]
+        axes = [link.connectors[0] for link in wheels]
         both = [body for body in joined.at(axes[0]) if body in joined.at(axes[1])]
         carriers = sorted((body for body in both if body not in (first, second)), key=lambda body: body != FRAME)
         if first == second:
