@@ -149,7 +149,7 @@ def test_class_iii_groups_are_written_and_said_to_stop_pylinkage() -> None:
     back = from_pylinkage(theirs).mechanism
     assert [group.class_ for group in ck.decompose(back).groups] == [3]
     # it depends on the order of a set whether it says so or leaves the joints where they are
-    with pytest.raises((ValueError, AssertionError), match="Triad|Mismatched"):
+    with pytest.raises((ValueError, AssertionError), match=r"Triad|Mismatched"):
         held(back, theirs, 5, 1e-3)
     assert np.all(ours(shown_mechanism(back), 5).assembled)
 

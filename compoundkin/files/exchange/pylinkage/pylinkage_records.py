@@ -9,13 +9,13 @@ from typing import Any
 
 from compoundkin.files.exchange.json_text import JsonRecord
 from compoundkin.files.exchange.problems import Problems
-from compoundkin.model.attributes import LINK, OF_POINTS
+from compoundkin.model.attributes import LINK, POSITION
 
 # Their types; those of files from before version 1.0, which had no links, begin with capitals.
 JOINTS = ("ground", "revolute", "prismatic", "tracker")
 LINKS = ("ground", "driver", "arc_driver", "link")
 # Two of their keys are words of ours.
-PLACE, RATE = OF_POINTS[0], next(word for word, one in LINK.items() if one.order == 1)
+PLACE, RATE = POSITION, next(word for word, one in LINK.items() if one.order == 1)
 # Their defaults: a degree a step; an arc of half a turn, with the digits they wrote it in.
 STEP, ARC_END = math.tau / 360, 3.14159
 # Links have so many joints together, at most.
