@@ -36,7 +36,7 @@ class SimPoints:
         return self.link[self._placed[key].host]
 
     def added(self, body: str, place: complex, name: str) -> str:
-        """Return the letter of a place of a body, if need be a new one."""
+        """Return the letter of a place of a body, perhaps a new one."""
         placed = self._placed[body]
         own, at = self.of[placed.host], placed.at(place)
         near = ROUNDING * size_of(self._file)

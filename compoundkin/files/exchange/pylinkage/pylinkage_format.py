@@ -14,14 +14,15 @@ from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.json_text import parsed_json
 from compoundkin.files.exchange.problems import Problems
-from compoundkin.files.exchange.pylinkage.linkage_elements import linkage_drawing
+from compoundkin.files.exchange.pylinkage.pylinkage_elements import linkage_drawing
 from compoundkin.files.exchange.pylinkage.pylinkage_records import linkage_file
 from compoundkin.files.exchange.pylinkage.pylinkage_writer import linkage_text
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # What stands in their files of mechanisms, and of structures alone: graphs, and graphs of graphs.
 _LISTS, _TOPOLOGY = (b'"joints"', b'"links"'), ((b'"nodes"', b'"edges"'), (b'"instances"', b'"connections"'))
-_MOST_STEPS = 1_000_000
+# Steps of a turn, where nothing is said: pylinkage's own.
+_STEPS = 360
 _REMEDY = "save the mechanism itself: mechanism_to_json(to_mechanism(graph, dimensions), path)"
 
 
@@ -32,7 +33,7 @@ class PylinkageFormat(Readable, Writable):
     program: ClassVar[str] = "pylinkage"
     title: ClassVar[str] = "JSON of pylinkage"
     suffix: ClassVar[str] = JSON
-    options: ClassVar[Mapping[str, str]] = {"steps": "steps in a turn of the fastest crank; 360 if left out"}
+    options: ClassVar[Mapping[str, str]] = {"steps": f"steps in a turn of the fastest crank; {_STEPS} if left out"}
 
     def recognises(self, content: Content) -> bool:
         """Return whether it has joints and links, or nodes and edges."""
@@ -46,9 +47,10 @@ class PylinkageFormat(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the file. Raises InvalidInput listing what is no pin, and no slot of the frame."""
-        steps = options.get("steps", 360)
-        if isinstance(steps, bool) or not isinstance(steps, int) or not 0 < steps <= _MOST_STEPS:
-            raise InvalidInput(Problem("steps", f"{short(steps)} is no number of steps", f"give 1 to {_MOST_STEPS}"))
+        given = options.get("steps", _STEPS)
+        steps = int(given) if isinstance(given, int | str) and str(given).isdecimal() and len(str(given)) < 8 else 0
+        if not steps:
+            raise InvalidInput(Problem("steps", f"{short(given)} is no number of steps", f"{_STEPS} are usual"))
         text, notes = linkage_text(shown.drawing, steps)
         return Exported(text.encode(), self.name, notes)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from compoundkin.base.display import counted
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver
-from compoundkin.files.exchange.pylinkage.linkage_layout import LinkageLayout
+from compoundkin.files.exchange.pylinkage.pylinkage_layout import PylinkageLayout
 from compoundkin.files.exchange.pylinkage.pylinkage_records import PLACE, RATE
 from compoundkin.files.exchange.pylinkage.step_order import LinkEntry, found_order, link_entries
 from compoundkin.model.geometry import FRAME
@@ -18,7 +18,7 @@ from compoundkin.model.geometry import FRAME
 
 def linkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
     """Return the file of a drawing, and what has to be said of it. The fastest crank makes a turn in `steps`."""
-    layout = LinkageLayout(drawing)
+    layout = PylinkageLayout(drawing)
     order = found_order(layout)
     entries = link_entries(layout, order)
     speeds = [abs(driver.speed or 0.0) for driver in drawing.drivers]
@@ -55,7 +55,7 @@ class _Ids:
         return name
 
 
-def _joint(layout: LinkageLayout, key: str, ids: _Ids) -> dict[str, Any]:
+def _joint(layout: PylinkageLayout, key: str, ids: _Ids) -> dict[str, Any]:
     place = layout.places[key]
     found: dict[str, Any] = {"id": key, "type": "revolute", PLACE: [place.real, place.imag]}
     if layout.on_frame(key):
@@ -74,7 +74,7 @@ def _joint(layout: LinkageLayout, key: str, ids: _Ids) -> dict[str, Any]:
     return found
 
 
-def _link(layout: LinkageLayout, entry: LinkEntry, name: str, step: float) -> dict[str, Any]:
+def _link(layout: PylinkageLayout, entry: LinkEntry, name: str, step: float) -> dict[str, Any]:
     found = {"id": name, "type": "link", "joints": list(entry.joints)}
     if not entry.is_crank:
         return found
@@ -95,7 +95,7 @@ def _rate(driver: DrawnDriver, step: float) -> float:
 
 
 def _notes(
-    layout: LinkageLayout, order: dict[str, int], entries: list[LinkEntry], step: float, steps: int
+    layout: PylinkageLayout, order: dict[str, int], entries: list[LinkEntry], step: float, steps: int
 ) -> Iterator[str]:
     drawing = layout.drawing
     if drawing.drivers:

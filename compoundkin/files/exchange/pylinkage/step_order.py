@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from compoundkin.files.exchange.pylinkage.linkage_layout import LinkageLayout
+from compoundkin.files.exchange.pylinkage.pylinkage_layout import PylinkageLayout
 from compoundkin.model.geometry import FRAME
 
 
@@ -23,7 +23,7 @@ class LinkEntry:
     is_crank: bool = False
 
 
-def found_order(layout: LinkageLayout) -> dict[str, int]:
+def found_order(layout: PylinkageLayout) -> dict[str, int]:
     """Return the joints that are found from others, each with its turn.
 
     What is missing pylinkage cannot find.
@@ -40,7 +40,7 @@ def found_order(layout: LinkageLayout) -> dict[str, int]:
     return known
 
 
-def link_entries(layout: LinkageLayout, order: Mapping[str, int]) -> list[LinkEntry]:
+def link_entries(layout: PylinkageLayout, order: Mapping[str, int]) -> list[LinkEntry]:
     """Return the links to write, in an order that lets every joint be found."""
     last = len(order)
     ranked = {body: sorted(own, key=lambda key: order.get(key, last)) for body, own in layout.joints.items()}
@@ -54,21 +54,21 @@ def link_entries(layout: LinkageLayout, order: Mapping[str, int]) -> list[LinkEn
     return entries
 
 
-def _anchors(layout: LinkageLayout, key: str, known: Mapping[str, int]) -> int:
+def _anchors(layout: PylinkageLayout, key: str, known: Mapping[str, int]) -> int:
     """Count the joints known that a joint is at a distance from."""
     own = {other for joints in layout.joints.values() if key in joints for other in joints if other in known}
     return len(own - {key})
 
 
 def _sorted(
-    ranked: Mapping[str, list[str]], bars: set[str], layout: LinkageLayout, order: Mapping[str, int]
+    ranked: Mapping[str, list[str]], bars: set[str], layout: PylinkageLayout, order: Mapping[str, int]
 ) -> list[LinkEntry]:
     found = [entry for body, own in ranked.items() for entry in _entries(body, own, body in bars, layout)]
     last = len(order)
     return sorted(found, key=lambda entry: max(order.get(key, last) for key in entry.joints))
 
 
-def _entries(body: str, own: list[str], as_bars: bool, layout: LinkageLayout) -> Iterator[LinkEntry]:
+def _entries(body: str, own: list[str], as_bars: bool, layout: PylinkageLayout) -> Iterator[LinkEntry]:
     crank = layout.cranks.get(body)
     if not as_bars:
         if body not in layout.sliding or len(own) > 1:
@@ -82,7 +82,7 @@ def _entries(body: str, own: list[str], as_bars: bool, layout: LinkageLayout) ->
             yield LinkEntry(body, (second, key))
 
 
-def _missed(key: str, entries: list[LinkEntry], layout: LinkageLayout, order: Mapping[str, int]) -> Iterator[str]:
+def _missed(key: str, entries: list[LinkEntry], layout: PylinkageLayout, order: Mapping[str, int]) -> Iterator[str]:
     """Yield the bodies that have to be written as bars, for a joint to be found from such as were found before."""
     if FRAME in layout.of[key] or any(key == tip for _, tip in layout.cranks.values()):
         return

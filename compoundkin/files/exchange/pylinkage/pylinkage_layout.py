@@ -24,7 +24,7 @@ class JointLine:
 
 
 @dataclass
-class LinkageLayout:
+class PylinkageLayout:
     """The joints of links, lines that some run on, tracers, cranks.
 
     A crank is told by its motor and its tip.
