@@ -1,15 +1,21 @@
-"""The pose of a motion that is nearest to the drawing of its mechanism."""
+"""The pose that the drawing of a mechanism shows, and the pose of a motion that is nearest to it."""
 
 from __future__ import annotations
+
+import warnings
 
 import numpy as np
 
 from compoundkin.base.arrays import first_entry
-from compoundkin.base.errors import NotAssembled, Problem
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
+from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import solve
 
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6
+# A drawing is exact that is met to this part of the size: what rounding to printed digits never leaves.
+DIGITS = 1e-9
 
 
 def pose_nearest_to_drawing(motion: Motion) -> int:
@@ -35,3 +41,28 @@ def pose_nearest_to_drawing(motion: Motion) -> int:
             off += np.abs((places if places.size == 1 else places[known]) - first_entry(drawn)) ** 2
     near = known[off <= off.min() + (ROUNDING * motion.size) ** 2]
     return int(near[0])
+
+
+def exactly_drawn(motion: Motion) -> Motion | None:
+    """Return the pose that the drawing shows, solved to the first order.
+
+    None where there is none, or it is not drawn to the last digits.
+    """
+    shown, sketch = motion.tracker.shown, motion.mechanism.sketch
+    values: dict[str, float] = {}
+    for name in motion.structure.driven if sketch else ():
+        value = drawn_value(motion.solving_order, motion.inputs, name, shown.poses, shown.beside)
+        if value is None:
+            return None
+        values[name] = float(np.ravel(value)[0])
+    if not values:
+        return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = solve(motion.structure, values, order=1)
+    except (InvalidInput, NotAssembled):
+        return None
+    off = [abs(complex(np.ravel(found.points[k].position)[0]) - complex(first_entry(p))) for k, p in sketch.items()
+           if k in motion.mechanism.carriers]  # fmt: skip
+    return found if max(off, default=np.inf) <= DIGITS * motion.size else None

@@ -65,7 +65,7 @@ def _scales(one: ComparedSide, other: ComparedSide) -> list[float]:
 
 def _by_place(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
     """Find the pose in which one is shown in the motion of the other."""
-    at_one, at_other = (side.places(side.motion)[side.pose] for side in (one, other))
+    at_one, at_other = (side.places(side.there)[0] for side in (one, other))
     values = _found(one, other, at_other)
     if values is not None:
         return _matched(one, other, values, other.shown)

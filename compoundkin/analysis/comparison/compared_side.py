@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.nearest_pose import pose_nearest_to_drawing
+from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
@@ -20,10 +20,13 @@ from compoundkin.structure import Structure
 
 @dataclass(frozen=True, eq=False)
 class ComparedSide:
-    """A mechanism solved over its drivers' own ranges. Its lengths count `scale` times."""
+    """A mechanism solved over its drivers' own ranges. Its lengths count `scale` times.
+
+    `there` is one pose of it: the drawn one, or where that is not exact, the one of its motion nearest to the drawing.
+    """
 
     motion: Motion
-    pose: int
+    there: Motion
     scale: float = 1.0
 
     @property
@@ -56,7 +59,7 @@ class ComparedSide:
     @property
     def shown(self) -> dict[str, float]:
         """The drivers' values at the pose nearest to the drawing."""
-        return self.values(self.pose)
+        return _values(self.there, 0)
 
     @property
     def size(self) -> float:
@@ -65,7 +68,7 @@ class ComparedSide:
 
     def values(self, pose: int) -> dict[str, float]:
         """Return the drivers' values at a pose of its own motion."""
-        return {name: float(np.ravel(drive.value)[pose]) for name, drive in self.motion.drives.items()}
+        return _values(self.motion, pose)
 
     def at(self, values: Mapping[str, Number], order: int = 1) -> Motion:
         """Return its motion at other values of the drivers, quietly."""
@@ -99,7 +102,15 @@ def compared_side(structure: Structure) -> ComparedSide:
     if motion.inputs.designs > 1:
         what = f"it has {motion.inputs.designs} designs"
         raise InvalidInput(Problem(motion.mechanism.title, what, "compare one design of it"))
-    return ComparedSide(motion, pose_nearest_to_drawing(motion))
+    drawn = exactly_drawn(motion)
+    if drawn is None:
+        drawn = quietly_solved(structure, _values(motion, pose_nearest_to_drawing(motion)), 1)
+    return ComparedSide(motion, drawn)
+
+
+def _values(motion: Motion, pose: int) -> dict[str, float]:
+    """Return the drivers' values at a pose of a motion."""
+    return {name: float(np.ravel(drive.value)[pose]) for name, drive in motion.drives.items()}
 
 
 def quietly_solved(

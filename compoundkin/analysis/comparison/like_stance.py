@@ -52,8 +52,8 @@ def _between(one: ComparedSide, link: str, other: ComparedSide, own: str, points
     shared = [(k, p) for k, p in points.items() if k in on and link in on[k] and own in of[p]]
     if len(shared) < 2:
         return None
-    at_one = dict(zip(one.letters, one.places(one.motion)[one.pose], strict=True))
-    at_other = dict(zip(other.letters, other.places(other.motion)[other.pose], strict=True))
+    at_one = dict(zip(one.letters, one.places(one.there)[0], strict=True))
+    at_other = dict(zip(other.letters, other.places(other.there)[0], strict=True))
     (first, partner), *rest = shared
     for letter, like in rest:
         ways = at_one[letter] - at_one[first], at_other[like] - at_other[partner]

@@ -16,14 +16,11 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.approach import drawn_value
-from compoundkin.kinematics.nearest_pose import pose_nearest_to_drawing
+from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Structure, decompose
 
-# A drawing is exact that is met to this part of the size: what rounding to printed digits never leaves.
-_DIGITS = 1e-9
 # What the arithmetic of a pose leaves of a place, as a part of the size.
 _LAST_DIGITS = 1e-12
 
@@ -105,7 +102,7 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
     """
     structure = decompose(mechanism)
     try:
-        motion = _solved(structure, at, None)
+        motion = _solved(structure, at)
     except (InvalidInput, NotAssembled, NotDetermined):
         if at is None and set(mechanism.drawn_poses) >= set(mechanism.links):
             return ShownMechanism(structure, {k: p.entry((0, 0)) for k, p in mechanism.drawn_poses.items()}, {}, {})
@@ -113,7 +110,7 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
     if motion.inputs.designs > 1:
         what = f"it has {motion.inputs.designs} designs, a file of another program holds one"
         raise InvalidInput(Problem(mechanism.title, what, "give the dimensions of one design"))
-    exact = _exactly_drawn(motion) if at is None else None
+    exact = exactly_drawn(motion) if at is None else None
     shown, pose = (motion, pose_nearest_to_drawing(motion)) if exact is None else (exact, 0)
     return ShownMechanism(
         structure,
@@ -124,36 +121,16 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
     )
 
 
-def _solved(structure: Structure, at: Mapping[str, float] | None, hint: Mapping[str, Any] | None) -> Motion:
+def _solved(structure: Structure, at: Mapping[str, float] | None) -> Motion:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return solve(structure, at, order=1, hint=hint)
+        return solve(structure, at, order=1)
 
 
 def _entry(values: Number, pose: int) -> float:
     """Return a driver's number at a pose; one that is the same at all of them is told once."""
     row = np.ravel(values)
     return float(row[min(pose, row.size - 1)])
-
-
-def _exactly_drawn(motion: Motion) -> Motion | None:
-    """Return the pose that the drawing shows, where it is one to the last digits."""
-    shown, sketch = motion.tracker.shown, motion.mechanism.sketch
-    values: dict[str, float] = {}
-    for name in motion.structure.driven if sketch else ():
-        value = drawn_value(motion.solving_order, motion.inputs, name, shown.poses, shown.beside)
-        if value is None:
-            return None
-        values[name] = float(np.ravel(value)[0])
-    if not values:
-        return None
-    try:
-        found = _solved(motion.structure, values, None)
-    except (InvalidInput, NotAssembled):
-        return None
-    off = [abs(complex(np.ravel(found.points[k].position)[0]) - complex(first_entry(p))) for k, p in sketch.items()
-           if k in motion.mechanism.carriers]  # fmt: skip
-    return found if max(off, default=np.inf) <= _DIGITS * motion.size else None
 
 
 def _number(value: Any) -> Number:
