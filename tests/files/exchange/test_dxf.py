@@ -15,7 +15,6 @@ import pytest
 import shapely
 
 import compoundkin as ck
-import compoundkin.exchange
 from compoundkin.files.exchange.conversion import write
 from compoundkin.files.exchange.dxf.contour_edges import ContourEdge
 from compoundkin.files.exchange.dxf.coupler_paths import whole_motion
@@ -109,7 +108,9 @@ def test_the_same_drawing_is_the_same_bytes() -> None:
     assert first.content == again.content
     assert not ezdxf.options.write_fixed_meta_data_for_testing
     assert first.notes[0] == "The lengths have no unit."
-    assert "7 links have no outline; they are lines between their points: crank, j, bde" in first.notes[2]
+    assert (
+        first.notes[2] == "Links without an outline, drawn as lines between their points: crank, j, bde, k, c, f, ghi."
+    )
 
 
 def test_a_link_without_outline_is_lines_between_its_points() -> None:
@@ -231,6 +232,39 @@ def test_each_sheet_of_a_thick_link_is_a_part() -> None:
     assert areas[1] == pytest.approx(bar.union(eye).area, rel=1e-4)
     # arcs, not chords: five corners of the bar with an eye, four of the bar
     assert [len(sheets[layer][0]) for layer in (0, 1)] == [4, 5]
+
+
+def test_slots_are_cut_as_wide_as_their_pins_and_as_long_as_their_way() -> None:
+    swing = ck.Mechanism(
+        "Swing",
+        ck.link("frame", A=(0, 0), C=(0, -60), E=(70, 0)),
+        ck.link("crank", A=0, B=25),
+        ck.link("lever", C=0, D=95),
+        ck.link("rod", B=0, P=70),
+        ck.slot("crank", on="lever", at="B", through="C"),
+        ck.arc("rod", on="frame", at="P", centre_at="E", radius=30),
+        ck.drive("crank"),
+        ck.outline("crank", 10, layer=1),
+        ck.outline("crank", at="B", pin=6),
+        ck.outline("lever", 16),
+        ck.outline("frame", polygon=[(30, -50), (110, -50), (110, 50), (30, 50)]),
+        ck.outline("rod", at="P", pin=4),
+        ck.mode(1, "rod"),
+        unit="mm",
+    )
+    shown = shown_mechanism(swing)
+    model = ezdxf.read(io.StringIO(FORMAT.write(shown, parts=True).text)).modelspace()
+    outside, slot = sorted(map(polygon_of, model.query('LWPOLYLINE[layer=="lever"]')), key=lambda one: -one.area)
+    assert outside.contains(slot)
+    # the pin is 35 to 85 from the lever's pivot
+    assert slot.area == pytest.approx(50 * 6 + np.pi * 9, rel=1e-3)
+    turn = np.ptp(np.angle(ck.solve(swing, {"crank": np.linspace(0, 2 * np.pi, 3601)}).points["P"].position - 70))
+    outside, slot = sorted(map(polygon_of, model.query('LWPOLYLINE[layer=="frame"]')), key=lambda one: -one.area)
+    assert slot.area == pytest.approx(turn * 30 * 4 + np.pi * 4, rel=1e-3)
+    low = complex(*outside.bounds[:2]) - (30 - 50j)  # where the frame's axes lie on the sheet
+    middles = [complex(a, b) for a, b in slot.exterior.coords]
+    assert max(abs(abs(p - low - 70) - 30) for p in middles) < 2.01
+    assert [one.dxftype() for one in model.query('*[layer=="CENTRES"]')] == ["ARC", "LINE"]
 
 
 # --- contours ---------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from compoundkin.files.exchange.dxf.coupler_paths import coupler_paths, drawn_le
 from compoundkin.files.exchange.dxf.ezdxf_library import ezdxf, fixed_dates
 from compoundkin.files.exchange.dxf.link_parts import LinkPart, link_parts
 from compoundkin.files.exchange.dxf.part_layout import draw_parts
-from compoundkin.files.exchange.dxf.pose_layers import LAYERS, NAMES, draw_paths, draw_pose
+from compoundkin.files.exchange.dxf.pose_layers import CENTRES, LAYERS, NAMES, draw_paths, draw_pose
 from compoundkin.files.exchange.dxf.profile_splines import profile_spline
 from compoundkin.files.exchange.exchanged import Exported
 from compoundkin.files.exchange.option_values import flag, letters_of, positive
@@ -24,6 +24,7 @@ from compoundkin.model.geometry import FRAME
 UNITS: Mapping[str, int] = MappingProxyType({"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "um": 13, "dm": 14})
 METRIC, ENGLISH, NO_UNIT = 1, 0, 0
 VERSION = "R2000"
+POSE_LAYERS = tuple(name for name in LAYERS if name != CENTRES)
 # How far curves may be off where it is not said, in parts of the mechanism's size.
 CHORD = 1e-4
 
@@ -54,7 +55,7 @@ class DxfFormat(Writable):
         parts = link_parts(shown, motion)
         splines = {id(curve): profile_spline(curve, tolerance) for part in parts for curve in part.profiles}
         with fixed_dates(library):
-            document = _document(library, shown, (NAMES,) if as_parts else tuple(LAYERS))
+            document = _document(library, shown, (NAMES, CENTRES) if as_parts else POSE_LAYERS)
             if as_parts:
                 draw_parts(document, parts, splines, size)
             else:
@@ -63,7 +64,7 @@ class DxfFormat(Writable):
             content = _content(document)
         curved = bool(splines) or (bool(letters) and motion is not None and not as_parts)
         error = max([tolerance, *(spline.error for spline in splines.values())]) if curved else None
-        instead = "they are left out" if as_parts else "they are lines between their points"
+        instead = "left out" if as_parts else "drawn as lines between their points"
         return Exported(content, self.name, tuple(_notes(shown, parts, error, instead)))
 
 
@@ -105,7 +106,7 @@ def _notes(shown: ShownMechanism, parts: Sequence[LinkPart], error: float | None
     if error is not None:
         yield f"Curves are within {error:.3g}{f' {unit}' if unit else ''} of the exact ones."
     if bare := [part.link for part in parts if not part.is_cut and part.link != FRAME]:
-        yield f"{len(bare)} links have no outline; {instead}: {', '.join(bare)}."
+        yield f"Links without an outline, {instead}: {', '.join(bare)}."
 
 
 FORMAT = DxfFormat()

@@ -9,7 +9,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.dxf.dxf_pen import DxfPen
 from compoundkin.files.exchange.dxf.legal_names import LegalNames
 from compoundkin.files.exchange.dxf.link_parts import LinkPart
-from compoundkin.files.exchange.dxf.pose_layers import LETTER, NAMES, draw_part
+from compoundkin.files.exchange.dxf.pose_layers import CENTRES, LETTER, NAMES, draw_centre_lines, draw_part
 from compoundkin.files.exchange.dxf.profile_splines import ProfileSpline
 
 # Room between parts, and how wide a row of them is, in parts of the mechanism's size.
@@ -22,7 +22,7 @@ def draw_parts(document: Any, parts: Sequence[LinkPart], splines: Mapping[int, P
     if not cut:
         what = "no link has an outline, and there is no cam to cut"
         raise InvalidInput(Problem("parts", what, 'write outlines: outline("crank", 8, pin=5)'))
-    model, names = document.modelspace(), LegalNames(NAMES)
+    model, names = document.modelspace(), LegalNames(NAMES, CENTRES)
     corner, tallest = 0j, 0.0
     for part in cut:
         layers: list[int | None] = [sheet.layer for sheet in part.sheets]
@@ -35,6 +35,7 @@ def draw_parts(document: Any, parts: Sequence[LinkPart], splines: Mapping[int, P
             name = names.of(f"{part.link} layer {layer}" if several else part.link)
             document.layers.add(name, color=7)
             draw_part(DxfPen(model, name, by), part, splines, layer)
+            draw_centre_lines(DxfPen(model, CENTRES, by), part, splines)
             under = by + complex(low.real, low.imag - 1.4 * LETTER * size)
             DxfPen(model, NAMES).text(name, under, LETTER * size)
             corner += (high - low).real + ROOM * size
@@ -53,7 +54,7 @@ def _extremes(part: LinkPart, splines: Mapping[int, ProfileSpline], layer: int |
         for contour in sheet.contours if layer in (None, sheet.layer) else ():
             for edge in contour:
                 yield from (edge.start, edge.stop)
-                if edge.centre is not None:
+                if edge.centre is not None and edge.turn > 0:
                     ways = [edge.centre + edge.radius * way for way in (1, 1j, -1, -1j)]
                     yield from (place for place in ways if 0.0 <= edge.share_of(place) <= 1.0)
     for curve in part.profiles:

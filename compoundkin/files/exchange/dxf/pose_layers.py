@@ -18,8 +18,12 @@ from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.geometry import FRAME
 
 LINKS, JOINTS, GROUND, CRANKS, CURVES, NAMES = "LINKS", "JOINTS", "GROUND", "CRANKS", "CURVES", "NAMES"
+# Of parts the middle lines of slots and guides, which are not cut.
+CENTRES = "CENTRES"
 # Each layer with its colour, by AutoCAD's index.
-LAYERS: Mapping[str, int] = MappingProxyType({LINKS: 5, JOINTS: 3, GROUND: 8, CRANKS: 1, CURVES: 6, NAMES: 7})
+LAYERS: Mapping[str, int] = MappingProxyType(
+    {LINKS: 5, JOINTS: 3, GROUND: 8, CRANKS: 1, CURVES: 6, NAMES: 7, CENTRES: 8}
+)
 # Sizes of what has none of its own, in parts of the mechanism's: circles of joints, supports, letters.
 JOINT, SUPPORT, LETTER = 0.01, 0.03, 0.025
 
@@ -32,6 +36,7 @@ def draw_pose(
     for part in parts:
         block = document.blocks.new(names.of(f"LINK-{part.link}"))
         draw_part(DxfPen(block), part, splines)
+        draw_centre_lines(DxfPen(block), part, splines)
         _draw_bars(DxfPen(block), part)
         pose = shown.poses[part.link]
         place, turn = complex(pose.z.c[0]), float(np.rad2deg(np.angle(complex(pose.u.c[0]))))
@@ -51,16 +56,24 @@ def draw_part(pen: DxfPen, part: LinkPart, splines: Mapping[int, ProfileSpline],
                 (holes.circle if shape in sheet.holes else pen.contour)(*(shape if shape in sheet.holes else (shape,)))
                 drawn.add(shape)
     for curve in part.profiles:
-        pen.spline(splines[id(curve)])
+        if curve.closed:
+            pen.spline(splines[id(curve)])
+
+
+def draw_centre_lines(pen: DxfPen, part: LinkPart, splines: Mapping[int, ProfileSpline]) -> None:
+    """Draw what has no width: guides, the middle lines of slots."""
+    for guide in dict.fromkeys(part.guides):
+        if guide[0] != guide[-1]:
+            pen.line(guide)
     for groove in part.grooves:
         pen.arc(*groove)
+    for curve in part.profiles:
+        if not curve.closed:
+            pen.spline(splines[id(curve)])
 
 
 def _draw_bars(pen: DxfPen, part: LinkPart) -> None:
-    """Draw what has no width: guides, wheels, belts; of a link without an outline lines between its points too."""
-    for guide in part.guides:
-        if guide[0] != guide[1]:
-            pen.line(guide)
+    """Draw wheels and belts; of a link without an outline lines between its points too."""
     for wheel in dict.fromkeys(part.wheels):
         pen.circle(*wheel)
     for belt in part.belts:
