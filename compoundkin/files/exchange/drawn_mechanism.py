@@ -5,28 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway
+from compoundkin.files.exchange.drawn_drivers import drivers_of
+from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters, check
 from compoundkin.files.exchange.drawn_loads import loads_of
 from compoundkin.files.exchange.drawn_pairs import pairs_of
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.elements import Item, drawn, link
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 
 # A mechanism of more elements than this takes longer to look at than anybody waits; the largest known have hundreds.
 MOST = 2000
-# How far a length is driven both ways, as a part of the size, where the other program does not say.
-TRAVEL = 0.1
-# So many steps as a full turn has, so that drivers of both kinds go together.
-STEPS = 72
 
 
 def mechanism_of(drawing: Drawing, form: str, where: str = "") -> Imported:
@@ -55,7 +50,7 @@ def mechanism_of(drawing: Drawing, form: str, where: str = "") -> Imported:
 def _built(drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair]) -> tuple[Mechanism, list[str]]:
     items: list[Item] = [*_links(letters), *pairs.values(), drawn(**letters.places)]
     notes: list[str] = []
-    drivers = [_driver(one, drawing, letters, pairs, notes) for one in drawing.drivers]
+    drivers = drivers_of(drawing, letters, pairs, notes)
     about: dict[str, Any] = {"unit": drawing.unit, "source": drawing.source}
     about["outputs"] = tuple(f"{letters.point[key]}.{OF_POINTS[0]}" for key in drawing.outputs)
     mechanism = Mechanism(drawing.title or "Mechanism", *items, *drivers, **about)
@@ -75,56 +70,6 @@ def _links(letters: DrawnLetters) -> Iterator[Item]:
             yield link(name, **dict.fromkeys(own, 0j))
         else:
             yield link(name, *own)
-
-
-def _driver(
-    one: DrawnDriver, drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair], notes: list[str]
-) -> Drive:
-    """Return a driver. One of a length whose way is not told goes a little both ways, which is noted."""
-    guide = next((guide for guide in drawing.guides if guide.key == one.at), None)
-    travel = one.travel
-    if guide is not None and travel is None:
-        travel = guide.reach and tuple(end - _along(guide, letters) for end in guide.reach)  # type: ignore[assignment]
-        if travel is None:
-            reach = TRAVEL * letters.size
-            travel = (-reach, reach)
-            notes.append(f"{one.link} is driven by a length over {reach:.4g} both ways, for no way is told")
-    words: dict[str, Any] = {} if one.speed is None else {"speed": one.speed}
-    if travel is not None:
-        start = _shown(guide, one, letters)
-        words["values"] = start + np.linspace(*travel, STEPS + 1)
-    if one.name:
-        words["name"] = one.name
-    several = [*_shared(one, letters), *(p for p in pairs.values() if {*p.members} == _names(one, letters))]
-    if len(several) > 1:
-        words["pair"] = pairs[one.at].name if one.at in pairs else letters.point[one.at]
-    made = drive(letters.link[one.link], on=letters.link[one.on], **words)
-    assert isinstance(made, Drive)
-    return made
-
-
-def _names(one: DrawnDriver, letters: DrawnLetters) -> set[str]:
-    return {letters.link[one.link], letters.link[one.on]}
-
-
-def _shared(one: DrawnDriver, letters: DrawnLetters) -> list[str]:
-    two = letters.of[letters.link[one.on]]
-    return [letter for letter in letters.of[letters.link[one.link]] if letter in two]
-
-
-def _along(guide: DrawnGuideway, letters: DrawnLetters) -> float:
-    """Return how far along its line a guide's point is drawn, from where the line is said to run through."""
-    gap = letters.places[letters.point[guide.at]] - guide.through
-    return float((gap * np.exp(-1j * guide.angle)).real)
-
-
-def _shown(guide: DrawnGuideway | None, one: DrawnDriver, letters: DrawnLetters) -> float:
-    """Return the value that the drawing shows of a driver."""
-    if guide is None:
-        return float(np.angle(np.exp(1j * ((letters.axis(one.link) or 0.0) - (letters.axis(one.on) or 0.0)))))
-    start = letters.point[guide.ends[0]] if guide.ends else letters.there(guide.on, guide.through)
-    gap = letters.places[letters.point[guide.at]] - letters.places[str(start)]
-    return float((gap * np.exp(-1j * guide.angle)).real)
 
 
 def _translated(problem: Problem, drawing: Drawing, letters: DrawnLetters) -> Problem:
