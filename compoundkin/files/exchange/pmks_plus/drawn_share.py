@@ -5,11 +5,12 @@ from __future__ import annotations
 from cmath import phase
 from collections import Counter
 from collections.abc import Iterator
-from math import pi
+from math import pi, remainder
 
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnLink, DrawnPoint
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnLink
 from compoundkin.files.exchange.pmks_plus.rigid_links import RigidLinks
 from compoundkin.files.exchange.pmks_plus.shared_loads import forces_of, masses_of
+from compoundkin.files.exchange.pmks_plus.shared_points import SharedPoints
 from compoundkin.files.exchange.pmks_plus.shared_records import GRAVITY, RPM, UNITS, SharedJoint, SharedMechanism
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME
@@ -22,25 +23,23 @@ def drawing_of_shared(shared: SharedMechanism, title: str, problems: Problems) -
     """Return the drawing of a share string. What cannot be meant is noted as a problem."""
     rigid = RigidLinks(shared)
     notes = [*shared.notes]
-    guides = tuple(_guides(shared, rigid, notes, problems))
-    drivers = tuple(_drivers(shared, rigid, notes, problems))
-    points = tuple(_points(shared, rigid))
-    used = {point.key for point in points}
+    points = SharedPoints(shared, rigid)
+    guides = tuple(_guides(shared, rigid, points, notes, problems))
+    drivers = tuple(_drivers(shared, rigid, points, notes, problems))
     masses, forces = tuple(masses_of(shared, rigid)), tuple(forces_of(shared, rigid, problems))
     loaded = bool(masses or forces)
-    loose = sum(not joint.slides and joint.id not in used for joint in shared.joints)
     dropped = Counter(shared.dropped)
-    dropped["loose joint"] += loose
+    dropped["loose joint"] += sum(not joint.slides and joint not in points for joint in shared.joints)
     settings = shared.settings
     return Drawing(
         title,
         (DrawnLink(FRAME), *(DrawnLink(body, name, f"link {body}") for body, name in rigid.names())),
-        points,
+        tuple(points.all()),
         guides,
         drivers=drivers,
         masses=masses,
         forces=forces,
-        outputs=tuple(joint.id for joint in shared.joints if joint.has_curve and joint.id in used),
+        outputs=tuple(dict.fromkeys(points.key(one) for one in shared.joints if one.has_curve and one in points)),
         unit=settings.unit,
         units=UNITS[settings.length] if loaded else None,
         gravity=complex(0.0, -GRAVITY) if settings.has_gravity and masses else None,
@@ -50,20 +49,8 @@ def drawing_of_shared(shared: SharedMechanism, title: str, problems: Problems) -
     )
 
 
-def _points(shared: SharedMechanism, rigid: RigidLinks) -> Iterator[DrawnPoint]:
-    """Yield the pins and tracers; and sliding joints that are drawn elsewhere than the pin of their block."""
-    for joint in shared.joints:
-        if rigid.having(joint) and (not joint.slides or _stands_apart(joint, rigid)):
-            yield DrawnPoint(joint.id, joint.at, rigid.at(joint), joint.name, joint.where)
-
-
-def _stands_apart(joint: SharedJoint, rigid: RigidLinks) -> bool:
-    pin = rigid.pin(joint)
-    return pin is not None and pin.at != joint.at
-
-
 def _guides(
-    shared: SharedMechanism, rigid: RigidLinks, notes: list[str], problems: Problems
+    shared: SharedMechanism, rigid: RigidLinks, points: SharedPoints, notes: list[str], problems: Problems
 ) -> Iterator[DrawnGuideway]:
     for joint in shared.joints:
         pin = rigid.pin(joint)
@@ -76,13 +63,14 @@ def _guides(
         if body == carrier:
             problems.add(joint.where, f"link {body!r} slides on itself: a weld makes it one with its guide")
             continue
-        at = joint.id if _stands_apart(joint, rigid) else pin.id
+        at = points.key(joint if points.stands_apart(joint) else pin)
         if joint.slot is None:
             notes.extend(_said_of_angle(joint))
-            yield DrawnGuideway(_key(joint), "slide", body, carrier, at, joint.at, joint.angle, where=joint.where)
+            angle = remainder(joint.angle, 2.0 * pi)
+            yield DrawnGuideway(_key(joint), "slide", body, carrier, at, joint.at, angle, where=joint.where)
         else:
             start, end = (rigid.joints[id_] for id_ in joint.slot[1:])
-            angle, ends = phase(end.at - start.at), (start.id, end.id)
+            angle, ends = phase(end.at - start.at), (points.key(start), points.key(end))
             yield DrawnGuideway(_key(joint), "slide", body, carrier, at, start.at, angle, ends, where=joint.where)
 
 
@@ -101,13 +89,15 @@ def _said_of_angle(joint: SharedJoint) -> Iterator[str]:
     if 0.0 < off <= _ROUNDED:
         yield (
             f"the guide of {joint.id} is at {joint.angle:g} rad, as written: the program rounds angles to 0.001 rad, "
-            f"and may have meant {quarters * 90} degrees"
+            f"and may have meant {quarters * 90 % 360} degrees"
         )
     if not joint.is_grounded:
         yield f"{joint.id} slides on nothing that is told: on the frame, as the program takes it"
 
 
-def _drivers(shared: SharedMechanism, rigid: RigidLinks, notes: list[str], problems: Problems) -> Iterator[DrawnDriver]:
+def _drivers(
+    shared: SharedMechanism, rigid: RigidLinks, points: SharedPoints, notes: list[str], problems: Problems
+) -> Iterator[DrawnDriver]:
     settings = shared.settings
     sense = -1.0 if settings.clockwise else 1.0
     for joint in shared.joints:
@@ -127,4 +117,4 @@ def _drivers(shared: SharedMechanism, rigid: RigidLinks, notes: list[str], probl
         if len(bodies) > 2:
             notes.append(f"at {joint.id} the frame holds several links: {bodies[1]}, the first, is driven")
         turn = joint.speed or sense * settings.rpm
-        yield DrawnDriver(bodies[1], bodies[0], joint.id, turn * RPM if turn else None, where=joint.where)
+        yield DrawnDriver(bodies[1], bodies[0], points.key(joint), turn * RPM if turn else None, where=joint.where)

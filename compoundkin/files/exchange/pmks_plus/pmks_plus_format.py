@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, ClassVar
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.contract import Readable
+from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
-from compoundkin.files.exchange.exchanged import Imported
+from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks_plus.drawn_share import drawing_of_shared
 from compoundkin.files.exchange.pmks_plus.record_fields import records_of
 from compoundkin.files.exchange.pmks_plus.reference_problems import note_problems
-from compoundkin.files.exchange.pmks_plus.share_text import is_share_string, sections_of
+from compoundkin.files.exchange.pmks_plus.share_text import is_share_string, link_of, sections_of
+from compoundkin.files.exchange.pmks_plus.written_records import body_of
+from compoundkin.files.exchange.pmks_plus.written_share import share_of_drawing
 from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # How many records a link may have; the largest known has fifty.
 MOST_RECORDS = 2000
 
 
-class PmksPlusFormat(Readable):
+class PmksPlusFormat(Readable, Writable):
     """Links of PMKS+, the web app, and its files, which hold the same string."""
 
     name: ClassVar[str] = "pmks+"
     program: ClassVar[str] = "PMKS+"
     title: ClassVar[str] = "PMKS+ share link"
+    options: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "scale": "by how much lengths are multiplied (else small mechanisms are written 100 units large or more)",
+            "on_rails": "whether guides on the frame are links that it holds, so that their angles are not rounded",
+        }
+    )
 
     def recognises(self, content: Content) -> bool:
         """Return whether a content begins as a share string or a link with one."""
@@ -43,6 +56,33 @@ class PmksPlusFormat(Readable):
         drawing = drawing_of_shared(shared, content.name or "PMKS+ mechanism", problems)
         problems.raise_if_any()
         return mechanism_of(drawing, self.name, content.where)
+
+    def write(self, shown: ShownMechanism, **options: Any) -> Exported:
+        """Return the link."""
+        scale = options.get("scale")
+        shared = share_of_drawing(
+            shown.drawing, None if scale is None else _scale(scale), _said(options.get("on_rails"))
+        )
+        notes = shared.notes
+        if shown.structure.redundant:
+            named = ", ".join(pair.name for pair in shown.structure.redundant)
+            notes += (f"it is held more than once ({named}): places of 3 decimals may not fit each other",)
+        return Exported(link_of(body_of(shared)).encode(), self.name, notes)
+
+
+def _scale(given: Any) -> float:
+    try:
+        scale = float(given)
+    except (TypeError, ValueError):
+        scale = 0.0
+    if not 0.0 < scale < math.inf:
+        raise InvalidInput(Problem("scale", f"{given!r} is no number above zero", "for example scale=10"))
+    return scale
+
+
+def _said(given: Any) -> bool:
+    """Return whether an option is on, which command lines say in words."""
+    return given not in (None, False, 0, "", "0", "no", "false", "False")
 
 
 FORMAT = PmksPlusFormat()
