@@ -17,6 +17,7 @@ from compoundkin.files.exchange.drawn_elements import (
     DrawnPoint,
     DrawnRack,
 )
+from compoundkin.files.exchange.drawn_letters import size_of
 from compoundkin.files.exchange.drawn_pairs import GUIDE
 from compoundkin.files.exchange.pmks.joint_notation import Notation
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
@@ -24,6 +25,8 @@ from compoundkin.model.geometry import FRAME
 
 # Names of points that are at most so long are letters, perhaps with a digit.
 _LETTERS = 2
+# Coordinates below this part of the size are what the arithmetic leaves of zero.
+_NOTHING = 1e-15
 
 
 def joints_of(drawing: Drawing, notation: Notation) -> JointList:
@@ -44,7 +47,13 @@ def joints_of(drawing: Drawing, notation: Notation) -> JointList:
     drivers = tuple(_driver(one, drawing, records) for one in drawing.drivers)
     names = notation.names(drawing.links)
     notes = (*drawing.notes, *_notes(drawing, names, notation))
+    least = _NOTHING * size_of(drawing)
+    records = [replace(record, at=_without_noise(record.at, least)) for record in records]
     return JointList(tuple(records), names, drivers, drawing.title, notes)
+
+
+def _without_noise(at: complex, least: float) -> complex:
+    return complex(*(0.0 if abs(part) < least else part for part in (at.real, at.imag)))
 
 
 def _in_order(drawing: Drawing) -> list[DrawnPoint]:
