@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 
@@ -135,6 +137,8 @@ WRONG = {
     "a force without direction": (FOUR_BAR, "...JA", "..2F1,CD,F1,0,0,0,0,Fe..JA", "force F1: it has no direction"),
     "a force below zero": (FOUR_BAR, "...JA", "..2F1,CD,F1,0,0,0,Fe,0Fe..JA", "force F1: its size -1 is negative"),
     "a guide on itself": (BOOM, "0,GN,G,N", "0,PC,P,C", "link 'PC' slides on itself"),
+    "no links": (FOUR_BAR, FOUR_BAR[FOUR_BAR.index("YR") :], "...N", "it has no links"),
+    "no frame": (FOUR_BAR.replace("4D,D", "0D,D"), "6A,A", "2A,A", "no joint is grounded: it has no frame"),
     "no joints": (FOUR_BAR, FOUR_BAR[20:], "", "it is cut off"),
 }
 
@@ -185,11 +189,11 @@ def test_links_of_two_pins_in_common_are_one() -> None:
     twin = FOUR_BAR.replace("YRCD", "YRBC2,BC2,Fe,Fe,0,0,c5cae9,B,C,,.YRCD")
     found = read(twin)
     assert len(found.mechanism.links) == 4
-    assert "links BC2 and BCP have two pins in common, and so are one link" in found.notes
+    assert "with two pins in common, and so one link: BC2 and BCP" in found.notes
     rail = FOUR_BAR.replace(".GP,P", ".4P,P").replace("B,C,P", "B,C").replace("C,D,,", "C,D,,.YRDP,,0,0,0,0,,D,P,,")
     found = read(rail)
     assert list(found.mechanism.links) == ["frame", "AB", "BCP", "CD"]
-    assert "link DP is pinned to the frame twice, and so is part of it" in found.notes
+    assert "pinned to the frame twice, and so part of it: DP" in found.notes
 
 
 def test_masses_and_forces_are_in_the_units_of_the_program() -> None:
@@ -355,7 +359,7 @@ def test_guides_of_the_frame_are_rounded_and_said_or_laid_on_rails() -> None:
     assert any("the guide of" in note and "degrees" in note for note in plain.notes)
     assert not any("the guide of" in note for note in exact.notes)
     back = read(exact.text)
-    assert any("is pinned to the frame twice, and so is part of it" in note for note in back.notes)
+    assert any("pinned to the frame twice, and so part of it" in note for note in back.notes)
     assert moved(engine, shown_mechanism(back.mechanism), 0.5) <= 5e-6
     # a quarter turn is nearest to three decimals a turn further: 7.854 rad
     upright = read(SLIDER.replace("5T", "OZ"))
@@ -372,7 +376,7 @@ def test_the_scale_is_ours_to_give() -> None:
     assert not any("times as large" in note for note in same.notes)
     assert any("rounded" in note for note in same.notes)
     for wrong in (0, -1, "many", float("nan"), float("inf")):
-        with pytest.raises(InvalidInput, match="is no number above zero"):
+        with pytest.raises(InvalidInput, match="is no positive number"):
             FORMAT.write(small, scale=wrong)
     with pytest.raises(InvalidInput, match="give a smaller scale"):
         FORMAT.write(small, scale=1e15)
@@ -397,3 +401,44 @@ def test_loads_are_written_in_the_units_of_the_program() -> None:
         assert centre * metres[back.unit] == pytest.approx(
             one.place(name, complex(loaded.mass_centre(item))) * metres[loaded.unit], abs=1e-5
         )
+
+
+# Strings that are too long, too large or of nothing: what is said, or how many links are read.
+ODD: dict[str, tuple[str, str | int]] = {
+    "many records": (FOUR_BAR.replace("0B,B", "0Z,Z,0,0,0." * 1000 + "0B,B", 1), "more than 1000 joints"),
+    "no number ends": (FOUR_BAR.replace("Fe,VG,0.", "F" * 100_000 + ",VG,0.", 1), "its x 'FFFFFFFFFFFFFFFFFFFF' is no"),
+    "beyond doubles": (FOUR_BAR.replace("Fe,VG,0.", "---------,VG,0.", 1), "its x '---------' is no number"),
+    "large": (FOUR_BAR.replace("Fe,Fe,", "0,0,").replace("0.0B,B,Fe,VG", "0.0B,B,U-------,VG", 1), 4),
+    "dots": ("0P.Fe.K,0.101." + "." * 100_000, "it has no links"),
+    "marks": (FOUR_BAR + "." + "LAB," * 30_000, 4),
+    "many links of the same joints": (
+        FOUR_BAR.replace("YRCD", "".join(f"YRx{k},,0,0,0,0,,B,C,P,,." for k in range(900)) + "YRCD"),
+        4,
+    ),
+    "all at one place": ("0P.Fe.K,0.101.6A,A,0,0,0.0B,B,0,0,0..YRAB,,0,0,0,0,,A,B,,...N", 2),
+}
+
+
+@pytest.mark.parametrize("case", ODD)
+def test_odd_strings_are_answered(case: str) -> None:
+    body, expected = ODD[case]
+    if isinstance(expected, int):
+        assert len(read(body).mechanism.links) == expected
+    else:
+        with pytest.raises(InvalidInput, match=expected):
+            read(body)
+
+
+@pytest.mark.filterwarnings("ignore::compoundkin.base.errors.LikelySlip")
+def test_changed_strings_are_read_or_refused_with_words() -> None:
+    rng = np.random.default_rng(3)
+    digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-,.~* é%"
+    bodies = [body_of(str(one["id"])) for one in entries("pmks+")]
+    for _ in range(300):
+        body = bodies[rng.integers(len(bodies))]
+        for _ in range(rng.integers(1, 4)):
+            start, length = int(rng.integers(14, len(body))), int(rng.integers(0, 12))
+            new = "".join(digits[k] for k in rng.integers(0, len(digits), rng.integers(0, 3)))
+            body = body[:start] + (new if rng.integers(2) else body[start - length : start]) + body[start + length :]
+        with suppress(InvalidInput):
+            assert FORMAT.read(Content((body + check_character(body)).encode())).mechanism.links

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.option_values import flag, positive
 from compoundkin.files.exchange.pmks_plus.drawn_share import drawing_of_shared
 from compoundkin.files.exchange.pmks_plus.record_fields import records_of
 from compoundkin.files.exchange.pmks_plus.reference_problems import note_problems
@@ -22,7 +21,7 @@ from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # How many records a link may have; the largest known has fifty.
-MOST_RECORDS = 2000
+MOST_RECORDS = 1000
 
 
 class PmksPlusFormat(Readable, Writable):
@@ -59,30 +58,13 @@ class PmksPlusFormat(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the link."""
-        scale = options.get("scale")
-        shared = share_of_drawing(
-            shown.drawing, None if scale is None else _scale(scale), _said(options.get("on_rails"))
-        )
+        scale = None if options.get("scale") is None else positive("scale", options["scale"], 1.0)
+        shared = share_of_drawing(shown.drawing, scale, flag("on_rails", options.get("on_rails")))
         notes = shared.notes
         if shown.structure.redundant:
             named = ", ".join(pair.name for pair in shown.structure.redundant)
             notes += (f"it is held more than once ({named}): places of 3 decimals may not fit each other",)
         return Exported(link_of(body_of(shared)).encode(), self.name, notes)
-
-
-def _scale(given: Any) -> float:
-    try:
-        scale = float(given)
-    except (TypeError, ValueError):
-        scale = 0.0
-    if not 0.0 < scale < math.inf:
-        raise InvalidInput(Problem("scale", f"{given!r} is no number above zero", "for example scale=10"))
-    return scale
-
-
-def _said(given: Any) -> bool:
-    """Return whether an option is on, which command lines say in words."""
-    return given not in (None, False, 0, "", "0", "no", "false", "False")
 
 
 FORMAT = PmksPlusFormat()

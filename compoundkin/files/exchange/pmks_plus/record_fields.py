@@ -42,7 +42,9 @@ class Fields:
         try:
             return unpacked_decimal(text)
         except ValueError:
-            self._problems.add(self._where, f"its {what} {text!r} is no number" if text else f"its {what} is missing")
+            self._problems.add(
+                self._where, f"its {what} {text[:20]!r} is no number" if text else f"its {what} is missing"
+            )
             return 0.0
 
     def rest(self) -> Iterator[str]:
@@ -128,7 +130,7 @@ def _settings(told: tuple[str, str, str, str], problems: Problems) -> SharedSett
         rpm = unpacked_integer(told[2].split(",")[0])
         length = unpacked_integer(told[3][:1])
     except ValueError as error:
-        problems.add("settings", f"{error.args[0]!r} is no number")
+        problems.add("settings", f"{error.args[0][:20]!r} is no number")
         return SharedSettings()
     if not 0 <= length < len(UNITS):
         problems.add("settings", f"its unit of length {told[3][:1]!r} is none that is known")

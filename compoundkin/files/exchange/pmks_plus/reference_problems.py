@@ -17,6 +17,10 @@ def note_problems(shared: SharedMechanism, problems: Problems) -> None:
         for id_, count in Counter(ids).items():
             if count > 1 and id_:
                 problems.add(f"{what} {id_}", f"{count} {what}s have this id")
+    if not any(link.is_root for link in shared.links):
+        problems.add("", "it has no links", "share it again once something is drawn")
+    elif not any(joint.is_grounded for joint in shared.joints):
+        problems.add("", "no joint is grounded: it has no frame", "ground a joint at least")
     for link in shared.links:
         _note_link(link, joints, links, problems)
     blocks = Counter(id_ for link in shared.links if link.is_root and link.is_block for id_ in link.joints)

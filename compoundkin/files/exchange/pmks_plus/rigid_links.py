@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 from compoundkin.files.exchange.pmks_plus.shared_records import SharedJoint, SharedLink, SharedMechanism
 from compoundkin.model.geometry import FRAME
+
+# So many names are enough in a sentence.
+_MOST = 8
 
 
 class RigidLinks:
@@ -86,21 +89,32 @@ class RigidLinks:
 
     def _join_held(self) -> bool:
         """Join bodies that have two pins in common at two places, as the program does. Return whether any have."""
-        met: dict[tuple[str, str], complex] = {}
-        held: dict[tuple[str, str], None] = {}
-        for joint in self.joints.values():
-            for pair in combinations(sorted(self.at(joint)), 2) if not joint.slides else ():
-                if met.setdefault(pair, joint.at) != joint.at:
-                    held[pair] = None
-        for one, other in held:
-            self.notes.append(_said(one, other))
-            self._unite(self._now(one), self._now(other))
+        held: list[tuple[str, str]] = []
+        left = self._pins()
+        while left:
+            one, pins = left.popitem()
+            for other, others in [*left.items()]:
+                if len(pins & others) > 1 and len({self.joints[id_].at for id_ in pins & others}) > 1:
+                    held.append((one, other))
+                    self._unite(self._now(other), self._now(one))
+                    pins |= left.pop(other)
+        self.notes += _said(held[::-1])
         return bool(held)
 
+    def _pins(self) -> dict[str, set[str]]:
+        """Return the ids of the pins of each body."""
+        pins: dict[str, set[str]] = {body: set() for body in (FRAME, *self.bodies)}
+        for joint in self.joints.values():
+            for body in self.at(joint) if not joint.slides else ():
+                pins[body].add(joint.id)
+        return pins
+
     def _now(self, body: str) -> str:
-        while self._same[body] != body:
-            body = self._same[body]
-        return body
+        now = body
+        while self._same[now] != now:
+            now = self._same[now]
+        self._same[body] = now
+        return now
 
     def _unite(self, one: str, other: str) -> None:
         """Make two bodies one, under the key of the first; the frame stays the frame."""
@@ -108,10 +122,19 @@ class RigidLinks:
         self._same[gone] = kept
 
 
-def _said(one: str, other: str) -> str:
-    if FRAME in (one, other):
-        return f"link {other if one == FRAME else one} is pinned to the frame twice, and so is part of it"
-    return f"links {one} and {other} have two pins in common, and so are one link"
+def _said(held: list[tuple[str, str]]) -> Iterator[str]:
+    """Yield what is said of links that are held twice, by the frame and by each other."""
+    framed = [other if one == FRAME else one for one, other in held if FRAME in (one, other)]
+    twins = [f"{one} and {other}" for one, other in held if FRAME not in (one, other)]
+    if framed:
+        yield f"pinned to the frame twice, and so part of it: {_listed(framed)}"
+    if twins:
+        yield f"with two pins in common, and so one link: {_listed(twins)}"
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
+    return ", ".join(names[:_MOST]) + more
 
 
 def _key(link: str) -> str:
