@@ -10,7 +10,9 @@ from compoundkin.files.exchange.geogebra.dragged_construction import Constructio
 from compoundkin.files.exchange.geogebra.polar_sums import number
 
 # The window in pixels, and how much of it is kept free on each side.
-_WIDTH, _HEIGHT, _MARGIN = 1000, 700, 90
+_WIDTH, _HEIGHT, _MARGIN = 900, 600, 80
+# The desktop program has its list of objects beside it, its menus above and below.
+_LIST, _MENUS = 280, 200
 # Sliders are put one below the other, in pixels.
 _SLIDER_WIDTH, _SLIDER_LEFT, _SLIDER_TOP, _SLIDER_EVERY = 300, 30, 40, 45
 _TURN = 360.0
@@ -50,6 +52,8 @@ class ShownWindow(NamedTuple):
 def xml_of(build: Construction, title: str, window: ShownWindow) -> bytes:
     """Return the text of the file."""
     root = Element("geogebra", {"format": "5.0", "version": "5.0.609.0", "app": "classic", "platform": "w"})
+    around = {"width": str(_WIDTH + _LIST), "height": str(_HEIGHT + _MENUS)}
+    SubElement(SubElement(root, "gui"), "window", around)
     _add_view(root, window)
     kernel = SubElement(root, "kernel")
     for name, value in (("continuous", "false"), ("decimals", "2"), ("angleUnit", "degree"), ("coordStyle", "0")):
@@ -76,6 +80,8 @@ def _add_view(root: Element, window: ShownWindow) -> None:
     places = {name: number(value) for name, value in (*zero.items(), ("scale", scale), ("yscale", scale))}
     SubElement(view, "coordSystem", places)
     SubElement(view, "evSettings", {"axes": "false", "grid": "false", "pointCapturing": "0"})
+    for axis in ("0", "1"):
+        SubElement(view, "axis", {"id": axis, "show": "false"})
 
 
 def _add_step(inside: Element, step: ConstructionStep, sliders: int) -> None:
