@@ -81,7 +81,11 @@ def _add_view(root: Element, window: ShownWindow) -> None:
     SubElement(view, "coordSystem", places)
     SubElement(view, "evSettings", {"axes": "false", "grid": "false", "pointCapturing": "0"})
     for axis in ("0", "1"):
-        SubElement(view, "axis", {"id": axis, "show": "false"})
+        SubElement(
+            view,
+            "axis",
+            {"id": axis, "show": "false", "showNumbers": "false", "tickStyle": "1", "label": "", "unitLabel": ""},
+        )
 
 
 def _add_step(inside: Element, step: ConstructionStep, sliders: int) -> None:
