@@ -11,8 +11,10 @@ from compoundkin.base.errors import InvalidInput, Problem
 _YES, _NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0", "")
 
 
-def positive(name: str, given: Any, otherwise: float) -> float:
-    """Return a positive number, or another one where none is given. Raises InvalidInput for what is none.
+def positive(name: str, given: Any, otherwise: float, least: float = 0.0) -> float:
+    """Return a positive number, or another one where none is given.
+
+    Raises InvalidInput for what is none, or less than the least that makes sense.
 
     >>> positive("tolerance", "0.01", 1.0), positive("tolerance", None, 1.0)
     (0.01, 1.0)
@@ -24,7 +26,9 @@ def positive(name: str, given: Any, otherwise: float) -> float:
     except (TypeError, ValueError):
         value = 0.0
     if not (isfinite(value) and value > 0):
-        raise InvalidInput(Problem(name, f"{given!r} is no positive number", "give a length"))
+        raise InvalidInput(Problem(name, f"{given!r} is no positive number", "give one"))
+    if value < least:
+        raise InvalidInput(Problem(name, f"{given} is too small", f"give {least:.3g} or more"))
     return value
 
 

@@ -14,14 +14,16 @@ HALVINGS = 12
 MIDDLE = 0.5
 
 
-def short_chords(s: Number, places: Callable[[Number], Number], tolerance: float) -> tuple[Number, Number]:
-    """Return parameters, those given among them, and the places of curves there. Chords are off by a tolerance at most.
+def short_chords(s: Number, places: Callable[[Number], Number], tolerance: float) -> tuple[Number, Number, float]:
+    """Return parameters, the places of curves there, and how far chords are off at most.
 
-    `places` are those of all curves at parameters (n,), complex (curves, n); not a number where there is none.
+    Parameters given are among them. The error is the tolerance, or more where curves bend so sharply that halving steps
+    came to its end. `places` are those of all curves at parameters (n,), complex (curves, n); not a number where there
+    is none.
 
-    >>> s, found = short_chords(np.linspace(0, 1, 3), lambda s: np.exp(1j * s)[None], 1e-3)
-    >>> len(s)
-    17
+    >>> s, found, error = short_chords(np.linspace(0, 1, 3), lambda s: np.exp(1j * s)[None], 1e-3)
+    >>> len(s), error
+    (17, 0.001)
     """
     rows = places(s)
     fresh = np.ones(len(s) - 1, dtype=bool)
@@ -29,15 +31,16 @@ def short_chords(s: Number, places: Callable[[Number], Number], tolerance: float
         steps = np.flatnonzero(fresh)
         middle = 0.5 * (s[steps] + s[steps + 1])
         found = places(middle)
-        off = beside_chords(rows[:, steps], rows[:, steps + 1], found).max(axis=0) > MIDDLE * tolerance
+        height = beside_chords(rows[:, steps], rows[:, steps + 1], found).max(axis=0)
+        off = height > MIDDLE * tolerance
         if not off.any():
-            break
+            return s, rows, tolerance
         split = steps[off] + 1
         s, rows = np.insert(s, split, middle[off]), np.insert(rows, split, found[:, off], axis=1)
         after = split + np.arange(len(split))
         fresh = np.zeros(len(s) - 1, dtype=bool)
         fresh[np.concatenate((after - 1, after))] = True
-    return s, rows
+    return s, rows, max(tolerance, float(height.max()))
 
 
 def beside_chords(a: Number, b: Number, middle: Number) -> Number:

@@ -19,6 +19,8 @@ from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
 
 # How far chords may be off where it is not said, in parts of the profile's size.
 CHORD = 1e-5
+# No machine is finer than this part of the profile's size.
+FINEST = 1e-8
 FEWEST, MOST = 8, 1_000_000
 
 
@@ -41,7 +43,7 @@ class CamProfileFormat(Writable):
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the table. Raises InvalidInput or UnknownName where it is not said of which cam."""
         pair = _pair(shown, options.get("cam"))
-        tolerance = positive("tolerance", options.get("tolerance"), CHORD * pair.extent)
+        tolerance = positive("tolerance", options.get("tolerance"), CHORD * pair.extent, FINEST * pair.extent)
         cutter = None if options.get("cutter") is None else positive("cutter", options["cutter"], 0.0)
         found = profile_points(pair, tolerance, cutter, _count(options.get("points")))
         unit = shown.mechanism.unit

@@ -14,6 +14,8 @@ from compoundkin.model.pairs.profile_contact import Profiled
 
 # The profile is first cut into so many steps, besides at its own breaks.
 FIRST = 48
+# Shares of a step at which the error of its chord is looked for.
+LOOKED_AT = np.linspace(0.0, 1.0, 9)[1:-1]
 # A cutter that is nearer to the profile than its radius by this part of the profile's size cuts into it; less is
 # rounding.
 CUTS = 1e-9
@@ -57,11 +59,12 @@ def profile_points(
     low, high = pair.curve.low, pair.curve.high
     if count is None:
         within = [s for s in pair.curve.breaks if low < s < high]
-        s, rows = short_chords(np.unique([*np.linspace(low, high, FIRST + 1), *within]), places, tolerance)
+        s, rows, _ = short_chords(np.unique([*np.linspace(low, high, FIRST + 1), *within]), places, tolerance)
     else:
         s = np.linspace(low, high, count + 1 if pair.curve.closed else count)
         rows = places(s)
-    error = beside_chords(rows[:, :-1], rows[:, 1:], places(0.5 * (s[:-1] + s[1:]))).max()
+    between = [beside_chords(rows[:, :-1], rows[:, 1:], places(s[:-1] + share * np.diff(s))) for share in LOOKED_AT]
+    error = np.max(between)
     with np.errstate(divide="ignore"):
         radii = 1.0 / (pair.outward * pair.curve.curvature(s))
     normals = pair.curve.normal(s).c[0] * pair.outward

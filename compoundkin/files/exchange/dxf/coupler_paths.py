@@ -24,12 +24,14 @@ SAME = 1e-9
 class CouplerPath:
     """The path of a point, or a piece of it between gaps.
 
-    `places` are complex; that of a closed one does not have its first place again.
+    `places` are complex; that of a closed one does not have its first place again. Chords are
+    off by the `error` at most.
     """
 
     letter: str
     places: Number
     closed: bool
+    error: float
 
 
 def whole_motion(shown: ShownMechanism) -> Motion | None:
@@ -67,9 +69,9 @@ def coupler_paths(motion: Motion, letters: Sequence[str], tolerance: float) -> t
     if not letters:
         return ()
     s = np.arange(motion.inputs.poses, dtype=float)
-    _, rows = short_chords(s, lambda s: _places(motion, letters, s), tolerance)
+    _, rows, error = short_chords(s, lambda s: _places(motion, letters, s), tolerance)
     size = motion.size
-    return tuple(path for letter, row in zip(letters, rows, strict=True) for path in _pieces(letter, row, size))
+    return tuple(path for letter, row in zip(letters, rows, strict=True) for path in _pieces(letter, row, size, error))
 
 
 def _places(motion: Motion, letters: Sequence[str], s: Number) -> Number:
@@ -78,11 +80,11 @@ def _places(motion: Motion, letters: Sequence[str], s: Number) -> Number:
     return np.array([np.broadcast_to(found.points[letter].position, s.shape) for letter in letters])
 
 
-def _pieces(letter: str, row: Number, size: float) -> Iterator[CouplerPath]:
+def _pieces(letter: str, row: Number, size: float, error: float) -> Iterator[CouplerPath]:
     """Yield the known pieces of a path."""
     known = np.isfinite(row)
     for part in np.split(np.arange(len(row)), np.flatnonzero(np.diff(known.astype(int))) + 1):
         places = row[part]
         if known[part[0]] and np.abs(places - places[0]).max() > SAME * size:
             closed = len(part) == len(row) and abs(places[-1] - places[0]) <= SAME * size
-            yield CouplerPath(letter, places[:-1] if closed else places, closed)
+            yield CouplerPath(letter, places[:-1] if closed else places, closed, error)

@@ -27,6 +27,8 @@ VERSION = "R2000"
 POSE_LAYERS = tuple(name for name in LAYERS if name != CENTRES)
 # How far curves may be off where it is not said, in parts of the mechanism's size.
 CHORD = 1e-4
+# No drawing is finer than this part of the mechanism's size.
+FINEST = 1e-8
 
 
 class DxfFormat(Writable):
@@ -48,22 +50,23 @@ class DxfFormat(Writable):
         """Return the file. Raises InvalidInput where ezdxf is not installed or there is nothing to cut."""
         library = ezdxf(f".{self.name}")
         size = shown.mechanism.geometry.size
-        tolerance = positive("tolerance", options.get("tolerance"), CHORD * size)
+        tolerance = positive("tolerance", options.get("tolerance"), CHORD * size, FINEST * size)
         letters = _letters(shown, options.get("curves"))
         as_parts = flag("parts", options.get("parts"))
         motion = whole_motion(shown)
         parts = link_parts(shown, motion)
         splines = {id(curve): profile_spline(curve, tolerance) for part in parts for curve in part.profiles}
+        paths = () if motion is None or as_parts else coupler_paths(motion, letters, tolerance)
         with fixed_dates(library):
             document = _document(library, shown, (NAMES, CENTRES) if as_parts else POSE_LAYERS)
             if as_parts:
                 draw_parts(document, parts, splines, size)
             else:
                 draw_pose(document, shown, parts, splines, size)
-                draw_paths(document, coupler_paths(motion, letters, tolerance) if motion else ())
+                draw_paths(document, paths)
             content = _content(document)
-        curved = bool(splines) or (bool(letters) and motion is not None and not as_parts)
-        error = max([tolerance, *(spline.error for spline in splines.values())]) if curved else None
+        errors = [*(path.error for path in paths), *(spline.error for spline in splines.values())]
+        error = max(tolerance, *errors) if errors else None
         instead = "left out" if as_parts else "drawn as lines between their points"
         return Exported(content, self.name, tuple(_notes(shown, parts, error, instead)))
 

@@ -37,7 +37,7 @@ ARCS, SLOTS = "arcs", "slots"
 
 @dataclass(frozen=True)
 class Sheet:
-    """What of a link lies on one layer: contours, slots among them, and holes for pins."""
+    """What of a link lies on one layer: contours, slots, holes for pins."""
 
     layer: int
     contours: tuple[Contour, ...]
