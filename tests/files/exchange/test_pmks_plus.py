@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -442,3 +444,19 @@ def test_changed_strings_are_read_or_refused_with_words() -> None:
             body = body[:start] + (new if rng.integers(2) else body[start - length : start]) + body[start + length :]
         with suppress(InvalidInput):
             assert FORMAT.read(Content((body + check_character(body)).encode())).mechanism.links
+
+
+def test_the_page_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (Path(__file__).parents[3] / "docs" / "exchange" / "pmks-plus.md").read_text("utf-8")
+    names: dict[str, object] = {}
+    blocks = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, re.DOTALL)
+    assert len(blocks) == text.count("```python")
+    for code, shown_text in blocks:
+        exec(code, names)
+        assert capsys.readouterr().out == shown_text
+
+
+def test_pasted_strings_are_read_by_the_face_of_the_house() -> None:
+    whole = FOUR_BAR + check_character(FOUR_BAR)
+    for text in (ADDRESS + whole, whole, f"  {whole}\n"):
+        assert ck.exchange.read(text).form == "pmks+"
