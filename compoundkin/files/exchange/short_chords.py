@@ -15,7 +15,7 @@ MIDDLE = 0.5
 
 
 def short_chords(s: Number, places: Callable[[Number], Number], tolerance: float) -> tuple[Number, Number, float]:
-    """Return parameters, the places of curves there, and how far chords are off at most.
+    """Return parameters, the places of curves there, and the error of chords.
 
     Parameters given are among them. The error is the tolerance, or more where curves bend so sharply that halving steps
     came to its end. `places` are those of all curves at parameters (n,), complex (curves, n); not a number where there

@@ -130,7 +130,7 @@ def test_names_of_links_are_made_legal() -> None:
         ck.link("frame", A=0, D=6),
         ck.link("bar/1", A=0, B=2),
         ck.link("Bar|1", B=0, C=5),
-        ck.link("bar?1", D=0, C=5),
+        ck.link("bär? 曲柄", D=0, C=5),
         ck.drive("bar/1"),
         unit="ft",
     )
@@ -139,7 +139,7 @@ def test_names_of_links_are_made_legal() -> None:
         "LINK-frame",
         "LINK-bar_1",
         "LINK-Bar_1-2",
-        "LINK-bar_1-3",
+        "LINK-bär_ 曲柄",
     ]
     assert (document.header["$INSUNITS"], document.header["$MEASUREMENT"]) == (2, 0)
 

@@ -96,8 +96,8 @@ def _document(library: Any, shown: ShownMechanism, layers: Sequence[str]) -> Any
 def _content(document: Any) -> bytes:
     text = io.StringIO()
     document.write(text)
-    made: bytes = document.encode(text.getvalue())
-    return made
+    # ezdxf's own way to write letters that a code page lacks, for all of them: the same bytes in every code page
+    return text.getvalue().encode("ascii", "dxfreplace")
 
 
 def _notes(shown: ShownMechanism, parts: Sequence[LinkPart], error: float | None, instead: str) -> Iterator[str]:
