@@ -13,6 +13,7 @@ from compoundkin.files.exchange.exchanged import Exported
 from compoundkin.files.exchange.mjcf.body_masses import units_of
 from compoundkin.files.exchange.mjcf.mjcf_format import FORMAT
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.model.units import FORCES, LENGTHS
 from compoundkin.results import Motion
 
 # How far apart poses are between which the Jacobian's rate is taken, in time at speeds of about one.
@@ -100,28 +101,28 @@ class MujocoModel:
         return np.array(self.data.efc_J).reshape(-1, self.model.nv)[: self.data.ne]
 
     @cached_property
-    def sites(self) -> list[tuple[str, str]]:
-        """The letters and links of all points, by the names of their sites."""
-        carriers = self.shown.mechanism.carriers
-        named = [self.model.site(k).name.partition(" on ") for k in range(self.model.nsite)]
-        return [(letter, link or carriers[letter][0]) for letter, _, link in named]
+    def sites(self) -> list[tuple[str, int]]:
+        """The letters of all points, each with one of its sites; a pin has as many as links."""
+        named = [(self.model.site(k).name.partition(" on ")[0], k) for k in range(self.model.nsite)]
+        return [(letter, k) for letter, k in named if letter in self.shown.mechanism.carriers]
 
     @property
     def places(self) -> np.ndarray:
         """Where all points are."""
-        return self.data.site_xpos @ _PLANE
+        return (self.data.site_xpos @ _PLANE)[[k for _, k in self.sites]]
 
     def velocities(self, qvel: np.ndarray) -> np.ndarray:
         """The velocities of all points by their Jacobians."""
-        rows = np.zeros((self.model.nsite, 3, self.model.nv))
-        for k, own in enumerate(rows):
+        rows = np.zeros((len(self.sites), 3, self.model.nv))
+        for (_, k), own in zip(self.sites, rows, strict=True):
             mujoco.mj_jacSite(self.model, self.data, own, None, k)
         return _PLANE @ (rows @ qvel).T
 
     @cached_property
     def joints(self) -> np.ndarray:
         """The drivers' joints."""
-        return self.model.actuator_trnid[:, 0]
+        found: np.ndarray = self.model.actuator_trnid[: len(self.shown.structure.driven), 0]
+        return found
 
     @cached_property
     def signs(self) -> np.ndarray:
@@ -129,6 +130,13 @@ class MujocoModel:
         model, links = self.model, self.shown.structure.driven.values()
         bodies = [model.body(model.jnt_bodyid[joint]).name.split(" at ")[0] for joint in self.joints]
         return np.array([1.0 if one.drive.link == body else -1.0 for one, body in zip(links, bodies, strict=True)])
+
+    @cached_property
+    def effort_units(self) -> np.ndarray:
+        """The drivers' units of effort in newtons, or newton metres."""
+        units = self.shown.mechanism.stated_units
+        force = FORCES[units.force]
+        return np.where(self.model.jnt_type[self.joints] == 3, force * LENGTHS[units.length], force)
 
     def rates(self, motion: Motion, which: str = "rate") -> np.ndarray:
         """The rates of the drivers' joints, or their second rates: an array (poses, drivers)."""
@@ -142,6 +150,16 @@ class MujocoModel:
         held = np.vstack([self.loops, np.eye(self.model.nv)[self.joints]])
         found: np.ndarray = np.linalg.lstsq(held, np.append(np.zeros(len(self.loops)), rates), rcond=None)[0]
         return found
+
+    def _pull_of_loads(self) -> np.ndarray:
+        """What the actuators of loads do, without those of drivers."""
+        count = len(self.joints)
+        moment = np.zeros((self.model.nu, self.model.nv))
+        mujoco.mju_sparse2dense(
+            moment, self.data.actuator_moment, self.data.moment_rownnz, self.data.moment_rowadr, self.data.moment_colind
+        )
+        pull: np.ndarray = moment[count:].sum(axis=0)
+        return pull
 
     def efforts(self, qpos: np.ndarray, rates: np.ndarray, accelerations: np.ndarray) -> np.ndarray:
         """What drivers must do, by the mass matrix, the bias, and the Jacobian of the loops and its rate."""
@@ -157,6 +175,6 @@ class MujocoModel:
         second = np.linalg.lstsq(held, np.append(-rate @ speeds, accelerations), rcond=None)[0]
         matrix = np.zeros((self.model.nv, self.model.nv))
         mujoco.mj_fullM(self.model, self.data, matrix)
-        push = matrix @ second + self.data.qfrc_bias - self.data.qfrc_passive
+        push = matrix @ second + self.data.qfrc_bias - self.data.qfrc_passive - self._pull_of_loads()
         found: np.ndarray = np.linalg.lstsq(held.T, push, rcond=None)[0][len(self.loops) :]
         return found

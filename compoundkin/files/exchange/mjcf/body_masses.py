@@ -10,7 +10,7 @@ from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.elements import Mass
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.units import LENGTHS, MASSES
+from compoundkin.model.units import FORCES, LENGTHS, MASSES
 
 # What a link weighs where nothing has a mass; a round number, so that it is seen to be made up.
 _MADE_UP = 1.0
@@ -24,10 +24,11 @@ _MADE_UP_TURN, _OF_POINT = 1e-2, 1e-6
 
 @dataclass(frozen=True)
 class ModelUnits:
-    """How many metres and kilograms a mechanism's units are, and words for it."""
+    """How many metres, kilograms and newtons a mechanism's units are, and words for it."""
 
     length: float
     mass: float
+    force: float
     told: str
 
     @property
@@ -46,13 +47,14 @@ def units_of(mechanism: Mechanism) -> ModelUnits:
     'lengths are in m (1 mm is 0.001 m), masses in kg, forces in N, torques in N m'
     """
     length = LENGTHS.get(mechanism.unit)
-    mass = 1.0 if mechanism.units is None else MASSES[mechanism.units.mass]
+    units = mechanism.units
+    mass, force = (1.0, 1.0) if units is None else (MASSES[units.mass], FORCES[units.force])
     forces = "masses in kg, forces in N, torques in N m"
     if length is None:
         unit = f"in {mechanism.unit}, which is unknown, and" if mechanism.unit else "without a unit and"
-        return ModelUnits(1.0, mass, f"lengths are {unit} kept as they are; taken as m, {forces}")
+        return ModelUnits(1.0, mass, force, f"lengths are {unit} kept as they are; taken as m, {forces}")
     kept = "" if length == 1.0 else f" (1 {mechanism.unit} is {length!r} m)"
-    return ModelUnits(length, mass, f"lengths are in m{kept}, {forces}")
+    return ModelUnits(length, mass, force, f"lengths are in m{kept}, {forces}")
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,12 @@ from compoundkin.files.exchange.mjcf.elementary_joints import JointChain
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
 
 
-def constraint_elements(plan: ModelPlan) -> Iterator[Element]:
-    """Yield the sums of joints that are held, then all equality constraints."""
-    held, tendons = Element("equality"), Element("tendon")
+def constraint_elements(plan: ModelPlan, tendons: Element) -> Iterator[Element]:
+    """Yield all tendons, then all equality constraints.
+
+    Tendons of loads are given; sums of joints that are held are added.
+    """
+    held = Element("equality")
     for chain in plan.connected:
         SubElement(held, "connect", _sites(plan, chain))
     for name, (_, link) in plan.halves.items():

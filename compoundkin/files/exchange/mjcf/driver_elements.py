@@ -17,15 +17,19 @@ from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
 KEYFRAME = "drawn"
 
 
-def driver_elements(plan: ModelPlan, world: Element, stiffness: float) -> Iterator[Element]:
-    """Yield the actuators and the keyframe. `stiffness` is how many times a second a driver could catch up."""
+def driver_elements(plan: ModelPlan, world: Element, loads: Element, stiffness: float) -> Iterator[Element]:
+    """Yield the actuators, those of loads last, and the keyframe.
+
+    `stiffness` is how many times a second a driver could catch up.
+    """
     actuators = Element("actuator")
     speeds = dict(_speeds(plan))
     for name, (joint, _) in speeds.items():
         lever = plan.size**2 if plan.joints[joint].is_hinge else 1.0
         weight = sum(mass.mass for mass in plan.masses.values()) * lever
         SubElement(actuators, "velocity", name=name, joint=joint, kv=number(weight * stiffness))
-    if speeds:
+    actuators.extend(loads)
+    if len(actuators):
         yield actuators
     rates = joint_rates(plan)
     names = [joint.get("name", "") for joint in world.iter("joint")]
@@ -37,8 +41,9 @@ def driver_elements(plan: ModelPlan, world: Element, stiffness: float) -> Iterat
         qpos=" ".join(["0"] * len(names)),
         qvel=" ".join(number(rates[name] * plan.unit_of(name)) for name in names),
     )
-    if speeds:
-        key.set("ctrl", " ".join(number(speed) for _, speed in speeds.values()))
+    if len(actuators):
+        # what a load pulls is in its gear
+        key.set("ctrl", " ".join([*(number(speed) for _, speed in speeds.values()), *["1"] * len(loads)]))
     yield frames
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, ClassVar
 from xml.etree.ElementTree import Element, indent, tostring
 
@@ -14,6 +14,7 @@ from compoundkin.files.exchange.mjcf.body_elements import body_elements
 from compoundkin.files.exchange.mjcf.body_shapes import add_shapes
 from compoundkin.files.exchange.mjcf.constraint_elements import constraint_elements
 from compoundkin.files.exchange.mjcf.driver_elements import driver_elements
+from compoundkin.files.exchange.mjcf.load_elements import ModelLoads
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan, plan_of
 from compoundkin.files.exchange.mjcf.model_settings import camera, printable, settings, step_of
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
@@ -30,7 +31,7 @@ class MjcfFormat(Writable):
 
     name: ClassVar[str] = "mjcf"
     program: ClassVar[str] = "MuJoCo"
-    title: ClassVar[str] = "a MuJoCo model (MJCF)"
+    title: ClassVar[str] = "MuJoCo model (MJCF)"
     suffix: ClassVar[str] = ".xml"
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
@@ -43,47 +44,46 @@ class MjcfFormat(Writable):
         (3, 1)
         """
         plan = plan_of(shown)
-        notes = (*_notes(plan), *plan.notes)
-        model = _model(plan, notes)
+        bodies = body_elements(plan)
+        loads = ModelLoads(plan, bodies)
+        notes = (*_notes(plan, loads.left), *plan.notes)
+        model = _model(plan, bodies, loads, notes)
         indent(model)
         return Exported(tostring(model, "utf-8", xml_declaration=False) + b"\n", self.name, notes)
 
 
-def _model(plan: ModelPlan, notes: tuple[str, ...]) -> Element:
+def _model(plan: ModelPlan, bodies: Mapping[str, Element], loads: ModelLoads, notes: tuple[str, ...]) -> Element:
     """Return the whole model."""
-    bodies = body_elements(plan)
     world = bodies[FRAME]
-    _hold_names(world)
+    _hold_names(world, loads.actuators, plan.shown.structure.driven)
     add_shapes(plan, bodies)
     world.append(camera(plan))
     model = Element("mujoco", model=printable(plan.shown.mechanism.title))
     model.extend(settings(plan, notes))
     model.append(world)
-    model.extend(constraint_elements(plan))
-    model.extend(driver_elements(plan, world, 1.0 / (_OF_DRIVERS * step_of(plan))))
+    model.extend(constraint_elements(plan, loads.tendons))
+    model.extend(driver_elements(plan, world, loads.actuators, 1.0 / (_OF_DRIVERS * step_of(plan))))
     return model
 
 
-def _notes(plan: ModelPlan) -> Iterator[str]:
+def _notes(plan: ModelPlan, left: list[str]) -> Iterator[str]:
     """Yield in sentences what the numbers mean, and what of the mechanism is left out."""
     yield plan.units.told
-    mechanism = plan.shown.mechanism
-    laws = [drive.name for drive in mechanism.drives if drive.law is not None]
+    laws = [drive.name for drive in plan.shown.mechanism.drives if drive.law is not None]
     if laws:
         yield f"laws of time are not in a model: {', '.join(laws)} keeps the speed of this pose"
     for free in plan.shown.structure.passive:
         yield f"{free}: it is held as it is drawn"
-    left = Counter(item.title for item in mechanism.loads.values())
-    left.update({"friction": len(mechanism.frictions), "pretension": len(mechanism.pretensions)})
-    told = [f"{title} ({count})" for title, count in left.items() if count]
-    if told:
-        yield f"left out: {', '.join(told)}"
+    if left:
+        yield f"loads that no model says are left out: {', '.join(left)}"
 
 
-def _hold_names(world: Element) -> None:
-    """Raise InvalidInput where two bodies, joints or points would have one name."""
-    named = Counter((element.tag, element.get("name", "")) for element in world.iter() if element.get("name"))
+def _hold_names(world: Element, loads: Element, drives: Iterable[str]) -> None:
+    """Raise InvalidInput where two bodies, joints, points or loads would have one name."""
+    elements = (*world.iter(), *loads)
+    named = Counter((element.tag, element.get("name", "")) for element in elements if element.get("name"))
     named["body", _WORLD] += 1
+    named.update(("motor", drive) for drive in drives)
     twice = [
         Problem(name, f"two of one name: {tag}", "call one of them otherwise")
         for (tag, name), count in named.items()

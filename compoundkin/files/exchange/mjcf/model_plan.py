@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.files.exchange.mjcf.body_masses import BodyMass, ModelUnits, masses_of, units_of
@@ -20,9 +21,22 @@ from compoundkin.files.exchange.mjcf.joint_tree import (
 )
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.pin_pairs import meant_pair
 
 # Bodies that stand on each other deeper are refused: they are written and read one in another.
 _DEEPEST = 200
+
+
+@dataclass(frozen=True)
+class JointCoordinate:
+    """The joint along which a pair moves.
+
+    `sign` is 1 where its coordinate grows with that of the pair, else -1; `drawn` is that of the pair as drawn.
+    """
+
+    joint: str
+    sign: int
+    drawn: float
 
 
 @dataclass(frozen=True)
@@ -59,6 +73,24 @@ class ModelPlan:
         Slides are scaled, hinges are not.
         """
         return 1.0 if self.joints[joint].is_hinge else self.units.length
+
+    def coordinate(self, name: str) -> JointCoordinate | None:
+        """Return the joint of a pair or a driver.
+
+        None of a pin that closes a loop.
+        """
+        found = meant_pair(self.shown.mechanism, name)
+        if found is None:
+            return None
+        meant, side = found
+        for own, _ in self.bodies.values():
+            pair = own.chain.pair
+            if pair.letters == meant.letters and {*pair.members} == {*meant.members} and pair.title == meant.title:
+                turned = side if pair.members == meant.members else -side
+                ends = self.shown.ends.get(pair.name, pair.ends(self.shown.mechanism.geometry))
+                drawn = pair.coordinate(ends, tuple(self.shown.poses[link] for link in pair.members)).c[0]
+                return JointCoordinate(pair.name, turned * own.sign, turned * float(first_entry(drawn)))
+        return None
 
     def pose(self, link: str) -> Pose:
         """Return where a link is drawn."""
