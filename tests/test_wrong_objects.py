@@ -226,6 +226,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "equations.text": {"equation": h["loop"]},
         "equivalents.equivalent_linkage": {"motion": h["cam"], "at": 0},
         "exchange.compare": {"one": m, "other": m},
+        "exchange.from_pylinkage": {"mechanism": None},
         "exchange.read": {"source": "crank,ground,R,0,0\ncrank,R,1,0", "form": "pmks"},
         "exchange.write": {"mechanism": m, "form": "pmks", "at": {"crank": 1.0}},
         "goals.assembles": {"margin": 0.05},

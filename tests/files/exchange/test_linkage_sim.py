@@ -17,6 +17,7 @@ from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.linkage_sim.linkage_sim_format import FORMAT
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
 from tests.catalog import mechanism as loaded
+from tests.files.exchange.pages import prints_what_it_shows
 from tests.files.exchange.references import entry, holds
 
 SAMPLE = entry("linkage_sim_four_bar")
@@ -204,3 +205,7 @@ def test_what_cannot_be_meant_is_refused_by_name(change: Any, words: str) -> Non
     with pytest.raises(InvalidInput) as error:
         read(data)
     assert words in str(error.value)
+
+
+def test_its_page_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    prints_what_it_shows("linkage-sim.md", capsys)

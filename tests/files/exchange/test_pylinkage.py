@@ -21,6 +21,7 @@ from compoundkin.files.exchange.pylinkage.pylinkage_format import FORMAT
 from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkage
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
 from tests.catalog import mechanism as loaded
+from tests.files.exchange.pages import prints_what_it_shows
 from tests.files.exchange.references import entries, letter_at
 
 with patch.dict(sys.modules, {"numba": None}):
@@ -301,3 +302,7 @@ def test_large_files_answer_soon() -> None:
                  {"joints": joints[:5] + tracked, "links": star[:2]}):  # fmt: skip
         with pytest.raises(InvalidInput):
             read(json.dumps(data))
+
+
+def test_its_page_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    prints_what_it_shows("pylinkage.md", capsys)
