@@ -13,6 +13,7 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
+from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 import compoundkin as ck
 from compoundkin.files.exchange.conversion import write
@@ -135,7 +136,7 @@ def test_names_of_links_are_made_legal() -> None:
         unit="ft",
     )
     document = read(odd)
-    assert [one.dxf.name for one in document.modelspace().query("INSERT")] == [
+    assert [decode_dxf_unicode(one.dxf.name) for one in document.modelspace().query("INSERT")] == [
         "LINK-frame",
         "LINK-bar_1",
         "LINK-Bar_1-2",

@@ -11,6 +11,7 @@ from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.dxf.coupler_paths import coupler_paths, drawn_letters, whole_motion
 from compoundkin.files.exchange.dxf.ezdxf_library import ezdxf, fixed_dates
+from compoundkin.files.exchange.dxf.legal_names import in_ascii
 from compoundkin.files.exchange.dxf.link_parts import LinkPart, link_parts
 from compoundkin.files.exchange.dxf.part_layout import draw_parts
 from compoundkin.files.exchange.dxf.pose_layers import CENTRES, LAYERS, NAMES, draw_paths, draw_pose
@@ -96,8 +97,7 @@ def _document(library: Any, shown: ShownMechanism, layers: Sequence[str]) -> Any
 def _content(document: Any) -> bytes:
     text = io.StringIO()
     document.write(text)
-    # ezdxf's own way to write letters that a code page lacks, for all of them: the same bytes in every code page
-    return text.getvalue().encode("ascii", "dxfreplace")
+    return in_ascii(text.getvalue())
 
 
 def _notes(shown: ShownMechanism, parts: Sequence[LinkPart], error: float | None, instead: str) -> Iterator[str]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.files.exchange.dxf.legal_names import sayable
 from compoundkin.files.exchange.dxf.outline_contours import Contour
 from compoundkin.files.exchange.dxf.profile_splines import ProfileSpline
 
@@ -65,8 +66,7 @@ class DxfPen:
 
     def text(self, text: str, place: complex, height: float) -> None:
         """Write a text that begins at a place."""
-        shown = "".join(c if c.isprintable() else " " for c in text)
-        self.layout.add_text(shown, height=height, dxfattribs={**self._own, "insert": self._pair(place)})
+        self.layout.add_text(sayable(text), height=height, dxfattribs={**self._own, "insert": self._pair(place)})
 
     @property
     def _own(self) -> dict[str, str]:

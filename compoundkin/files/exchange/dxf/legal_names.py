@@ -1,4 +1,4 @@
-"""Names of layers and blocks of DXF files, which allow no punctuation of paths and do not tell capitals apart."""
+"""Texts of DXF files; names of layers and blocks, which have no punctuation of paths and no capitals of their own."""
 
 from __future__ import annotations
 
@@ -7,6 +7,22 @@ import re
 # What AutoCAD refuses in names of layers and blocks.
 _REFUSED = re.compile(r"[<>/\\\":;?*|=`,]")
 LONGEST = 200
+# The last letter that DXF can write out.
+LAST = 0xFFFF
+
+
+def in_ascii(text: str) -> bytes:
+    r"""Return a text with other letters written out as DXF has it, so that no code page matters.
+
+    >>> in_ascii("bär")
+    b'b\\U+00E4r'
+    """
+    return "".join(c if c.isascii() else f"\\U+{ord(c):04X}" for c in text).encode("ascii")
+
+
+def sayable(text: str) -> str:
+    """Return a text with `_` for what DXF cannot say: what does not print, letters beyond four digits."""
+    return "".join(c if c.isprintable() and ord(c) <= LAST else "_" for c in text)
 
 
 class LegalNames:
@@ -22,8 +38,7 @@ class LegalNames:
 
     def of(self, wanted: str) -> str:
         """Return a name like the one wanted, that nothing has yet."""
-        printable = "".join(c if c.isprintable() else "_" for c in wanted)
-        name = own = _REFUSED.sub("_", printable).strip()[:LONGEST] or "_"
+        name = own = _REFUSED.sub("_", sayable(wanted)).strip()[:LONGEST] or "_"
         k = 1
         while own.casefold() in self._used:
             k += 1
