@@ -5,8 +5,10 @@ from __future__ import annotations
 from cmath import phase
 from collections.abc import Iterator
 from math import pi, radians
+from typing import NamedTuple
 
-from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway
+from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawn_pairs import AXIS
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import rod
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink
@@ -15,6 +17,8 @@ from compoundkin.model.geometry import FRAME
 # Turns a minute are clockwise there.
 CLOCKWISE = -1.0
 SECONDS = 60.0
+# How far the barrel of an actuator is drawn along it, which moves nothing.
+_BARREL = 0.8
 
 
 def inputs_of(points: ConnectorPoints) -> Iterator[DrawnDriver]:
@@ -54,8 +58,16 @@ def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:
     return "no link turns at it: two anchors hold a link fast" if bodies == (FRAME,) else "holds several links"
 
 
-def actuators_of(points: ConnectorPoints) -> Iterator[tuple[DrawnGuideway, DrawnDriver]]:
-    """Yield the slide in each actuator, and what drives it."""
+class DrawnActuator(NamedTuple):
+    """An actuator in a drawing: its slide, what drives it, and a point that tells the direction of its barrel."""
+
+    guide: DrawnGuideway
+    driver: DrawnDriver
+    mouth: DrawnPoint
+
+
+def actuators_of(points: ConnectorPoints) -> Iterator[DrawnActuator]:
+    """Yield the actuators of a file."""
     joined = points.joined
     for link in joined.links:
         if not link.actuator or len(link.connectors) != 2:
@@ -73,7 +85,7 @@ def actuators_of(points: ConnectorPoints) -> Iterator[tuple[DrawnGuideway, Drawn
 
 def _actuator(
     link: LinkageLink, first: LinkageConnector, second: LinkageConnector, points: ConnectorPoints
-) -> tuple[DrawnGuideway, DrawnDriver]:
+) -> DrawnActuator:
     """Return a slide along the line between two pins, driven from the length drawn to that and the throw."""
     barrel, moving = points.joined.body(link.key), points.joined.body(rod(link))
     angle = phase(second.at - first.at)
@@ -81,4 +93,6 @@ def _actuator(
     sense = -1.0 if link.cpm < 0 else 1.0
     speed = sense * 2.0 * link.throw * abs(link.cpm) / SECONDS if link.cpm else None
     travel = (0.0, sense * link.throw)
-    return guide, DrawnDriver(moving, barrel, link.key, speed, travel, name=link.name, where=link.where)
+    driver = DrawnDriver(moving, barrel, link.key, speed, travel, name=link.name, where=link.where)
+    mouth = first.at + _BARREL * (second.at - first.at)
+    return DrawnActuator(guide, driver, DrawnPoint(f"{link.key} {AXIS}", mouth, (barrel,), f"{link.called} {AXIS}"))

@@ -35,15 +35,15 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
     points = ConnectorPoints(joined)
     sliders, gears = sliders_of(joined), tuple(gears_of(points))
     actuators = list(actuators_of(points))
-    guides = (*guides_of(sliders, points, size), *(guide for guide, _ in actuators))
-    drivers = (*inputs_of(points), *(driver for _, driver in actuators))
+    guides = (*guides_of(sliders, points, size), *(one.guide for one in actuators))
+    drivers = (*inputs_of(points), *(one.driver for one in actuators))
     hints = hint(list(unjoined(joined, size)))
     _find_floating(joined, sliders, guides, gears, hints)
     problems.raise_if_any()
     drawing = Drawing(
         content.name or "Linkage",
         tuple(joined.drawn),
-        tuple(points.drawn),
+        (*points.drawn, *(one.mouth for one in actuators)),
         guides,
         tuple(arcs_of(sliders, points)),
         gears,
