@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -204,3 +205,14 @@ def test_numbers_are_written_without_exponents(value: float) -> None:
     assert float(plain(value)) == value
     assert re.fullmatch(r"-?\d+(\.\d+)?", plain(value))
     assert abs(float(place(value)) - value) <= 1e-12 + 1e-15 * abs(value)
+
+
+def test_the_page_on_linkage_prints_what_it_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (Path(__file__).parents[3] / "docs" / "exchange" / "linkage.md").read_text("utf-8")
+    exec("\n".join(re.findall(r"```python\n(.*?)```", page, re.DOTALL)), {})
+    printed = capsys.readouterr().out
+    shown = [text for text in re.findall(r"```text\n(.*?)```", page, re.DOTALL) if "problems" not in text]
+    assert printed == "".join(shown)
