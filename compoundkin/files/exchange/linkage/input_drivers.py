@@ -59,7 +59,7 @@ def _why(one: LinkageConnector, bodies: tuple[str, ...]) -> str:
 
 
 class DrawnActuator(NamedTuple):
-    """An actuator in a drawing: its slide, what drives it, and a point that tells the direction of its barrel."""
+    """An actuator in a drawing. `mouth` is a point that tells the direction of its barrel."""
 
     guide: DrawnGuideway
     driver: DrawnDriver

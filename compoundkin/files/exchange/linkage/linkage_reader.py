@@ -26,11 +26,8 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
     The hint names connectors that may be meant to be joined. Raises InvalidInput with all that is wrong.
     """
     problems = Problems(content.where)
-    file = linkage_file(xml_tree(content.text, content.where), problems)
-    if len(file.connectors) + len(file.links) > MOST:
-        problems.add("", f"it has more than {MOST} connectors and links", "look whether it is the right file")
-        problems.raise_if_any()
-    joined = JoinedLinks(file, problems)
+    joined = _joined(content, problems)
+    file = joined.file
     size = _size([one.at for one in file.connectors.values()])
     points = ConnectorPoints(joined)
     sliders, gears = sliders_of(joined), tuple(gears_of(points))
@@ -55,6 +52,15 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
         dropped=tuple(file.dropped.items()),
     )
     return drawing, hints
+
+
+def _joined(content: Content, problems: Problems) -> JoinedLinks:
+    """Return the links in a file. Raises InvalidInput where they are more than can be looked at."""
+    file = linkage_file(xml_tree(content.text, content.where), problems)
+    if len(file.connectors) + len(file.links) > MOST:
+        problems.add("", f"it has more than {MOST} connectors and links", "look whether it is the right file")
+        problems.raise_if_any()
+    return JoinedLinks(file, problems)
 
 
 def _few(notes: list[str]) -> list[str]:

@@ -78,7 +78,7 @@ def _own_ends(
 
 
 def write_arc(plan: LinkagePlan, arc: DrawnArc) -> None:
-    """Write a circular slot, or a bar where it is more than half a turn."""
+    """Write a circular slot. One of more than half a turn becomes a bar."""
     made = plan.of(arc.at, arc.link)
     places = plan.places(arc.link, arc.on, made.at) - arc.centre
     middle = phase(np.mean(places) or 1.0)
