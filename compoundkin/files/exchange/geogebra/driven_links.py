@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
 from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd, PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import InsideBody
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, named
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, in_degrees, named
 from compoundkin.structure.parts import Body, DrivenPair
 
 # From one side of a pair to the other by a value: offset and angle of the second link in the axes of the first.
@@ -38,13 +38,27 @@ def rolled(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign
     return InsideBody(middle.minus(other.way.turned(angle)), angle)
 
 
+def rolled_around(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
+    """Return a wheel rolled around a circle, by the direction between their middles."""
+    slow, inside = other.measure, other.measure < 0
+    radius = build.dimension("r", pair, abs(own.reach / slow), "radius of the wheel")
+    circle = build.dimension("R", pair, own.reach + (-1 if not inside else 1) * abs(own.reach / slow), "of the circle")
+    phase = build.dimension("p", pair, in_degrees(own.measure), "angle of the wheel at direction zero, degrees")
+    sign_of = "-" if inside else "+"
+    distance = build.helper("d", pair, f"{circle} {sign_of} {radius}")
+    angle = named(build.helper("θ", pair, f"(1 {sign_of} {circle} / {radius}) * {value} + {phase}"))
+    build.sizes[pair] = (radius,)
+    middle = own.way.plus(along(distance, named(value)))
+    return InsideBody(middle.minus(other.way.turned(angle)), angle)
+
+
 # By the kind's table in a mechanism file; pins are in none.
-STEPS: Mapping[str, Step] = {"": turned, "slides": shifted, "rollings": rolled}
+STEPS: Mapping[str, Step] = {"": turned, "slides": shifted, "rollings": rolled, "circular_rollings": rolled_around}
 
 
 def is_constructed(driven: DrivenPair) -> bool:
     """Return whether a driven pair can be constructed."""
-    if driven.pair.table == "rollings":
+    if driven.pair.table in ("rollings", "circular_rollings"):
         return driven.link == driven.pair.members[1] and driven.pair.driven_by(driven.drive.link) > 0
     return driven.pair.table in STEPS and len(driven.pair.members) == 2
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
 from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd, PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import Held, PlacedBodies
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, along, at, named
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, along, at, in_degrees, named
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import Side
 from compoundkin.model.pairs import Pair
@@ -73,14 +73,19 @@ def _turned(of: Mounted) -> Held:
     return Held(of.spot(), of.own.way, angle)
 
 
+def gear_numbers(build: Construction, sides: PairSides, gear: Pair) -> tuple[list[str], str]:
+    """Add the sizes and the phase of a gear pair; return their names."""
+    ends = [sides.of(gear, k) for k in range(3)]
+    sizes = [build.dimension("z", name, abs(end.measure)) for name, end in zip(gear.members[:2], ends[:2], strict=True)]
+    build.sizes[gear.name] = tuple(sizes)
+    phase = build.dimension("φ", gear.name, in_degrees(ends[2].measure), "where the first is at zero, degrees")
+    return sizes, phase
+
+
 def _willis(of: Mounted) -> str:
     """Return the angle of a wheel or a carrier, by Willis's equation."""
-    ends = [of.sides.of(of.higher, k) for k in range(3)]
-    sizes = [
-        of.build.dimension("z", name, abs(end.measure)) for name, end in zip(of.higher.members, ends[:2], strict=False)
-    ]
-    of.build.sizes[of.higher.name] = tuple(sizes)
-    phase = of.build.dimension("φ", of.higher.name, _degrees(ends[2].measure), "where the first is at zero, degrees")
+    sizes, phase = gear_numbers(of.build, of.sides, of.higher)
+    ends = [of.sides.of(of.higher, k) for k in range(2)]
     alike = ends[0].measure * ends[1].measure < 0
     sign, opposite = ("-", "+") if alike else ("+", "-")
     ratio = f"{sizes[0]} / {sizes[1]}"
@@ -141,10 +146,3 @@ def _rack_numbers(of: Mounted, line: NamedEnd, wheel: NamedEnd) -> tuple[str, st
     radius = of.build.dimension("r", of.higher.name, wheel.measure, "pitch radius, negative to the right of the rack")
     of.build.sizes[of.higher.name] = (radius,)
     return radius, of.build.dimension("p", of.higher.name, line.measure, "displacement where the pinion is at zero")
-
-
-def _degrees(radians: float) -> float:
-    from math import degrees
-
-    near = round(degrees(radians), 9)
-    return near if abs(degrees(radians) - near) < 1e-11 * max(1.0, abs(near)) else degrees(radians)

@@ -14,10 +14,11 @@ from compoundkin.files.exchange.geogebra.dragged_construction import Constructio
 from compoundkin.files.exchange.geogebra.drawn_shapes import add_shapes
 from compoundkin.files.exchange.geogebra.dyad_constructions import CONSTRUCTIONS
 from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
+from compoundkin.files.exchange.geogebra.geared_trains import add_train, is_train
 from compoundkin.files.exchange.geogebra.pair_sides import PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import InsideBody, PlacedBodies
 from compoundkin.files.exchange.geogebra.point_dimensions import link_points
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, in_degrees
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.groups import GroupSolver, as_dyad
@@ -60,17 +61,12 @@ def _slider(build: Construction, motion: Motion, name: str, at: float | None) ->
     values, is_angle = np.ravel(motion.drives[name].value), motion.structure.driven_angles[name]
     value = float(values[0] if at is None else at)
     if is_angle:
-        values, value = np.round(np.rad2deg(values), 9), _plain(np.rad2deg(value))
+        values, value = np.round(np.rad2deg(values), 9), in_degrees(value)
     stem, caption = ("φ", f"{name}, degrees") if is_angle else ("s", name)
     low, high = float(values.min()), float(values.max())
     if low == high:
         return build.dimension(stem, name, low, caption)
     return build.slide(stem, name, SliderRange(min(max(value, low), high), low, high, steps_of(values)), caption)
-
-
-def _plain(value: float) -> float:
-    near = round(float(value), 9)
-    return near if abs(near - value) < 1e-10 * max(1.0, abs(value)) else float(value)
 
 
 def _problems(motion: Motion, chosen: ChosenSides) -> Iterator[Problem]:
@@ -86,7 +82,7 @@ def _problems(motion: Motion, chosen: ChosenSides) -> Iterator[Problem]:
             if not chosen.is_told(solver.index):
                 what = "it passes to its other mode, and several drivers say when"
                 yield Problem(_called(solver), what, _TABLE)
-        elif not geared_constructions.is_constructed(solver):
+        elif not geared_constructions.is_constructed(solver) and not is_train(solver):
             yield Problem(_called(solver), _why_not(solver), _TABLE)
         else:
             for link in sorted({name for pair in solver.group.outer for name in pair.members} & free):
@@ -128,8 +124,10 @@ def _constructed(
 def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chosen: ChosenSides) -> None:
     dyad = as_dyad(solver)
     if dyad is None:
-        geared_constructions.add_mounted(placed, sides, solver, lambda link: chosen.counted(link, placed.angle(link)))
-        chosen.note_counted(placed.angle(solver.group.links[0]))
+        add = add_train if is_train(solver) else geared_constructions.add_mounted
+        add(placed, sides, solver, lambda link: chosen.counted(link, placed.angle(link)))
+        for link in solver.group.links:
+            chosen.note_counted(placed.angle(link))
         return
     for body in dyad.bodies:
         if body not in solver.group.bodies:

@@ -43,7 +43,7 @@ class ObjectNames:
 
     def number(self, stem: str, index: str) -> str:
         """Return the name of a number or of another object."""
-        return self._unused(stem, index)
+        return self._unused(stem, _FOREIGN.sub("-", index).strip("-") or "1")
 
     def _unused(self, stem: str, index: str) -> str:
         name, k = indexed(stem, index), 2

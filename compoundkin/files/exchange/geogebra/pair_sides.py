@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import atan2, degrees
+from math import atan2
 from typing import NamedTuple
-
-import numpy as np
 
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.series import Number, Series
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
 from compoundkin.files.exchange.geogebra.point_dimensions import LinkPoints, dimensioned
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, named
+from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, in_degrees, named
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 
@@ -27,6 +25,7 @@ class NamedEnd(NamedTuple):
     angle: Angle
     letter: str
     measure: float
+    reach: float  # how long its direction is written: 1, or a distance
 
 
 class PairSides:
@@ -62,7 +61,7 @@ class PairSides:
         measure = 0.0 if end.measure is None else float(_number(end.measure))
         angle = Angle() if turned is None else self._angle(pair, link, points, turned)
         way = points.ways[letter] if letter else self._beside(pair, points, place, turned, angle)
-        return NamedEnd(way, angle, letter, measure)
+        return NamedEnd(way, angle, letter, measure, 1.0 if turned is None else abs(turned))
 
     def _letter(self, points: LinkPoints, letters: Sequence[str], place: complex) -> str:
         """Return the point of a link that is at a place, one of the pair's own first."""
@@ -90,9 +89,7 @@ class PairSides:
             line = points.places[toward] - points.places[through]
             if abs(line / abs(line) - turned) <= _SAME and points.ways[toward].minus(points.ways[through]).terms:
                 return direction(self._build, points.ways[toward].minus(points.ways[through]), pair.name)
-        found = degrees(atan2(turned.imag, turned.real))
-        near = float(np.round(found, 10))
-        found = near if abs(found - near) <= 1e-13 * 360 else found
+        found = in_degrees(atan2(turned.imag, turned.real))
         if found == 0.0:
             return Angle()
         return named(self._build.dimension("β", pair.name, found, f"direction of {pair.name} on {link}, degrees"))

@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+# So many units of its last digit an angle may be off once it has been a direction, or the last digit of a turn.
+_ULPS = 4.0
+_TURN = 360.0
+
 
 def number(value: float) -> str:
     """Return a number as GeoGebra reads it, to the last digit.
@@ -14,6 +20,18 @@ def number(value: float) -> str:
     if float(value).is_integer() and abs(value) < 1e15:
         return str(int(value))
     return repr(float(value)).replace("e", "E")
+
+
+def in_degrees(radians: float) -> float:
+    """Return degrees, of those that differ by rounding the ones with fewest decimals.
+
+    >>> in_degrees(0.6108652381980153), in_degrees(1e-17)
+    (35.0, 0.0)
+    """
+    exact = float(np.rad2deg(radians))
+    near = (round(exact, digits) for digits in range(14))
+    off = max(_ULPS * float(np.spacing(abs(exact))), float(np.spacing(_TURN)))
+    return next((value for value in near if abs(value - exact) <= off), exact)
 
 
 @dataclass(frozen=True)
