@@ -188,6 +188,13 @@ def test_a_link_with_two_parallel_slots_slides() -> None:
     assert pair.table == "slides"
     held(read(written.text).mechanism, pl.mechanism_from_dict(json.loads(written.text)), 3)
     assert not any("no link is needed" in note for note in written.notes)
+    data["joints"][-1]["line_point"] = [0, 1.25]
+    found = read(json.dumps(data))
+    assert {pair.table for pair in found.mechanism.written_pairs} == {"slots"}
+    assert "drawn beside the lines on which pylinkage puts them: P (0.25)" in found.notes
+    motion = ck.solve(found.mechanism, np.arange(3) * 0.5235987755982988)
+    rows = list(pl.mechanism_from_dict(data).step(2))
+    assert [complex(*row[-1]) for row in rows] == pytest.approx(motion.points["P"].position[1:])
 
 
 def test_an_arc_is_a_range_from_the_drawn_pose_and_a_turn_is_told_where_it_starts() -> None:

@@ -114,6 +114,9 @@ class _Elements:
     def guides(self) -> Iterator[DrawnGuideway]:
         """Yield the slots of the frame; a link with two of one direction slides."""
         left = {key: one for key, one in self.file.joints.items() if one.kind == "prismatic" and self.at[key]}
+        off = [f"{joint.name} ({gap:.4g})" for joint in left.values() if (gap := self._off(joint))]
+        if off:
+            self.notes.append(f"drawn beside the lines on which pylinkage puts them: {', '.join(off)}")
         for joint in [joint for joint in left.values() if FRAME in self.at[joint.key]]:
             self.notes.append(f"{joint.name} is a joint of the ground, which makes it a pin")
             del left[joint.key]
@@ -130,8 +133,15 @@ class _Elements:
         yield from (self._guide(joint, "slot", self.at[key][0]) for key, joint in left.items())
 
     def _slide(self, one: PylinkageJoint, two: PylinkageJoint) -> bool:
+        """Return whether two joints of a link are on parallel lines, so that it cannot turn."""
         across = (one.axis.conjugate() * two.axis).imag / abs(one.axis) / abs(two.axis)
-        return abs(across) <= _ROUNDING and self.places.of[one.key] != self.places.of[two.key]
+        apart = self.bodies.apart([one.key, two.key])
+        return apart and abs(across) <= _ROUNDING and not self._off(one) and not self._off(two)
+
+    def _off(self, joint: PylinkageJoint) -> float:
+        """Return how far from its line a joint is drawn, nothing where that is rounding."""
+        gap = ((self.places.of[joint.key] - joint.through) * joint.axis.conjugate()).imag / abs(joint.axis)
+        return abs(gap) if abs(gap) > self.bodies.near else 0.0
 
     def _guide(self, joint: PylinkageJoint, kind: str, link: str) -> DrawnGuideway:
         angle = cmath.phase(joint.axis)
@@ -169,8 +179,9 @@ class _Elements:
         if link.arc is None:
             return DrawnDriver(body, FRAME, link.motor, link.speed, where=link.where)
         low, high = (end - shown for end in link.arc)
-        # it goes to the end of its arc first, and turns round at once where it is drawn there
-        speed = -abs(link.speed) if high <= _ROUNDING else abs(link.speed)
+        # where it is drawn at an end, it turns round at once
+        at_end = high <= _ROUNDING if link.speed > 0.0 else low >= -_ROUNDING
+        speed = -link.speed if at_end else link.speed
         return DrawnDriver(body, FRAME, link.motor, speed, (low, high), where=link.where)
 
 

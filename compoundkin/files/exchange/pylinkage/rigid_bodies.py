@@ -22,7 +22,7 @@ class RigidBodies:
     def __init__(self, links: Mapping[str, PylinkageLink], fixed: Mapping[str, None], places: Mapping[str, complex]):
         self._places = places
         centre = sum(places.values()) / max(len(places), 1)
-        self._near = _ROUNDING * max((abs(place - centre) for place in places.values()), default=0.0)
+        self.near = _ROUNDING * max((abs(place - centre) for place in places.values()), default=0.0)
         self.joints: dict[str, dict[str, None]] = {FRAME: dict(fixed)}
         self.parts: dict[str, list[PylinkageLink]] = {FRAME: []}
         for link in links.values():
@@ -54,7 +54,7 @@ class RigidBodies:
         for joint, bodies in self._bodies_at().items():
             for pair in combinations(bodies, 2):
                 shared.setdefault(pair, []).append(joint)
-        return self._join_all([pair for pair, joints in shared.items() if len(joints) > 1 and self._apart(joints)])
+        return self._join_all([pair for pair, joints in shared.items() if len(joints) > 1 and self.apart(joints)])
 
     def _by_bars(self) -> bool:
         """Join two bars that meet with the link that their other ends are on, and return whether there are any.
@@ -70,7 +70,7 @@ class RigidBodies:
                 for third in at[end]:
                     if third not in (bar, FRAME):
                         on.setdefault(third, []).append((bar, end))
-            pairs = [(third, bar) for third, bars in on.items() if self._apart([e for _, e in bars]) for bar, _ in bars]
+            pairs = [(third, bar) for third, bars in on.items() if self.apart([e for _, e in bars]) for bar, _ in bars]
             if self._join_all(pairs):
                 return True
         return False
@@ -93,9 +93,9 @@ class RigidBodies:
                 found.setdefault(joint, []).append(body)
         return found
 
-    def _apart(self, joints: list[str]) -> bool:
+    def apart(self, joints: list[str]) -> bool:
         """Return whether joints are at several places."""
-        return any(abs(self._places[joint] - self._places[joints[0]]) > self._near for joint in joints)
+        return any(abs(self._places[joint] - self._places[joints[0]]) > self.near for joint in joints)
 
     def _drives(self, body: str) -> bool:
         return any(part.is_driver for part in self.parts[body])
