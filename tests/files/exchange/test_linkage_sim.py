@@ -146,7 +146,7 @@ def test_fixed_joints_make_one_link_and_masses_are_added() -> None:
         "point_masses": [{"mass": 3.0, "local_pos": [2.0, 2.0]}],
     }
     written.bodies["half"] |= half
-    data = written.data | {"forces": [{"type": "Gravity", "g_vector": [0, -9.81]}, {"type": "LinearSpring"}]}
+    data = written.data | {"forces": [{"type": "Gravity", "g_vector": [0, -9.81]}, {"type": "GasSpring"}]}
     found = read(data)
     assert set(found.mechanism.links) - {"half"} == set(shown.mechanism.links)
     same_motion(shown, found.mechanism)
@@ -164,10 +164,43 @@ def test_fixed_joints_make_one_link_and_masses_are_added() -> None:
     assert (item.mass, at) == (pytest.approx(6.0), pytest.approx(centre))
     assert item.inertia == pytest.approx(sum(own + m * abs(z - centre) ** 2 for m, z, own in parts))
     assert found.mechanism.gravity == -9.81j
-    assert found.notes[-1] == "left out: 1 LinearSpring"
+    assert found.notes[0] == "left out: 1 GasSpring"
     data["joints"]["weld 2"] = data["joints"]["weld"] | {"delta_theta_0": 1.0}
     with pytest.raises(InvalidInput, match=r"joint weld 2: it fixes .* where another fixed joint does not"):
         read(data)
+
+
+def test_springs_dampers_and_forces_do_the_work_that_their_formulas_say() -> None:
+    data = json.loads(SAMPLE["text"])
+    ends = {"body_a": "coupler", "point_a": [0.04, 0.02], "body_b": "ground", "point_b": [9, 9], "point_b_name": "O4"}
+    turned = {"body_i": "rocker", "body_j": "coupler"}
+    data["forces"] = [
+        {"type": "LinearSpring", **ends, "stiffness": 700.0, "free_length": 0.03},
+        {"type": "TorsionSpring", **turned, "stiffness": 0.3, "free_angle": -0.4},
+        {"type": "LinearDamper", **ends, "damping": 11.0},
+        {"type": "RotaryDamper", **turned, "damping": 0.02},
+        {"type": "ExternalForce", "body_id": "coupler", "local_point": [0.01, -0.02], "force": [3.0, -5.0]},
+        {"type": "ExternalTorque", "body_id": "rocker", "torque": 0.7, "modulation": {"modulation_type": "Constant"}},
+        {"type": "ExternalTorque", "body_id": "rocker", "torque": 9.0, "modulation": {"modulation_type": "Step"}},
+    ]
+    found = read(data)
+    assert found.notes[0] == "left out: 1 ExternalTorque"
+    motion = ck.solve(found.mechanism, {"D1": [1.1]}, speed=2.0)
+    forces = ck.force_analysis(motion, inertia=False)
+    coupler, rocker = motion.links["coupler"], motion.links["rocker"]
+
+    def at(place: complex) -> tuple[complex, complex]:
+        arm = place * np.exp(1j * coupler.angle)
+        start = motion.points["B"]
+        return start.position + arm, start.velocity + 1j * coupler.angular_velocity * arm
+
+    (end, speed), (_, moved) = at(0.04 + 0.02j), at(0.01 - 0.02j)
+    way, turn = end - 0.05, rocker.angular_velocity - coupler.angular_velocity
+    rate = (speed * way.conjugate()).real / abs(way)
+    between = np.angle(np.exp(1j * (coupler.angle - rocker.angle + 0.4)))
+    power = -700.0 * (abs(way) - 0.03) * rate - 11.0 * rate**2 - 0.02 * turn**2 + 0.7 * rocker.angular_velocity
+    power += 0.3 * between * turn + 3.0 * moved.real - 5.0 * moved.imag
+    assert forces.drives["D1"].effort * 2.0 == pytest.approx(-power, rel=1e-9)
 
 
 def test_a_linear_driver_is_a_cylinder() -> None:

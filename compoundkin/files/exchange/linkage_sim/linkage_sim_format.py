@@ -38,8 +38,9 @@ class LinkageSimFormat(Readable):
         except InvalidMechanism as error:
             heading = f"{content.where or title}: it cannot be a mechanism"
             raise InvalidInput(error.problems, heading=heading) from None
-        left = ", ".join(counted(many, what) for what, many in file.left_out if many)
-        return Imported(mechanism, self.name, (*notes, *([f"left out: {left}"] if left else [])))
+        if file.load_cases:
+            notes.append(f"left out: {counted(file.load_cases, 'load case')}")
+        return Imported(mechanism, self.name, tuple(notes))
 
 
 FORMAT = LinkageSimFormat()

@@ -8,15 +8,15 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from compoundkin.base.display import counted
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.files.exchange.linkage_sim.fixed_bodies import ROUNDING, Placed, fixed_bodies, size_of
+from compoundkin.files.exchange.linkage_sim.sim_loads import SimLoads
 from compoundkin.files.exchange.linkage_sim.sim_points import SimPoints
 from compoundkin.files.exchange.linkage_sim.sim_records import GROUND, SimDriver, SimFile
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive, Item, drawn, drive, link
-from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads import gravity, mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from compoundkin.model.pairs.cylinder import cylinder
@@ -36,7 +36,14 @@ def sim_mechanism(file: SimFile, problems: Problems, title: str) -> tuple[Mechan
     items: list[Item] = [*_slides(file, placed, points, problems)]
     items += _drivers(file, placed, points, problems, notes)
     problems.raise_if_any()
-    items += _masses(file, placed, points)
+    loads = SimLoads(file, placed, points)
+    problems.raise_if_any()
+    items += loads.items
+    notes += (
+        [f"left out: {', '.join(counted(many, what) for what, many in loads.left_out.items())}"]
+        if loads.left_out
+        else []
+    )
     items = [*(link(points.link[h], **own) for h, own in points.of.items()), *items]
     as_drawn = _drawn(file, points)
     if as_drawn:
@@ -113,25 +120,6 @@ def _cylinder(one: SimDriver, points: SimPoints, size: float, notes: list[str]) 
     yield cylinder(points.named(one.bodies[0]), ends[0], to=points.named(one.bodies[1]), at=ends[1], name=name)
     yield drive(name, values=one.start + np.linspace(0.0, way, _STEPS + 1), speed=one.rate)
     notes.append(f"{name} is driven from its length of {one.start:.6g} over {way:.4g}, for no way is told")
-
-
-def _masses(file: SimFile, placed: Mapping[str, Placed], points: SimPoints) -> Iterator[Item]:
-    """Yield the masses of links; those of bodies that are one link together are added."""
-    for host, name in points.link.items():
-        parts = [
-            (weight, placed[key].at(centre), inertia)
-            for key, body in file.bodies.items()
-            for weight, centre, inertia in body.masses
-            if placed[key].host == host
-        ]
-        whole = sum(weight for weight, _, _ in parts)
-        if name == FRAME or not whole:
-            continue
-        centre = sum(weight * place for weight, place, _ in parts) / whole
-        inertia = sum(own + weight * abs(place - centre) ** 2 for weight, place, own in parts)
-        yield mass(name, whole, at=centre, inertia=inertia)
-    if file.gravity:
-        yield gravity(file.gravity.real, file.gravity.imag)
 
 
 def _drawn(file: SimFile, points: SimPoints) -> dict[str, complex]:

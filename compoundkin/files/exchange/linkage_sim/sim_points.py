@@ -35,6 +35,12 @@ class SimPoints:
         """Return the name of the link that a body is in."""
         return self.link[self._placed[key].host]
 
+    def pin(self, first: str, second: str) -> str | None:
+        """Return the letter of a pin of two links alone, or nothing."""
+        shared = [letter for letter in self.of[first] if letter in self.of[second]]
+        alone = [letter for letter in shared if sum(letter in own for own in self.of.values()) == 2]
+        return alone[0] if len(shared) == 1 and alone else None
+
     def added(self, body: str, place: complex, name: str) -> str:
         """Return the letter of a place of a body, perhaps a new one."""
         placed = self._placed[body]

@@ -62,13 +62,14 @@ class SimDriver:
 
 @dataclass(frozen=True)
 class SimFile:
-    """A whole file. `gravity` is in m/s^2; what is left out is counted by what it is."""
+    """A whole file. `is_mounted` where gravity is meant in axes that are turned."""
 
     bodies: Mapping[str, SimBody]
     joints: tuple[SimJoint, ...]
     drivers: tuple[SimDriver, ...]
-    gravity: complex
-    left_out: tuple[tuple[str, int], ...]
+    forces: tuple[JsonRecord, ...]
+    is_mounted: bool
+    load_cases: int
     markers: int
 
 
@@ -87,13 +88,13 @@ def sim_file(data: Any, problems: Problems) -> SimFile:
         problems.add("", f"there are no {'joints' if bodies else 'bodies'}")
     markers = [one for one in joints if one.given.get("type") == "revolute_driver"]
     linear = (_linear(one, problems) for one in record.records("linear_drivers", "linear driver"))
-    gravity, forces = _forces(record)
     found = SimFile(
         {key: _body(key, one) for key, one in bodies.items()},
         tuple(_joint(one) for one in joints if one not in markers),
         (*(_driver(one) for one in record.records("drivers", "driver")), *linear),
-        gravity,
-        (*forces, ("load case", len(list(record.records("load_cases", "load case"))))),
+        tuple(record.records("forces", "force")),
+        bool(record.number("mounting_angle", 0.0)),
+        len(list(record.records("load_cases", "load case"))),
         len(markers),
     )
     _check_names(found, problems)
@@ -151,19 +152,6 @@ def _linear(record: JsonRecord, problems: Problems) -> SimDriver:
         (record.vector("point_a"), record.vector("point_b")),
     )
     return SimDriver(record.text("id"), bodies, length, record.number(_RATE, 0.0), record.where, places)
-
-
-def _forces(record: JsonRecord) -> tuple[complex, tuple[tuple[str, int], ...]]:
-    """Return gravity, and how many other forces of each kind there are. They have no names."""
-    gravity, others = 0j, dict[str, int]()
-    turned = record.number("mounting_angle", 0.0)
-    for one in record.records("forces", "force"):
-        kind = one.text("type", "force")
-        if kind == "Gravity" and not turned:
-            gravity += one.vector("g_vector")
-        else:
-            others[kind] = others.get(kind, 0) + 1
-    return gravity, tuple(others.items())
 
 
 def _check_names(file: SimFile, problems: Problems) -> None:
