@@ -48,10 +48,10 @@ class ShareJoints:
         self._free = (id_ for id_ in _ids() if id_ not in self._names)
         self.members = {link.key: [] for link in self.drawing.links if link.key != FRAME}
         guides = self.drawing.guides
-        self._in_slots = {guide.at for guide in guides if guide.kind == "slot"}
+        self._slotted = {guide.at for guide in guides if guide.kind == "slot"}
         self._uses = Counter([*(g.link for g in guides if g.kind == "slide"), *(g.on for g in guides)])
         for point in self.drawing.points:
-            if set(point.links) != {FRAME} or point.key in self._in_slots:
+            if set(point.links) != {FRAME} or point.key in self._slotted:
                 name = plain_name(point.called)
                 id_ = self.add(point.at * self.scale.factor, point.links, name, point.key in self.drawing.outputs)
                 self.of_point[point.key] = id_
@@ -86,7 +86,7 @@ class ShareJoints:
         if guide.kind == "slide" and body == FRAME:
             body, on = on, body
             self.turned.add(guide.key)
-        pin = self.of_point[guide.at] if guide.kind == "slot" else self._welded(guide, body)
+        pin = self._in_slot(guide) if guide.kind == "slot" else self._welded(guide, body)
         slider = self._slider(guide, pin, on, angle)
         self.of_guide[guide.key] = slider
         is_link = guide.kind == "slide" and not self.joints[pin].is_welded
@@ -97,14 +97,23 @@ class ShareJoints:
         own = self.members[body]
         loaded = body in {force.link for force in self.drawing.forces}
         at = self.of_point.get(guide.at)
-        if own == [at] and self._uses[body] == 1 and not loaded and not self.joints[own[0]].is_grounded:
+        plain = self._uses[body] == 1 and guide.at not in self._slotted and not loaded
+        if own == [at] and plain and not (self.joints[own[0]].is_grounded or self._has_block(own[0])):
             return own[0]
         taken = {id_ for link, ids in self.members.items() if link != body for id_ in ids}
-        taken |= {self.of_point[key] for key in self._in_slots}
+        taken |= {self.of_point[key] for key in self._slotted}
         free = [k for k in own if k not in taken and not (self.joints[k].is_grounded or self.joints[k].is_welded)]
         pin = at if at in free else next(iter(free), None) or self.add(self._beside(guide), (body,))
         self.change(pin, is_welded=True)
         return pin
+
+    def _in_slot(self, guide: DrawnGuideway) -> str:
+        """Return the pin of a slot's block. A pin has one block: for a second, its link is given a pin there."""
+        pin = self.of_point[guide.at]
+        return self.add(self.joints[pin].at, (guide.link,)) if self._has_block(pin) else pin
+
+    def _has_block(self, pin: str) -> bool:
+        return any(pin == other for _, other, _ in self.blocks)
 
     def _beside(self, guide: DrawnGuideway) -> complex:
         at = self.joints[self.of_point[guide.at]].at if guide.at in self.of_point else guide.through * self.scale.factor

@@ -15,8 +15,8 @@ ADDRESS = "https://app.pmksplus.com/?"
 _BEGINNING = re.compile(r"[0-9A-Za-z_-]{1,2}\.[0-9A-Za-z_,-]+\.[0-9A-Za-z_,-]+\.[0-9A-Za-z_-]{1,6}\.")
 _LINK = re.compile(r"https?://[^?#\s]*\?(?P<query>[^#\s]*)")
 _HASH = re.compile(r"\*(?P<hash>[0-9A-Za-z]{1,6})$")
-# Of what browsers leave as it is in a query, what we leave: nothing that a chat or a mail cuts a link at.
-_PLAIN = ",.-_~*"
+# What is left as it is: of the signs that have a meaning in links the app decodes none.
+_PLAIN = ",.-_~*;/?:@&=+$!'()"
 _AGAIN = "copy the link again, whole, from its first character to its last"
 
 
@@ -64,9 +64,8 @@ def _query(text: str) -> str:
 
 
 def _checked(text: str, where: str) -> str:
-    """Return a share string without its check character. Names in links may be written with percent signs."""
-    for plain in (text, unquote(text)):
-        whole = plain
+    """Return a share string without its check character. Links have names written with percent signs, files as is."""
+    for whole in dict.fromkeys((unquote(text), text)):
         hashed = _HASH.search(whole)
         if hashed:
             whole = whole[: hashed.start()]

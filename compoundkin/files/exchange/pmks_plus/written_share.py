@@ -92,7 +92,11 @@ def _rounding(joints: tuple[SharedJoint, ...], size: float) -> Iterator[str]:
 
 
 def _kept(drawing: Drawing) -> Iterator[str]:
-    """Yield what there is no word for."""
+    """Yield what there is no word for, and names that are written otherwise."""
+    names = [one.called for one in (*drawing.links, *drawing.points)]
+    changed = [f"{name!r} is {plain_name(name)!r}" for name in names if plain_name(name) != name]
+    if changed:
+        yield f"links hold no # and ~ in names: {', '.join(changed[:8])}"
     ranges = sum(one.travel is not None for one in drawing.drivers)
     if ranges:
         yield f"the range of {counted(ranges, 'driver')} is not told: the program drives as far as it goes"
