@@ -63,6 +63,12 @@ def test_samples_have_their_structure() -> None:
     )
     assert list(found["linkage_scotch_yoke"].links) == ["frame", "link 0", "link 1"]
     assert [pair.table for pair in found["linkage_scotch_yoke"].written_pairs] == ["slots", "slides"]
+    (round_slot,) = found["linkage_arc_slot"].written_pairs
+    told = expected["linkage_arc_slot"]["arc"]
+    centre = complex(found["linkage_arc_slot"].sketch[round_slot.centre_at])  # type: ignore[attr-defined]
+    assert centre == pytest.approx(complex(*told["centre"]), abs=1e-6)
+    assert round_slot.radius == pytest.approx(told["radius"], abs=1e-6)  # type: ignore[attr-defined]
+    assert ck.decompose(found["linkage_scotch_yoke"]).mobility.freedoms == expected["linkage_scotch_yoke"]["mobility"]
     assert list(found["linkage_gears"].links) == ["frame", "link 0+1", "link 2+3"]
     assert found["linkage_gears"].written_pairs[0].teeth == (20, 40)  # type: ignore[attr-defined]
     (ram,) = found["linkage_actuator"].drives
@@ -195,9 +201,25 @@ def test_oscillating_and_manual_inputs() -> None:
     np.testing.assert_allclose(np.asarray(driver.values)[[0, -1]], [drawn, drawn - np.radians(40)], atol=1e-12)
     (note,) = read(*swing).notes
     assert note == "connector 0 oscillates over 40 degrees: that is its range here, at constant speed"
-    (manual,) = read(FOUR_BAR[0].replace(">", ' alwaysmanual="true">', 1), *FOUR_BAR[1:]).mechanism.drives
+    found = read(FOUR_BAR[0].replace(">", ' alwaysmanual="true">', 1), *FOUR_BAR[1:])
+    (manual,) = found.mechanism.drives
+    assert found.notes == ("connector 0 has no speed of its own there: it turns at 1 rad/s here",)
     plain = ck.drive("link 0")
     assert (manual.values, manual.speed, manual.name) == (None, plain.speed, plain.name)
+
+
+def test_a_slider_of_a_fixed_pin_is_that_pin() -> None:
+    fixed = connector(9, 20, 0, 'anchor="true" slider="true"', limits(0, 3))
+    found = read(*FOUR_BAR, fixed, link(9, 9), link(8, 2, more='gear="true"'))
+    assert list(found.mechanism.links) == ["frame", "link 0", "link 1", "link 2"]
+    assert found.notes == ("left out, for it does not move anything: 1 slider of a fixed pin",)
+
+
+def test_names_of_old_files_are_read() -> None:
+    text = f"<linkage2>{''.join(FOUR_BAR)}</linkage2>".replace('id="1" ><', 'id="1" name="Schwinge f\xfcr B"><')
+    found = FORMAT.read(Content(text.encode("cp1252")))
+    assert "Schwinge f\xfcr B" in found.mechanism.links
+    assert found.notes == ("it is not UTF-8: its names are read as Windows-1252",)
 
 
 def test_an_actuator_that_shortens_first() -> None:

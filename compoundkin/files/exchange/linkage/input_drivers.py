@@ -46,8 +46,8 @@ def _input(one: LinkageConnector, at: str, link: str, on: str) -> DrawnDriver:
 
 def _told(one: LinkageConnector) -> Iterator[str]:
     """Yield what of an input is taken in another way."""
-    if one.manual:
-        yield f"{one.called} is moved by hand there: it turns at 1 rad/s here"
+    if one.manual or not one.rpm:
+        yield f"{one.called} has no speed of its own there: it turns at 1 rad/s here"
     if one.range:
         yield f"{one.called} oscillates over {abs(one.range):g} degrees: that is its range here, at constant speed"
 
@@ -80,6 +80,8 @@ def actuators_of(points: ConnectorPoints) -> Iterator[DrawnActuator]:
             what = "one link holds both its ends" if held else "both its ends are at one place"
             joined.problems.add(link.where, f"{what}: it cannot change its length", "pin it to two links")
         else:
+            if not link.cpm:
+                joined.notes.append(f"{link.called} has no speed there: it moves by 1 {joined.file.unit}/s here")
             yield _actuator(link, first, second, points)
 
 

@@ -77,7 +77,7 @@ class JoinedLinks:
     def _is_one(self, link: LinkageLink) -> bool:
         """Return whether a link is more than the mark of one connector."""
         known = link.connectors
-        alone = len(known) == 1 and not (link.gear or link.actuator or _is_fastened(link.fastened))
+        alone = len(known) == 1 and not (link.actuator or _is_fastened(link.fastened))
         used = alone and (self.file.connectors[known[0]].input or link.id in self._named)
         if not known or (alone and not used):
             if not known:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway
 from compoundkin.files.exchange.drawn_mechanism import MOST
@@ -56,11 +57,23 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
 
 def _joined(content: Content, problems: Problems) -> JoinedLinks:
     """Return the links in a file. Raises InvalidInput where they are more than can be looked at."""
-    file = linkage_file(xml_tree(content.text, content.where), problems)
+    text, told = _text(content)
+    file = linkage_file(xml_tree(text, content.where), problems)
+    file.notes += told
     if len(file.connectors) + len(file.links) > MOST:
         problems.add("", f"it has more than {MOST} connectors and links", "look whether it is the right file")
         problems.raise_if_any()
     return JoinedLinks(file, problems)
+
+
+def _text(content: Content) -> tuple[str, list[str]]:
+    """Return the text, of old files by the code page of their time, and what is told of that."""
+    try:
+        return content.text, []
+    except InvalidInput:
+        if not content.is_text:
+            raise
+    return content.raw.decode("cp1252", "replace"), ["it is not UTF-8: its names are read as Windows-1252"]
 
 
 def _few(notes: list[str]) -> list[str]:

@@ -12,6 +12,7 @@ from compoundkin.files.exchange.drawn_letters import SAME
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
+from compoundkin.model.geometry import FRAME
 
 # Lines are one, and pins are on them, that differ by less than this part of the size: the program keeps six decimals
 # of 1/96 inch, and what is moved by hand snaps.
@@ -80,11 +81,14 @@ def _slider(one: LinkageConnector, joined: JoinedLinks) -> Slider | None:
     bodies = joined.at(one.id)
     shared = [body for body in joined.at(limits[0].id) if body in joined.at(limits[1].id)]
     carriers = [body for body in shared if body not in bodies]
-    if bodies and not carriers:
+    if FRAME in bodies and FRAME in shared:
+        joined.file.drop("slider of a fixed pin")
+    elif bodies and not carriers:
         said = f"{limits[0].id} and {limits[1].id}"
         what = f"it is of the link that holds its slide limits {said}" if shared else f"no link holds both {said}"
         problems.add(one.where, f"it is a slider, but {what}", "let it slide on one other link")
-    return Slider(one, bodies, carriers[0], (limits[0], limits[1])) if bodies and carriers else None
+    usable = bodies and carriers and not (FRAME in bodies and FRAME in shared)
+    return Slider(one, bodies, carriers[0], (limits[0], limits[1])) if usable else None
 
 
 def guides_of(sliders: list[Slider], points: ConnectorPoints, size: float) -> Iterator[DrawnGuideway]:
