@@ -93,7 +93,7 @@ def _rounding(joints: tuple[SharedJoint, ...], size: float) -> Iterator[str]:
 
 def _kept(drawing: Drawing) -> Iterator[str]:
     """Yield what there is no word for, and names that are written otherwise."""
-    names = [one.called for one in (*drawing.links, *drawing.points)]
+    names = [*(link.called for link in drawing.links), *(point.called for point in drawing.points)]
     changed = [f"{name!r} is {plain_name(name)!r}" for name in names if plain_name(name) != name]
     if changed:
         yield f"links hold no # and ~ in names: {', '.join(changed[:8])}"
