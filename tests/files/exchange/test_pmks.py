@@ -63,6 +63,28 @@ def test_all_that_is_wrong_is_told_at_once_with_its_line():
     assert places == ["line 1", "line 2", "line 3", "line 8", "s", "line 4", "d"]
 
 
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("mech=\nname=nothing\n", "there are no joints"),
+        (
+            "0,a,R,0,0\na,b,G,4,0\nb,c,R,10,0\n",
+            "line 2: a gear without a common carrier: no link holds both 'a' and 'b'",
+        ),
+        ("0,a,R,0,0\na,b,G,4,2\nb,0,R,10,0\n", "line 2: the contact is not on the line through the centres"),
+        ("0,a,R,0,0\na,b,G,4,0\nb,a,G,4,0\nb,0,R,10,0\n", "line 3: these two wheels have another contact"),
+        ("0,a,R,0,0\na,a,R,1,0\n", "line 2: a joint of the link 'a' with itself"),
+        ("0,R,0,0,ffft\n0,a,R,1,0\n", "line 1: a tracer cannot drive"),
+        ("0,a,R,0,0\n" * 301, "line 301: there are more than 300 joints"),
+        ("0,a,R,0,0\n" * 40_000, "it has 400,000 characters"),
+    ],
+)
+def test_what_is_wrong_is_named(text, reason):
+    with pytest.raises(InvalidInput) as told:
+        read(text, "pmks")
+    assert reason in str(told.value)
+
+
 def test_racks_are_wheels_on_a_slide():
     text = "ground,pinion,R,0,0,tfft\nground,rack,P,7,-3,0\npinion,rack,G,0,-2\nrack,R,9,-2.5\npinion,R,0,2\n"
     mechanism = read(text).mechanism
@@ -157,7 +179,7 @@ def test_angles_of_files_are_relative_to_links_of_two_fixed_joints():
 @pytest.mark.parametrize(
     ("text", "reasons"),
     [
-        ('{"Joints": [], "TypeOfJoint": 0}', ["no joints"]),
+        ('{"Joints": [], "TypeOfJoint": 0}', ["there are no joints"]),
         (
             '{"Joints": [{"TypeOfJoint": "R", "X": NaN, "Links": ["a", "b"]}]}',
             ["joint 0", "'X' is nan", "'Y' is missing"],
@@ -196,6 +218,15 @@ def test_tables_of_joints_are_read_however_they_are_written(kind):
     assert back.form == "joints"
     holds(back.mechanism, sample)
     assert write(back.mechanism, "joints").text == written.text
+
+
+def test_tables_may_have_several_drivers():
+    five = ck.catalog.load_named("five-bar")
+    with pytest.raises(InvalidInput, match="PMKS has one"):
+        write(five, "pmks")
+    back = read(write(five, "joints").text).mechanism
+    assert [one.link for one in back.drives] == [one.link for one in five.drives]
+    assert ck.exchange.compare(five, back).within(1e-9)
 
 
 def test_tables_keep_names_of_points_and_say_what_is_missing():

@@ -31,9 +31,14 @@ def drawn_wheels(
 ) -> tuple[tuple[DrawnGear, ...], tuple[DrawnRack, ...]]:
     """Return the gears and racks of the contacts among joints; note what is wrong."""
     gears, racks = [], []
+    met: set[frozenset[str]] = set()
     for k, contact in enumerate(records):
         if contact.kind != "G":
             continue
+        if frozenset(contact.links) in met:
+            problems.add(contact.where, "these two wheels have another contact", "leave one of them out")
+            continue
+        met.add(frozenset(contact.links))
         found = min(_candidates(records, contact), key=lambda wheels: wheels.off, default=None)
         if found is None:
             first, second = contact.links

@@ -15,6 +15,8 @@ MOST_JOINTS = 300
 # Where a mechanism has a link of this name that is not its frame, so that the two keys differ.
 _OTHER_FRAME = f"{FRAME} "
 _GROUND = ("0", "gnd", "grnd", "grond", "gound", "groud")
+# Of characters: so many joints are told in a tenth of it.
+MOST_CHARACTERS = 300_000
 
 
 @dataclass(frozen=True)

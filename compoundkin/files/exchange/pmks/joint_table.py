@@ -12,15 +12,15 @@ from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks.joint_notation import plain
-from compoundkin.files.exchange.pmks.joint_record import kind_of
+from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, kind_of
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
-from compoundkin.files.exchange.pmks.joint_text import TextReader
+from compoundkin.files.exchange.pmks.joint_text import TextReader, is_short
 from compoundkin.files.exchange.pmks.table_rows import heading_of, lines_of, separator_of, table_rows
 from compoundkin.files.exchange.pmks.written_joints import PMKS, drawn_degrees, pmks_joints
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
-_TABLE = replace(PMKS, program="a table of joints")
+_TABLE = replace(PMKS, program="a table of joints", most_drivers=MOST_JOINTS)
 HEADING = ("links", "type", "x", "y", "angle", "driver", "name")
 
 
@@ -43,9 +43,12 @@ class JointTable(Readable, Writable):
     def read(self, content: Content) -> Imported:
         """Return the mechanism of a table."""
         problems = Problems(content.where)
-        reader = TextReader(problems, keys={"name": content.name})
-        for row in table_rows(content.text, problems, reader.told):
+        reader = TextReader(problems, keys={"name": content.name}, several=True)
+        text = content.text if is_short(content.text, problems) else ""
+        for row in table_rows(text, problems, reader.told):
             reader.record(row.where, row.words, row.name)
+            if reader.count > MOST_JOINTS:
+                break
         return mechanism_of(drawing_of_joints(reader.joints(), problems, ""), self.name, content.where)
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
@@ -59,9 +62,12 @@ class JointTable(Readable, Writable):
             angle = plain(drawn_degrees(record)) if record.is_guide else ""
             place = plain(record.at.real), plain(record.at.imag)
             table.writerow((names, record.kind, *place, angle, "yes" if record.drives else "", record.name))
-        keys = [f"s={plain(one.speed)}" for one in joints.drivers if one.speed]
+        speeds = {one.speed for one in joints.drivers if one.speed}
+        keys = [f"s={plain(speed)}" for speed in speeds if len(speeds) == 1]
         keys += [f"name={joints.title}"] if joints.title else []
-        return Exported((text.getvalue() + "".join(f"{key}\n" for key in keys)).encode(), self.name, joints.notes)
+        content = (text.getvalue() + "".join(f"{key}\n" for key in keys)).encode()
+        notes = ("the drivers' speeds differ, and are left out",) if len(speeds) > 1 else ()
+        return Exported(content, self.name, (*joints.notes, *notes))
 
 
 FORMAT = JointTable()

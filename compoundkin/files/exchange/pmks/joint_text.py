@@ -7,8 +7,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from compoundkin.files.exchange.json_text import LARGEST
 from compoundkin.files.exchange.pmks.joint_record import (
     KINDS,
+    MOST_CHARACTERS,
     MOST_JOINTS,
     JointDriver,
     JointList,
@@ -16,7 +18,7 @@ from compoundkin.files.exchange.pmks.joint_record import (
     kind_of,
     link_key,
 )
-from compoundkin.files.exchange.pmks.record_problems import driver_of, note_faults
+from compoundkin.files.exchange.pmks.record_problems import drivers_of, note_faults
 from compoundkin.files.exchange.problems import Problems
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
@@ -26,6 +28,8 @@ _FLAGS = re.compile(r"[tf+-]{1,4}", re.IGNORECASE)
 _TRUE, _WORDS = "true", ("true", "false")
 _FIELDS = re.compile(r"[,\s]+")
 _DRIVES = 3
+# So much is shown of a word that cannot be read.
+_SHOWN = 40
 
 
 def number_of(word: str) -> float | None:
@@ -34,9 +38,18 @@ def number_of(word: str) -> float | None:
     >>> number_of("-4e1"), number_of("1_0"), number_of("1e999"), number_of("nan")
     (-40.0, None, None, None)
     """
-    if not _NUMBER.fullmatch(word) or not math.isfinite(float(word)):
+    if not _NUMBER.fullmatch(word) or not abs(float(word)) <= LARGEST:
         return None
     return float(word)
+
+
+def is_short(text: str, problems: Problems) -> bool:
+    """Return whether a text is no longer than mechanisms are; note where it is."""
+    if len(text) <= MOST_CHARACTERS:
+        return True
+    what = f"it has {len(text):,} characters; joints are told in {MOST_CHARACTERS:,}"
+    problems.add("", what, "look whether it is the right file")
+    return False
 
 
 def drawn_angle(degrees: float) -> float:
@@ -46,21 +59,28 @@ def drawn_angle(degrees: float) -> float:
 
 @dataclass
 class TextReader:
-    """Reads lines of PMKS. `problems` takes what is wrong, all of it."""
+    """Reads lines of PMKS. `problems` takes what is wrong, all of it; `several` joints may drive."""
 
     problems: Problems
     records: list[JointRecord] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)
     keys: dict[str, str] = field(default_factory=dict)
+    several: bool = False
     shown: int = 0
     count: int = 0
 
     def read(self, text: str) -> JointList:
         """Return the joints of a text."""
+        if is_short(text, self.problems):
+            self._lines(text)
+        return self.joints()
+
+    def _lines(self, text: str) -> None:
         for where, line in _lines(text):
             if not self.told(line):
                 self.record(where, _FIELDS.split(line.strip(", \t\r")))
-        return self.joints()
+            if self.count > MOST_JOINTS:
+                break
 
     def told(self, line: str) -> bool:
         """Return whether a line is a key and its value, which is kept."""
@@ -74,8 +94,8 @@ class TextReader:
         speed = self._number("s")
         index = self._number("d")
         note_faults(self.records, self.problems)
-        driver, notes = driver_of(self.records, index, self.problems)
-        drivers = () if driver is None else (JointDriver(driver, speed=speed),)
+        found, notes = drivers_of(self.records, index, self.problems, self.several)
+        drivers = tuple(JointDriver(driver, speed=speed) for driver in found)
         dropped = {"display setting": self.shown, "step setting": len(self.keys.keys() & {"e", "f"})}
         return JointList(tuple(self.records), self.names, drivers, self.keys.get("name", ""), notes, dropped)
 
@@ -83,15 +103,14 @@ class TextReader:
         word = self.keys.get(key, "")
         found = number_of(word)
         if word and found is None:
-            self.problems.add(key, f"{word!r} is no number")
+            self.problems.add(key, f"{word[:_SHOWN]!r} is no number")
         return found
 
     def record(self, where: str, words: list[str], name: str = "") -> None:
         """Read the words of a record; note what is wrong with them."""
         self.count += 1
         if self.count > MOST_JOINTS:
-            if self.count == MOST_JOINTS + 1:
-                self.problems.add(where, f"there are more than {MOST_JOINTS} joints", "is it the right file?")
+            self.problems.add(where, f"there are more than {MOST_JOINTS} joints", "is it the right file?")
             return
         places = [k for k, word in enumerate(words) if kind_of(word)]
         kind = kind_of(words[places[-1]]) if places else None
@@ -116,7 +135,7 @@ class TextReader:
         found = [number_of(word) for word in words]
         for word, number in zip(words, found, strict=True):
             if number is None:
-                self.problems.add(where, f"the coordinate {word!r} is no finite number")
+                self.problems.add(where, f"the coordinate {word[:_SHOWN]!r} is no finite number")
         return None if None in found else complex(*(number or 0.0 for number in found))
 
     def _angle_and_flags(self, where: str, words: list[str]) -> tuple[float, list[bool]]:
@@ -127,7 +146,7 @@ class TextReader:
             return angle, [word.lower() == _TRUE for word in words]
         if len(words) == 1 and _FLAGS.fullmatch(words[0]):
             return angle, [flag in "tT+" for flag in words[0]]
-        self.problems.add(where, f"{' '.join(words)!r} is neither an angle nor flags such as tfff", _MEANT)
+        self.problems.add(where, f"{' '.join(words)[:_SHOWN]!r} is neither an angle nor flags such as tfff", _MEANT)
         return angle, []
 
 

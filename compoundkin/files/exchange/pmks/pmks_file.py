@@ -14,6 +14,7 @@ from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.json_text import JsonRecord, parsed_json
 from compoundkin.files.exchange.pmks.joint_record import (
+    MOST_JOINTS,
     JointDriver,
     JointKind,
     JointList,
@@ -22,7 +23,7 @@ from compoundkin.files.exchange.pmks.joint_record import (
     link_key,
 )
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
-from compoundkin.files.exchange.pmks.record_problems import driver_of, note_faults
+from compoundkin.files.exchange.pmks.record_problems import drivers_of, note_faults
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME
 
@@ -56,13 +57,14 @@ class PmksFile(Readable):
 
 def _joints(records: list[JointRecord], names: dict[str, str], file: JsonRecord, problems: Problems) -> JointList:
     """Return the joints with their driver; the angles of lines are as drawn."""
-    if not records:
-        problems.add("", "the file has no joints", 'they are its "Joints"')
+    if len(records) > MOST_JOINTS:
+        problems.add("", f"there are more than {MOST_JOINTS} joints", "is it the right file?")
+    problems.raise_if_any()
     note_faults(records, problems)
     index = file.number(_DRIVEN, -1.0)
-    driver, notes = driver_of(records, None if index < 0 else index, problems)
+    found, notes = drivers_of(records, None if index < 0 else index, problems)
     speed = file.number(_SPEED) if _SPEED in file.given else None
-    drivers = () if driver is None else (JointDriver(driver, speed=speed),)
+    drivers = tuple(JointDriver(driver, speed=speed) for driver in found)
     turned = [replace(one, angle=_as_drawn(one, records)) if one.is_guide else one for one in records]
     return JointList(tuple(turned), names, drivers, notes=notes)
 

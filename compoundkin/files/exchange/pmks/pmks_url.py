@@ -10,6 +10,7 @@ from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks.joint_notation import plain
+from compoundkin.files.exchange.pmks.joint_record import MOST_CHARACTERS
 from compoundkin.files.exchange.pmks.pmks_format import read_text
 from compoundkin.files.exchange.pmks.written_joints import pmks_joints, pmks_notes, record_lines
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
@@ -17,6 +18,7 @@ from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 ADDRESS = "http://designengrlab.github.io/PMKS/pmks.html"
 _MECH = re.compile(r"\?(.*&)?mech=", re.DOTALL)
 _SETTING = re.compile(r"([a-z])=?(.*)", re.IGNORECASE)
+_LONGEST_SETTING = 200
 
 
 class PmksUrl(Readable, Writable):
@@ -33,13 +35,14 @@ class PmksUrl(Readable, Writable):
 
     def read(self, content: Content) -> Imported:
         """Return the mechanism of an address; it is not visited."""
-        query = content.text.strip().partition("?")[2]
+        query = content.text.strip().partition("?")[2].partition("#")[0]
         parts = dict(part.partition("=")[::2] for part in query.split("&"))
-        text = parts.get("mech", "")
+        # a character may be written as three; what is longer is refused as it stands
+        text = parts.get("mech", "")[: 3 * MOST_CHARACTERS + 3]
         if not re.search(r",|\s|%20|%2C", text, re.IGNORECASE):
             # a plus is a blank, unless there are others: then it is a flag or a sign
             text = text.replace("+", " ")
-        return read_text(content, unquote(text), self, _settings(unquote(parts.get("set", ""))))
+        return read_text(content, unquote(text), self, _settings(unquote(parts.get("set", "")[:_LONGEST_SETTING])))
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return an address that shows the mechanism where the app still runs."""

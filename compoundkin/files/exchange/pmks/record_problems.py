@@ -13,6 +13,8 @@ _NUMBERS = {3: "three", 4: "four", 5: "five", 6: "six"}
 
 def note_faults(records: Sequence[JointRecord], problems: Problems, ground: str = "no ground link") -> None:
     """Note what is wrong with the links of joints."""
+    if not records and not problems.found:
+        problems.add("", "there are no joints", "look whether it is the right file")
     # where a record could not be read, the ground may have been in it
     if records and not problems.found and not any(FRAME in record.links for record in records):
         problems.add("", ground, "call the link that stands still ground")
@@ -29,43 +31,53 @@ def note_faults(records: Sequence[JointRecord], problems: Problems, ground: str 
             problems.add(record.where, "one link at a gear contact", "it names the two wheels")
 
 
-def driver_of(
-    records: Sequence[JointRecord], index: float | None, problems: Problems
-) -> tuple[int | None, tuple[str, ...]]:
-    """Return the number of the joint that drives, and notes on it."""
+def drivers_of(
+    records: Sequence[JointRecord], index: float | None, problems: Problems, several: bool = False
+) -> tuple[tuple[int, ...], tuple[str, ...]]:
+    """Return the numbers of the joints that drive, and notes on them.
+
+    It is the first of those that are marked, unless `several` may drive.
+    """
     if index is not None:
         if index in range(len(records)):
-            return _checked(records, int(index), problems), ()
+            return _that_drive(records, [int(index)], problems), ()
         problems.add("d", f"there is no joint {index:g}", f"joints are 0 to {len(records) - 1}")
-        return None, ()
-    flagged = [k for k, record in enumerate(records) if record.drives]
-    if flagged:
-        first = records[flagged[0]].where
-        notes = (f"several joints are marked as driven, that of {first} is taken",) if flagged[1:] else ()
-        return _checked(records, flagged[0], problems), notes
+        return (), ()
+    marked = [k for k, record in enumerate(records) if record.drives]
+    if marked and (several or len(marked) == 1):
+        return _that_drive(records, marked, problems), ()
+    if marked:
+        notes = (f"several joints are marked as driven, that of {records[marked[0]].where} is taken",)
+        return _that_drive(records, marked[:1], problems), notes
     found = next(_could_drive(records), None)
     if found is None:
         if records:
             problems.add("", "no joint can drive", "an R or P joint of two links can")
-        return None, ()
-    return found, (f"no joint is marked as driven; the first that can be is taken, {records[found].where}",)
+        return (), ()
+    return (found,), (f"no joint is marked as driven; the first that can be is taken, {records[found].where}",)
 
 
 def _could_drive(records: Iterable[JointRecord]) -> Iterator[int]:
     return (k for k, record in enumerate(records) if record.kind in ("R", "P") and len(record.links) == 2)
 
 
-def _checked(records: Sequence[JointRecord], index: int, problems: Problems) -> int | None:
-    record = records[index]
+def _that_drive(records: Sequence[JointRecord], numbers: Sequence[int], problems: Problems) -> tuple[int, ...]:
+    """Return the numbers of joints that can drive; note why the others cannot."""
+    found = []
+    for number in numbers:
+        what = _hindrance(records[number])
+        if what:
+            problems.add(records[number].where, what, "mark an R or P joint of two links")
+        else:
+            found.append(number)
+    return tuple(found)
+
+
+def _hindrance(record: JointRecord) -> str:
     if record.kind == "G":
-        what = "a gear contact cannot drive"
-    elif len(record.links) == 1:
-        what = "a tracer cannot drive"
-    elif record.kind == "RP":
-        what = "an RP joint cannot drive (two freedoms)"
-    elif len(record.links) > 2:
-        what = "a pin of more than two links cannot drive: it does not tell which two"
-    else:
-        return index
-    problems.add(record.where, what, "mark an R or P joint of two links")
-    return None
+        return "a gear contact cannot drive"
+    if len(record.links) == 1:
+        return "a tracer cannot drive"
+    if record.kind == "RP":
+        return "an RP joint cannot drive (two freedoms)"
+    return "a pin of more than two links cannot drive: it does not tell which two" if len(record.links) > 2 else ""

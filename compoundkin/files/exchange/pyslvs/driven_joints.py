@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator, Sequence
 
 from compoundkin.base.display import short
-from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointRecord
+from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointDriver, JointRecord
 from compoundkin.files.exchange.pmks.joint_sketch import held
+from compoundkin.files.exchange.pmks.joint_text import is_short
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME
 
@@ -21,9 +22,14 @@ def input_pairs(text: str, problems: Problems) -> list[tuple[int, int]]:
     >>> input_pairs("- - 0\\n  - 1\\n- [2, 2]", Problems())
     [(0, 1), (2, 2)]
     """
+    if not is_short(text, problems):
+        return []
     numbers = [int(found[0]) for found in _INTEGER.finditer(text)]
     if not _BETWEEN.fullmatch(_INTEGER.sub("", text)) or len(numbers) % 2:
         problems.add("input", f"{short(text.strip()[:60])} are no pairs of joints", "such as [(0, 1)]")
+        return []
+    if len(numbers) > 2 * MOST_JOINTS:
+        problems.add("input", f"there are more than {MOST_JOINTS} inputs", "is it the right file?")
         return []
     return list(zip(numbers[::2], numbers[1::2], strict=True))
 

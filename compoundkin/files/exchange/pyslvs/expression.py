@@ -8,7 +8,7 @@ from math import fmod, radians
 
 from compoundkin.base.display import short
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointKind, JointRecord, own_key
-from compoundkin.files.exchange.pmks.joint_text import number_of
+from compoundkin.files.exchange.pmks.joint_text import is_short, number_of
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.pyslvs.expression_words import CUT_OFF, ExpressionWords
 from compoundkin.model.geometry import FRAME
@@ -48,8 +48,10 @@ def parsed_expression(text: str, problems: Problems, where: str = "") -> PyslvsE
     >>> parsed_expression("M[J[R, P[1, 2], L[ground, a]]]", Problems()).joints[0].links
     ('frame', 'a')
     """
-    words = ExpressionWords(text, where)
     found = PyslvsExpression()
+    if not is_short(text, problems):
+        return found
+    words = ExpressionWords(text, where)
     words.take("M")
     words.take("[")
     while words.next != "]":
@@ -66,9 +68,10 @@ def parsed_expression(text: str, problems: Problems, where: str = "") -> PyslvsE
 
 def _rest(words: ExpressionWords) -> str:
     """Return what stands behind an expression, which may be a list of inputs."""
-    line, rest = words.line, ""
+    line, found = words.line, []
     while words.next:
-        rest += words.take() + " "
+        found.append(words.take())
+    rest = " ".join(found)
     if rest and not rest.startswith(("[", "(")):
         words.line = line
         raise words.failed(f"{short(rest[:_LONGEST])} stands behind the end")

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidInput, Problem
 
-_WORDS = re.compile(r"#\[.*?#\]|#[^\n]*|\s+|[\[\](),]|[^\s\[\](),#]+|.", re.DOTALL)
+_WORDS = re.compile(r"#[^\n]*|\s+|[\[\](),]|[^\s\[\](),#]+")
+_BEGIN, _END = "#[", "#]"
 
 
 @dataclass
@@ -58,9 +59,15 @@ MEANT = "a mechanism is M[J[R, P[x, y], L[link, ...]], ...]"
 
 
 def _words(text: str) -> Iterator[tuple[str, int]]:
-    line = 1
-    for found in _WORDS.finditer(text):
-        word = found[0]
+    line, place = 1, 0
+    last = text.rfind(_END)
+    while place < len(text):
+        if text.startswith(_BEGIN, place) and place < last:
+            word = text[place : text.index(_END, place) + len(_END)]
+        else:
+            found = _WORDS.match(text, place)
+            word = found[0] if found else text[place]
         if not word.isspace() and not word.startswith("#"):
             yield word, line
         line += word.count("\n")
+        place += len(word)

@@ -14,6 +14,8 @@ _ENTRY = re.compile(r"(['\"]?)(\w+)\1:(?:\s+(.*))?")
 _ESCAPED = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8})|([ \t]*\n\s*)|(.))", re.DOTALL)
 _PLAIN_ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", '"': '"', "'": "'", " ": " ", "/": "/", "r": "\r", "0": ""}
 _FOLDED = re.compile(r"[ \t]*\n\s*")
+# Projects have a dozen.
+_MOST_ENTRIES = 1000
 # What begins a tag, an anchor, an alias: never in what these programs write of a mechanism.
 _REFUSED = ("!", "&", "*")
 
@@ -26,7 +28,7 @@ def project_entries(text: str, problems: Problems) -> dict[str, tuple[str, int]]
     """
     if text.lstrip().startswith("{"):
         return _of_one_line(text.strip(), problems)
-    found: dict[str, tuple[str, int]] = {}
+    found: dict[str, tuple[list[str], int]] = {}
     key = ""
     for number, line in enumerate(text.splitlines(), 1):
         entry = _ENTRY.fullmatch(line)
@@ -34,12 +36,12 @@ def project_entries(text: str, problems: Problems) -> dict[str, tuple[str, int]]
             key = entry[2]
             if key in found:
                 problems.add(f"line {number}", f"{key!r} is given twice", "leave one of them out")
-            found[key] = (entry[3] or "", number)
+            found[key] = ([entry[3] or ""], number)
         elif key and (not line.strip() or line[0] in " \t-"):
-            found[key] = (f"{found[key][0]}\n{line}", found[key][1])
+            found[key][0].append(line)
         elif line.strip() and not line.startswith(("#", "---", "...", "%YAML")):
             problems.add(f"line {number}", f"{short(line[:40])} is no entry of a project", "entries are key: value")
-    return found
+    return {key: ("\n".join(lines), number) for key, (lines, number) in found.items()}
 
 
 def _of_one_line(text: str, problems: Problems) -> dict[str, tuple[str, int]]:
@@ -72,7 +74,7 @@ def _pieces(text: str, problems: Problems) -> list[str]:
         if not quote and (depth == 0 or (depth == 1 and sign == ",")):
             pieces.append(text[start:k])
             start = k + 1
-            if depth == 0:
+            if depth == 0 or len(pieces) > _MOST_ENTRIES:
                 return pieces
     problems.add("", "the project ends too early: } is missing", "look whether the file is whole")
     return pieces
