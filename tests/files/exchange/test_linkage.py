@@ -263,11 +263,13 @@ def test_pictures_and_measurements_are_counted() -> None:
         link(3, 10, 11, more='layer="1"'),
         link(4, 1, 2, more='measurementelement="true"'),
         link(5, 12),
-        "<background/><selected/><sundial/>",
+        "<background a='1'/><selected/><sundial/>",
+        connector(13, 1, 1, 'layer="1" anchr="true" color="7"'),
     )
     assert list(found.mechanism.links) == ["frame", "link 0", "link 1", "link 2"]
-    said = "1 drawing connector, 2 measuring elements, 1 drawing link, 1 lone connector"
+    said = "2 drawing connectors, 2 measuring elements, 1 drawing link, 1 lone connector"
     assert found.notes == (
         "Line 15: 'sundial' is not known and left out.",
+        "attributes that are not known are not looked at: anchr (line 16)",
         f"left out, for it does not move anything: {said}",
     )

@@ -86,6 +86,24 @@ def test_mechanisms_of_the_catalog_come_back(name: str) -> None:
             assert found.rates[one] == pytest.approx(rate)
 
 
+@pytest.mark.parametrize(
+    "name", ["scotch-yoke", "elliptic-trammel", "oscillating-cylinder"]
+)
+def test_sliders_stay_between_their_limits(name: str) -> None:
+    exported = written(ck.catalog.load_named(name))[1]
+    root = ElementTree.fromstring(exported.text)
+    letters = {one.attrib["id"]: one.attrib.get("name", one.attrib["id"]) for one in root.findall("connector")}
+    motion = ck.solve(back(exported), order=0)
+    sliders = [one for one in root.findall("connector") if one.attrib.get("slider")]
+    assert sliders
+    for slider in sliders:
+        ends = [one.attrib["id"] for one in slider.findall("slidelimit")]
+        pin, low, high = (motion.points[letters[id_]].position for id_ in (slider.attrib["id"], *ends))
+        along = (pin - low) / (high - low)
+        assert np.all((along.real > 0) & (along.real < 1))
+        assert np.max(np.abs(along.imag)) < 1e-9
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_random_mechanisms_come_back(seed: int) -> None:
     rng = np.random.default_rng(seed)

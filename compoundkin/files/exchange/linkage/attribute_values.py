@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.xml_tree import XmlElement
@@ -14,6 +16,33 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?")
 _LARGEST = 1e12
 _WHOLE = re.compile(r"[+-]?\d{1,9}")
 _FLAGS = {"": False, "false": False, "true": True}
+
+# What is read, and what is known to be looks; of others nobody knows here whether they move anything.
+_READ = (
+    "id x y layer anchor input rpm draw slider slideradius alwaysmanual fastenlink fastenconnector name actuator throw"
+    " cpm measurementelement gear type sizeassize size units scalefactor limitangle"
+)
+_LOOKS = (
+    "selected linesize color usercolor fillcolor solid polyline drawcircle zoom xoffset yoffset textonly drawfat"
+    " fontsize transparency locked"
+)
+_KNOWN = frozenset((_READ + " " + _LOOKS).split())
+
+
+def unknown_attributes(root: XmlElement) -> Iterator[str]:
+    """Yield the note that names attributes which are not looked at."""
+    met: dict[str, int] = {}
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        waiting += reversed([child for child in element.children if child.tag not in ("background", "selected")])
+        for name in element.attributes:
+            if name not in _KNOWN:
+                met.setdefault(name[:40], element.line)
+    if met:
+        said = [f"{name} (line {line})" for name, line in islice(met.items(), 8)]
+        more = f" and {len(met) - 8} more" if len(met) > 8 else ""
+        yield f"attributes that are not known are not looked at: {', '.join(said)}{more}"
 
 
 @dataclass(frozen=True)

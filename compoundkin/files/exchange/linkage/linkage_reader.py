@@ -6,6 +6,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway
 from compoundkin.files.exchange.drawn_mechanism import MOST
+from compoundkin.files.exchange.linkage.attribute_values import unknown_attributes
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
@@ -58,8 +59,9 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
 def _joined(content: Content, problems: Problems) -> JoinedLinks:
     """Return the links in a file. Raises InvalidInput where they are more than can be looked at."""
     text, told = _text(content)
-    file = linkage_file(xml_tree(text, content.where), problems)
-    file.notes += told
+    root = xml_tree(text, content.where)
+    file = linkage_file(root, problems)
+    file.notes += [*told, *unknown_attributes(root)]
     if len(file.connectors) + len(file.links) > MOST:
         problems.add("", f"it has more than {MOST} connectors and links", "look whether it is the right file")
         problems.raise_if_any()
