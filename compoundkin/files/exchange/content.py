@@ -87,7 +87,8 @@ def content_of(source: str | os.PathLike[str]) -> Content:
 
 def _is_itself(source: str) -> bool:
     """Return whether a text is what is to be read and no path: nothing is ever fetched."""
-    return "\n" in source or "://" in source or source.lstrip()[:2] in ("M[", '{"') or "mech=" in source
+    records = "|" in source and "," in source
+    return "\n" in source or "://" in source or source.lstrip()[:2] in ("M[", '{"') or "mech=" in source or records
 
 
 def _is_pasted(source: str) -> bool:

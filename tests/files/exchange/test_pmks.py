@@ -100,6 +100,7 @@ def test_pins_of_many_links_are_one_in_either_way_of_writing():
     one, two = (read(text).mechanism for text in (at_once, in_two))
     assert one.carriers == two.carriers
     assert set(one.pins["B"]) == {"a", "b", "c"}
+    assert read(at_once.strip().replace(" ", ",").replace("\n", "|")).mechanism.carriers == one.carriers
     apart = [JointRecord("R", links, 1j) for links in (("a", "b"), ("c", "d"), ("b", "c"), ("e", "f"))]
     assert point_keys(apart) == {0: 0, 1: 0, 2: 0, 3: 3}
 

@@ -17,7 +17,7 @@ from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # A record at the beginning of a line, perhaps after what may stand in front of it.
-_RECORD = re.compile(r"(mech=)?\s*([^\s,;|{}<\[\]]+[,\s]+)+(R|P|RP|G)[,\s]+[-+.\d]", re.IGNORECASE)
+_RECORD = re.compile(r"(mech=)?\s*([^\s,;|{}<\[\]]+[,\s]+)+(R|P|RP|G)[,\s]+[-+.\d][-+.\de]*(?=[,\s|]|$)", re.IGNORECASE)
 _LOOKED_AT = 20
 
 
