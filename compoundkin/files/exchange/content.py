@@ -93,7 +93,7 @@ def _is_itself(source: str) -> bool:
 
 def _is_pasted(source: str) -> bool:
     """Return whether a text is what follows a link's question mark. No file is called so, with this many parts."""
-    return source.count(".") > _PARTS and re.fullmatch(r"[\w.,:;+ %*~-]+", source) is not None
+    return source.count(".") > _PARTS and re.fullmatch(r"([\w.-]+/\?)?[\w.,:;+ %*~-]+", source) is not None
 
 
 def _too_large(where: str, size: int, most: int) -> InvalidInput:

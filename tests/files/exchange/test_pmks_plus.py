@@ -417,6 +417,7 @@ ODD: dict[str, tuple[str, str | int]] = {
     "beyond doubles": (FOUR_BAR.replace("Fe,VG,0.", "---------,VG,0.", 1), "its x '---------' is no number"),
     "large": (FOUR_BAR.replace("Fe,Fe,", "0,0,").replace("0.0B,B,Fe,VG", "0.0B,B,U-------,VG", 1), 4),
     "dots": ("0P.Fe.K,0.101." + "." * 100_000, "it has no links"),
+    "long": (FOUR_BAR + "http://pmks" * 100_000, "a link has at most 200,000"),
     "marks": (FOUR_BAR + "." + "LAB," * 30_000, 4),
     "many links of the same joints": (
         FOUR_BAR.replace("YRCD", "".join(f"YRx{k},,0,0,0,0,,B,C,P,,." for k in range(900)) + "YRCD"),
@@ -463,7 +464,8 @@ def test_the_page_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> No
 
 def test_pasted_strings_are_read_by_the_face_of_the_house() -> None:
     whole = FOUR_BAR + check_character(FOUR_BAR)
-    for text in (ADDRESS + whole, whole, f"  {whole}\n"):
+    shortcut = f"[InternetShortcut]\nURL={ADDRESS}{whole}\n"
+    for text in (ADDRESS + whole, whole, f"  {whole}\n", f"app.pmksplus.com/?{whole}", shortcut):
         assert ck.exchange.read(text).form == "pmks+"
 
 

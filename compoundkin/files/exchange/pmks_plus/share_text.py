@@ -8,12 +8,15 @@ from dataclasses import dataclass
 from urllib.parse import quote, unquote
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.files.exchange.content import MOST_OF_LINK
 from compoundkin.files.exchange.pmks_plus.packed_numbers import check_character, hash_of
 
 ADDRESS = "https://app.pmksplus.com/?"
 # How a share string begins: eight flags, decimals, integers, three units or more.
 _BEGINNING = re.compile(r"[0-9A-Za-z_-]{1,2}\.[0-9A-Za-z_,-]+\.[0-9A-Za-z_,-]+\.[0-9A-Za-z_-]{1,6}\.")
-_LINK = re.compile(r"https?://[^?#\s]*\?(?P<query>[^#\s]*)")
+# A link alone, with or without its scheme, spaces in its names or not; or one of the app within other text.
+_LINK = re.compile(r"(https?://)?[\w.-]{1,100}(:\d+)?/[^?#\s]{0,100}\?(?P<query>[^#\r\n]*)")
+_WITHIN = re.compile(r"https?://[^?#\s]{0,100}pmks[^?#\s]{0,100}\?(?P<query>[^#\s]+)")
 _HASH = re.compile(r"\*(?P<hash>[0-9A-Za-z]{1,6})$")
 # What is left as it is: of the signs that have a meaning in links the app decodes none.
 _PLAIN = ",.-_~*;/?:@&=+$!'()"
@@ -38,6 +41,9 @@ def is_share_string(text: str) -> bool:
 
 def sections_of(text: str, where: str) -> Sections:
     """Return the sections of a link or a share string. Raises InvalidInput where it is cut off or changed."""
+    if len(text) > MOST_OF_LINK:
+        what = f"it has {len(text):,} characters; a link has at most {MOST_OF_LINK:,}"
+        raise InvalidInput(Problem(where, what, "look whether it is the right one"))
     body = _checked(_query(text), where)
     records = iter(body.split("."))
     one, two, three, four = (next(records, "") for _ in range(4))
@@ -57,9 +63,13 @@ def link_of(body: str) -> str:
 
 
 def _query(text: str) -> str:
-    """Return what follows the question mark of a link, or the text itself."""
+    """Return what follows the question mark of a link, or the text itself.
+
+    >>> _query("[InternetShortcut]\\nURL=https://app.pmksplus.com/?0P.Fe.K,0.101.4A,A")
+    '0P.Fe.K,0.101.4A,A'
+    """
     stripped = text.strip()
-    found = _LINK.match(stripped)
+    found = _LINK.match(stripped) or _WITHIN.search(stripped)
     return found["query"] if found else stripped
 
 
