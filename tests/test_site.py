@@ -37,8 +37,8 @@ FETCHED = {
 }
 # The mechanisms of the gallery that is built here, of most kinds: pictures and pages of all take minutes.
 SHOWN = (
-    "crank-rocker", "slider-crank", "jansen-leg", "six-bar", "class-iii-six-bar", "planetary-train",
-    "disc-cam-roller-program", "hydraulic-crane", "dixon-mechanism", "five-bar", "engine-gas-pressure", "peaucellier",
+    "crank-rocker", "slider-crank", "six-bar", "class-iii-six-bar", "planetary-train", "disc-cam-roller-program",
+    "five-bar",
 )  # fmt: skip
 # Relations of <link> that fetch nothing.
 TOLD = {"index", "search", "next", "prev", "canonical"}

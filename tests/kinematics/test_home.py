@@ -188,7 +188,7 @@ def newton(x: np.ndarray, theta: float, places: dict[str, complex]) -> tuple[np.
 def test_no_random_drawn_stephenson_iii_is_lost() -> None:
     """Over a full turn; 9 of 59 once lost everything: what own continuation reaches is reached."""
     rng, reached = np.random.default_rng(1), 0
-    for _ in range(30):
+    for _ in range(14):
         places, mechanism = drawn_at_random(rng)
         motion = quietly(mechanism, order=0)
         start = float(np.angle(places["G"] - places["F"])) % (2.0 * np.pi)
@@ -200,7 +200,7 @@ def test_no_random_drawn_stephenson_iii_is_lost() -> None:
                     there = [motion.points[k].position[mark] for k in "BCE"]
                     assert np.allclose(there, x[::2] + 1j * x[1::2], atol=1e-7)
                 reached += 1
-    assert reached > 750
+    assert reached > 350
 
 
 @pytest.mark.parametrize("seed", range(4))

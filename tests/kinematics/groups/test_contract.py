@@ -270,7 +270,7 @@ def as_general(case: Case) -> tuple[GroupEquations, Block]:
 def test_the_margin_is_negative_exactly_where_it_cannot_close(kind: type[DyadSolver], seed: int) -> None:
     """Against Newton from many random starts, which knows nothing of the formula."""
     rng = np.random.default_rng(seed)
-    count = 40
+    count = 20
     case = loose(kind, rng, 0, (count,))
     poses, margin = close(kind, case, 1.0)
     general, setting = as_general(case)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism, UnassembledP
 from compoundkin.cli import cli
 from compoundkin.files.mechanism_files import dumps, loads
 from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.model.drives import Drive
 from compoundkin.model.pairs import KINDS
 from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.pairs.optional_answers import Drivable, Replaceable, TurnCounting
@@ -178,6 +180,14 @@ def without(pair: Pair, name: str) -> Pair:
     return lesser(**{field.name: getattr(pair, field.name) for field in fields(kind)})
 
 
+def coarse(item: Any) -> Any:
+    """A driver of fewer poses, for each is verified: a turn in steps of thirty degrees, a range in sixths."""
+    if not isinstance(item, Drive) or item.law is not None:
+        return item
+    values = np.linspace(0.0, 2.0 * np.pi, 13) if item.values is None else np.asarray(item.values)
+    return replace(item, values=values[..., :: max(1, values.shape[-1] // 12)])
+
+
 LEFT_OUT = [(kind.code, name) for kind in KINDS for name in answers(kind)]
 
 
@@ -190,14 +200,15 @@ def test_each_answer_may_be_left_out(code: str, name: str, monkeypatch: pytest.M
         kind = next(kind for kind in KINDS if kind.code == code)
         default = next(vars(base)[name] for base in BASES if name in vars(base))
         monkeypatch.setattr(kind, name, default)
-    lesser = ck.Mechanism(whole.title, *others, *pairs, outputs=whole.outputs, time=whole.time)
+    time = None if whole.time is None else whole.time[::6]
+    lesser = ck.Mechanism(whole.title, *map(coarse, others), *pairs, outputs=whole.outputs, time=time)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
         motion = ck.solve(lesser)
     assert motion.assembled.any()
-    assert ck.verify(motion).passed
     assert ck.loop_equations(lesser).unknowns
     assert ck.mobility_analysis(lesser).finite >= 1
     assert ck.instant_centres(motion) is not None
     assert ck.draw(motion).svg
-    assert ck.report(motion)
+    # what is verified is in the report
+    assert ck.report(motion).outcome.passed
