@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
 from compoundkin.base.display import counted
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, LikelySlip, Problem
 from compoundkin.files.exchange.drawn_drivers import drivers_of
 from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters, check
@@ -59,7 +60,11 @@ def _built(drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair]) -> t
     loads = loads_of(drawing, letters, mechanism, notes)
     if drawing.units is not None:
         about["unit"], about["units"] = "", dict(zip(("length", "mass", "force"), drawing.units, strict=True))
-    return Mechanism(mechanism.title, *items, *drivers, *loads, **about), notes
+    with warnings.catch_warnings(record=True) as said:
+        # what is odd in another program's file is told with what else is told of it
+        warnings.simplefilter("always", LikelySlip)
+        whole = Mechanism(mechanism.title, *items, *drivers, *loads, **about)
+    return whole, [*notes, *(str(one.message) for one in said)]
 
 
 def _links(letters: DrawnLetters) -> Iterator[Item]:

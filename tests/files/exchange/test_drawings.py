@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnLink, DrawnPoint
+from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnLink, DrawnMass, DrawnPoint
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from compoundkin.files.mechanism_files import dumps, loads
@@ -111,3 +111,11 @@ def test_a_link_that_is_joined_to_nothing_is_told_with_what_may_be_meant() -> No
         InvalidInput, match=r"line 8: link 'flap': it is joined to nothing.*did you mean to join E and F"
     ):
         mechanism_of(replace(FOUR_BAR, points=(*FOUR_BAR.points, *flap), links=links), "sample")
+
+
+def test_an_odd_mass_is_told_with_the_rest_and_not_warned_about() -> None:
+    odd = replace(FOUR_BAR, masses=(DrawnMass("rod", 1.0, 1e-9, 2 + 1j),), units=("mm", "kg", "N"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = mechanism_of(odd, "sample")
+    assert any("inertia" in note for note in found.notes)
