@@ -12,6 +12,9 @@ from compoundkin.cli.shell import say
 if TYPE_CHECKING:
     from compoundkin.files.exchange.exchanged import Imported
 
+# Of mechanisms with more pairs only the links are counted: finding out what holds what twice may take minutes.
+_MANY = 100
+
 
 def is_foreign(source: str) -> bool:
     """Tell whether a link or a file is to be read as another program's. Nothing is said of what is neither."""
@@ -47,6 +50,8 @@ def _in_short(found: Imported) -> str:
     """What it is made of; where something keeps it from being solved, that."""
     from compoundkin.structure import decompose
 
+    if len(found.mechanism.pins) + len(found.mechanism.written_pairs) > _MANY:
+        return found.mechanism.in_numbers
     structure = decompose(found.mechanism)
     groups = ", ".join(group.name for group in structure.groups)
     faults = "; ".join(fault.text for fault in structure.faults)

@@ -28,8 +28,9 @@ MODULES = {
     "cam-profile": "cam_profile.cam_profile_format",
 }
 
-# Formats that are only read.
+# Formats that are only read, and those that are only written.
 READ_ONLY = ("linkage-sim", "pmks-file")
+WRITE_ONLY = ("mjcf", "geogebra", "geogebra-commands", "dxf", "cam-profile")
 
 
 def format_named(name: str) -> ExchangeFormat:

@@ -48,8 +48,9 @@ def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None
     known = writable_formats()
     if form not in known:
         raise InvalidInput(Problem("form", f"no format {form!r} is written", nearest(form, list(known))))
-    unknown = [name for name in options if name not in known[form].options]
+    target = known[form]
+    unknown = [name for name in options if name not in target.options]
     if unknown:
-        remedy = nearest(unknown[0], list(known[form].options))
+        remedy = nearest(unknown[0], list(target.options))
         raise InvalidInput(Problem(unknown[0], f"{form} is written without it", remedy))
-    return known[form].write(shown_mechanism(mechanism, at), **options)
+    return target.write(shown_mechanism(mechanism, at), **options)

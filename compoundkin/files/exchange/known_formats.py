@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TypeVar, cast
 
 from compoundkin.base.arguments import checked
-from compoundkin.files.exchange import MODULES, format_named
+from compoundkin.files.exchange import MODULES, READ_ONLY, WRITE_ONLY, format_named
 from compoundkin.files.exchange.contract import ExchangeFormat, Readable, Writable
+
+FormatT = TypeVar("FormatT", bound=ExchangeFormat)
 
 
 @dataclass(frozen=True)
@@ -34,27 +37,38 @@ def formats() -> tuple[KnownFormat, ...]:
     >>> [one.program for one in formats() if one.name == "linkage"]
     ['Linkage']
     """
-    return tuple(_known(one) for one in _every())
+    return tuple(_known(format_named(name)) for name in MODULES)
 
 
-def readable_formats() -> dict[str, Readable]:
+class FormatsByName(Mapping[str, FormatT]):
+    """Formats by their words, each imported when it is asked for."""
+
+    def __init__(self, others: tuple[str, ...]) -> None:
+        self._names = tuple(name for name in MODULES if name not in others)
+
+    def __getitem__(self, name: str) -> FormatT:
+        """The format of a word."""
+        if name not in self._names:
+            raise KeyError(name)
+        return cast("FormatT", format_named(name))
+
+    def __iter__(self) -> Iterator[str]:
+        """The words, in the order in which a content is tried."""
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self._names)
+
+
+def readable_formats() -> Mapping[str, Readable]:
     """Return the formats that are read, by their words. A content is tried in their order."""
-    return {one.name: one for one in _every() if isinstance(one, Readable)}
+    return FormatsByName[Readable](WRITE_ONLY)
 
 
-def writable_formats() -> dict[str, Writable]:
-    """Return the formats that are written by their words."""
-    return {one.name: one for one in _every() if isinstance(one, Writable)}
-
-
-def _every() -> list[ExchangeFormat]:
-    found = []
-    for name in MODULES:
-        try:
-            found.append(format_named(name))
-        except ModuleNotFoundError:  # until all of them are there
-            continue
-    return found
+def writable_formats() -> Mapping[str, Writable]:
+    """Return the formats that are written, by their words."""
+    return FormatsByName[Writable](READ_ONLY)
 
 
 def _known(one: ExchangeFormat) -> KnownFormat:
