@@ -10,7 +10,8 @@ from pathlib import Path
 
 from compoundkin.base.errors import InvalidInput, Problem
 
-# What files and links may hold. The largest known are of some hundred kilobytes, and of ten.
+# What files and links may hold. The largest known are of some hundred kilobytes, and of ten; files of some programs
+# have a picture in them.
 MOST_BYTES = 8_000_000
 MOST_OF_LINK = 200_000
 # A text with more full stops than this, and nothing that paths have, is a link without its address.
@@ -63,25 +64,23 @@ def content_of(source: str | os.PathLike[str]) -> Content:
     """
     if isinstance(source, str) and (_is_itself(source) or _is_pasted(source)):
         raw = source.encode("utf-8", "surrogatepass")
-        if len(raw) > (MOST_BYTES if "\n" in source else MOST_OF_LINK):
-            raise _too_large("the text", len(raw), MOST_BYTES if "\n" in source else MOST_OF_LINK)
+        hold_size("the text", len(raw), MOST_BYTES if "\n" in source else MOST_OF_LINK)
         return Content(raw)
     path = Path(source)
     try:
         if path.is_dir():
             raise InvalidInput(Problem(str(path), "this is a folder", "name a file in it"))
-        size = path.stat().st_size
-        if size > MOST_BYTES:
-            raise _too_large(str(path), size, MOST_BYTES)
+        hold_size(str(path), path.stat().st_size, MOST_BYTES)
         with path.open("rb") as file:
             raw = file.read(MOST_BYTES + 1)
+    except InvalidInput:  # which is a ValueError too
+        raise
     except FileNotFoundError:
         raise InvalidInput(Problem(str(path), "there is no such file", "name a file, or paste a link")) from None
     except (OSError, ValueError) as error:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(path)[:200], f"it cannot be read: {what}")) from None
-    if len(raw) > MOST_BYTES:
-        raise _too_large(str(path), len(raw), MOST_BYTES)
+    hold_size(str(path), len(raw), MOST_BYTES)
     return Content(raw, str(path))
 
 
@@ -96,6 +95,8 @@ def _is_pasted(source: str) -> bool:
     return source.count(".") > _PARTS and re.fullmatch(r"([\w.-]+/\?)?[\w.,:;+ %*~-]+", source) is not None
 
 
-def _too_large(where: str, size: int, most: int) -> InvalidInput:
-    what = f"it has {size:,} bytes; a mechanism's has at most {most:,}"
-    return InvalidInput(Problem(where, what, "look whether it is the right file"))
+def hold_size(where: str, size: int, most: int) -> None:
+    """Raise InvalidInput for what has more bytes than it may."""
+    if size > most:
+        what = f"it has {size:,} bytes; a mechanism's has at most {most:,}"
+        raise InvalidInput(Problem(where, what, "look whether it is the right file"))

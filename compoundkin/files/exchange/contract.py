@@ -24,7 +24,10 @@ class ExchangeFormat(ABC):
 
 
 class Readable(ExchangeFormat):
-    """A format that is read."""
+    """A format that is read. No content of it may have more bytes than `most`."""
+
+    # a mechanism of a thousand joints has a tenth of it
+    most: ClassVar[int] = 1_000_000
 
     @abstractmethod
     def recognises(self, content: Content) -> bool:

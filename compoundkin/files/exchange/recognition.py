@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.content import Content, hold_size
 from compoundkin.files.exchange.contract import Readable
 
 _TABLE = "save a table of its joints as text: link names, type, x, y"
@@ -30,7 +30,16 @@ _STRANGERS: tuple[tuple[Callable[[Content], object], str, str], ...] = (
 
 
 def recognised(content: Content, known: Mapping[str, Readable], form: str = "") -> Readable:
-    """Return the format of a content. Raises InvalidInput where it is of another than `form`, or of none."""
+    """Return the format of a content.
+
+    Raises InvalidInput where it is of another than `form`, or of none, or larger than any of its format.
+    """
+    found = _found(content, known, form)
+    hold_size(content.where or "the text", len(content.raw), found.most)
+    return found
+
+
+def _found(content: Content, known: Mapping[str, Readable], form: str) -> Readable:
     if form and known[form].recognises(content):
         return known[form]
     found = next((one for one in known.values() if one.recognises(content)), None)

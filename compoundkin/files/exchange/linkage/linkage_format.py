@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.content import MOST_BYTES, Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
@@ -22,6 +22,9 @@ DYADS = 2
 
 class LinkageFormat(Readable, Writable):
     """Files of the Linkage program, which solves dyads only."""
+
+    # they may have a picture in the background
+    most: ClassVar[int] = MOST_BYTES
 
     name: ClassVar[str] = "linkage"
     program: ClassVar[str] = "Linkage"
