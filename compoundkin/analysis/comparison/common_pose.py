@@ -12,12 +12,15 @@ from compoundkin.analysis.comparison.like_stance import values_of_like_stance
 from compoundkin.analysis.comparison.point_partners import partners_by_name, partners_by_place, shares_places
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.series import Number
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import LENGTHS
 
 # So many steps of Newton are taken to a pose, from so many poses of a motion; steps below this are rounding.
 _STEPS, _STARTS, _STILL = 10, 2, 1e-13
 # Steps go on while they leave less than this part of the squares: near a pose that is found they leave far less.
 _LESS = 0.9
+# Of mechanisms whose sizes differ by more than this factor neither is the other, or a part of it.
+_LIKE = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,18 +56,25 @@ def common_pose(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
 def _scales(one: ComparedSide, other: ComparedSide) -> list[float]:
     """Return what lengths of the second may have to be multiplied by.
 
-    Units tell it; where one has none, what is read as written, else the power of ten that makes the two as large.
+    Units tell it where both have some; else they are as written, or the power of ten that makes the two as large.
+    Programs that round to few decimals are given drawings enlarged so.
     """
-    units = [LENGTHS.get(side.mechanism.unit) for side in (one, other)]
-    if units[0] and units[1]:
-        return [units[1] / units[0]]
+    units = scale_of_units(one.mechanism, other.mechanism)
     ratio = one.size / other.size
     power = float(10.0 ** np.round(np.log10(ratio))) if 0.0 < ratio < np.inf else 1.0
-    return list(dict.fromkeys((1.0, power)))
+    return list(dict.fromkeys((units or 1.0, 1.0, power)))
+
+
+def scale_of_units(one: Mechanism, other: Mechanism) -> float | None:
+    """Return the unit of the second in that of the first. None where one has none."""
+    units = [LENGTHS.get(mechanism.unit) for mechanism in (one, other)]
+    return units[1] / units[0] if units[0] and units[1] else None
 
 
 def _by_place(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
     """Find the pose in which one is shown in the motion of the other."""
+    if not 1.0 / _LIKE <= one.size / other.size <= _LIKE:
+        return None
     at_one, at_other = (side.places(side.there)[0] for side in (one, other))
     values = _found(one, other, at_other)
     if values is not None:

@@ -24,8 +24,8 @@ def compare(one: Mechanism, other: Mechanism) -> MechanismComparison:
 
     They are moved from a pose that both have, by the same displacements of their drivers, over the range that both
     have. Points stand for each other that are in the same places there and go on together, else those of the same name;
-    drivers do that move these points alike. Lengths of the second are converted by the units; where one has none, they
-    are taken as written, or times a power of ten if only that fits. The frames' axes are the same.
+    drivers do that move these points alike. Lengths of the second are converted by the units. Where one has none, or
+    nothing fits so, they are taken as written, or times a power of ten. The frames' axes are the same.
 
     Nothing is raised for mechanisms that cannot be solved or have nothing in common: the comparison then says why.
 

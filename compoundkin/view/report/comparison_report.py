@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import degrees
 
+from compoundkin.analysis.comparison.common_pose import scale_of_units
 from compoundkin.analysis.comparison.comparison_findings import ROUNDING, MechanismComparison
 from compoundkin.model.elements import FRAME
 from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
@@ -35,6 +36,9 @@ def _about(found: MechanismComparison) -> Iterator[Block]:
         how = "places at a pose that both have" if found.matched_by == "place" else "names"
         scaled = "" if found.scale == 1.0 else f" Lengths of the second count {number(found.scale)} times."
         yield Paragraph(f"Points stand for each other by their {how}.{scaled}")
+        units = scale_of_units(one, other)
+        if units is not None and abs(found.scale / units - 1.0) > ROUNDING:
+            yield Paragraph(f"By their units the second is {number(units / found.scale)} times as large as the first.")
     alone = (("the first", found.only_one), ("the second", found.only_other))
     for which, letters in alone if found.points else ():
         if letters:

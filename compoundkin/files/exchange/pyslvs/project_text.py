@@ -13,7 +13,8 @@ from compoundkin.files.exchange.problems import Problems
 _ENTRY = re.compile(r"(['\"]?)(\w+)\1:(?:\s+(.*))?")
 _ESCAPED = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8})|([ \t]*\n\s*)|(.))", re.DOTALL)
 _PLAIN_ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", '"': '"', "'": "'", " ": " ", "/": "/", "r": "\r", "0": ""}
-_FOLDED = re.compile(r"[ \t]*\n\s*")
+# What stands before keeps the search from beginning anew at every blank of a row.
+_FOLDED = re.compile(r"(?<![ \t])[ \t]*\n\s*")
 # Projects have a dozen.
 _MOST_ENTRIES = 1000
 # What begins a tag, an anchor, an alias: never in what these programs write of a mechanism.
@@ -116,7 +117,7 @@ def scalar(raw: str, where: str, problems: Problems) -> str:
 
 
 def _unescaped(text: str) -> str:
-    folded = re.sub(r"(?<!\\)[ \t]*\n\s*", " ", text)
+    folded = re.sub(r"(?<![\\ \t])[ \t]*\n\s*", " ", text)
     return _ESCAPED.sub(_meant, folded)
 
 
