@@ -194,6 +194,37 @@ def test_an_input_without_anchor_drives_against_the_link_listed_first() -> None:
     assert driver.speed == pytest.approx(np.pi / 5)
 
 
+def test_an_input_at_a_frame_link_turns_the_other_link() -> None:
+    """The crank is listed first: the frame turns clockwise against it."""
+    loose = (connector(0, 0, 0, 'input="true" rpm="30" limitangle="9"'), *FOUR_BAR[1:4])
+    ground = (connector(8, -30, -30, ANCHOR), connector(9, 30, -30, ANCHOR))
+    first = read(*loose, *ground, *FOUR_BAR[4:], link(9, 8, 9, 0)).mechanism.drives[0]
+    last = read(*loose, *ground, link(9, 8, 9, 0), *FOUR_BAR[4:]).mechanism.drives[0]
+    assert (first.link, first.on, first.speed) == (last.link, last.on, -last.speed)
+    assert (first.link, first.on, first.speed) == ("link 0", "frame", pytest.approx(np.pi))
+    np.testing.assert_allclose(np.ptp(np.asarray([first.values, last.values]), axis=1), np.radians(9))
+
+
+def test_a_wheel_fastened_to_the_frame_holds_a_planet() -> None:
+    """Willis: about a fixed wheel of twice its teeth a planet turns three times as far as its arm."""
+    found = read(
+        connector(0, 0, 0, INPUT),
+        connector(1, 96, 0),
+        connector(2, -48, 0, ANCHOR),
+        connector(3, 96, 48),
+        link(0, 0, 1),
+        link(1, 0, more='gear="true" fastenlink="5"'),
+        link(2, 1, more='gear="true" fastenlink="3"'),
+        link(3, 1, 3),
+        link(5, 2, 0),
+        '<ratios><ratio type="gears"><link id="1" size="30"/><link id="2" size="15"/></ratio></ratios>',
+        program='units="Inches"',
+    )
+    motion = ck.solve(found.mechanism, {"link 0": 0.3}, order=0)
+    expected = np.exp(0.3j) + 0.5j * np.exp(0.9j)
+    assert complex(np.ravel(motion.points["3"].position)[0]) == pytest.approx(expected)
+
+
 def test_oscillating_and_manual_inputs() -> None:
     swing = (FOUR_BAR[0].replace(">", ' limitangle="40">', 1), *FOUR_BAR[1:])
     (driver,) = read(*swing).mechanism.drives

@@ -30,18 +30,21 @@ def inputs_of(points: ConnectorPoints) -> Iterator[DrawnDriver]:
         bodies = joined.at(one.id)
         if len(bodies) == 2:
             joined.notes += _told(one)
-            yield _input(one, points.key(one.id), bodies[1], bodies[0])
+            on, link = bodies
+            sense = -CLOCKWISE if link == FRAME else CLOCKWISE  # it is the other link that turns against the frame
+            yield _input(one, points.key(one.id), (link, on) if link != FRAME else (on, link), sense)
         else:
             joined.problems.add(
                 one.where, f"it is an input, but {_why(one, bodies)}", "turn a link at it, or clear its input"
             )
 
 
-def _input(one: LinkageConnector, at: str, link: str, on: str) -> DrawnDriver:
-    speed = None if one.manual or not one.rpm else CLOCKWISE * one.rpm * 2.0 * pi / SECONDS
-    sense = CLOCKWISE if one.rpm >= 0 else -CLOCKWISE
-    travel = (0.0, sense * radians(abs(one.range))) if one.range else None
-    return DrawnDriver(link, on, at, speed, travel, where=one.where)
+def _input(one: LinkageConnector, at: str, links: tuple[str, str], sense: float) -> DrawnDriver:
+    """Return the driver of the first link against the second, whose speed has a sign."""
+    speed = None if one.manual or not one.rpm else sense * one.rpm * 2.0 * pi / SECONDS
+    ahead = sense if one.rpm >= 0 else -sense
+    travel = (0.0, ahead * radians(abs(one.range))) if one.range else None
+    return DrawnDriver(*links, at, speed, travel, where=one.where)
 
 
 def _told(one: LinkageConnector) -> Iterator[str]:

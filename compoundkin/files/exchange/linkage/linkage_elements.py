@@ -28,7 +28,7 @@ class WrittenConnector:
     def lines(self, scale: float) -> Iterator[str]:
         """Yield its lines. A drawing's length is so many of the file's."""
         xy = {"x": place(self.at.real * scale), "y": place(self.at.imag * scale)}
-        drives = {} if self.rpm is None else {"input": "true", "rpm": plain(self.rpm)}
+        drives = {} if self.rpm is None else {"input": "true", "rpm": plain(_told(self.rpm))}
         if self.range:
             drives["limitangle"] = plain(self.range)
         slides = {"slider": "true"} if self.limits else {}
@@ -59,7 +59,7 @@ class WrittenLink:
         if self.fastened is not None:
             text["fastenlink"] = str(self.fastened)
         if self.throw:
-            text |= {"actuator": "true", "throw": place(self.throw * scale), "cpm": plain(self.cpm)}
+            text |= {"actuator": "true", "throw": place(self.throw * scale), "cpm": plain(_told(self.cpm))}
         yield from element("Link", text, [tag("connector", {"id": str(id_)}) for id_ in self.connectors])
 
 
@@ -97,6 +97,11 @@ def place(value: float) -> str:
     ('0', '453.543307086614')
     """
     return plain(round(float(value), _DIGITS) + 0.0)
+
+
+def _told(value: float) -> float:
+    """Return a speed without what rounding has left of its conversion."""
+    return float(f"{value:.15g}")
 
 
 def tag(name: str, attributes: dict[str, str]) -> str:

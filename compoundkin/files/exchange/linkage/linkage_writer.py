@@ -63,8 +63,9 @@ def _scale(drawing: Drawing, size: float) -> tuple[str, float, float, list[str]]
     shown = metres / LENGTHS["in" if inches else "mm"]
     notes = []
     if drawing.unit not in ("mm", "in"):
-        said = f"1 {drawing.unit}" if drawing.unit else "a length of 1"
-        notes.append(f"lengths there are in {'inches' if inches else 'millimetres'}: {said} is {shown:g} of them")
+        there = "in" if inches else "mm"
+        said = f"1 {drawing.unit}" if drawing.unit else "lengths have no unit: 1"
+        notes.append(f"{said} is {shown:g} {there} there")
     mm = size * shown * (MM_PER_INCH if inches else 1.0)
     factor = 1.0 if _SMALLEST <= mm <= _LARGEST else 10.0 ** floor(log10(mm / 2.0 / _SMALLEST))
     return (
