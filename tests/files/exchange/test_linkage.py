@@ -124,6 +124,9 @@ def test_document_types_and_entities_are_refused(text: str) -> None:
 
 
 def test_bounds_hold() -> None:
+    for factor in ("1e-320", "-1", "1e12"):
+        with pytest.raises(InvalidInput, match=r"line 1, program: scalefactor .* cannot be meant"):
+            read(*FOUR_BAR, program=f'scalefactor="{factor}"')
     deep = "<linkage2>" + "<a>" * 100_000
     wide = "<linkage2>" + "<a/>" * 100_000 + "</linkage2>"
     for text, said in ((deep, "nested deeper"), (wide, "more than 20,000 elements"), ("<linkage2>&a;", "not XML")):

@@ -10,13 +10,15 @@ from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
 
 # Connectors are at one place that are nearer to each other than this part of the size; those meant to be snap.
 ONE_PLACE = 1e-6
+# No drawing is smaller; of such a division would leave nothing.
+_LEAST = 1e-200
 # More hints are no help.
 _MOST = 6
 
 
 def unjoined(joined: JoinedLinks, size: float) -> Iterator[tuple[LinkageConnector, LinkageConnector]]:
     """Yield pairs of connectors at one place without a link in common."""
-    near = ONE_PLACE * size
+    near = ONE_PLACE * max(size, _LEAST)
     places: dict[tuple[int, int], list[LinkageConnector]] = {}
     for one in joined.file.connectors.values():
         if joined.at(one.id):

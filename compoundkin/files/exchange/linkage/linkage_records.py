@@ -16,6 +16,8 @@ PER_INCH = 96.0
 MM_PER_INCH = 25.4
 UNITS = {"millimeters": ("mm", MM_PER_INCH / PER_INCH), "inches": ("in", 1.0 / PER_INCH)}
 ROOT = "linkage2"
+# From atoms to planets.
+LEAST_FACTOR = 1e-9
 _LOOKS = ("selected", "background", "printer")
 
 
@@ -131,8 +133,9 @@ def _read_program(root: XmlElement, file: LinkageFile, problems: Problems) -> No
             problems.add(values.where, f"there is no unit {units[:40]!r}", "Millimeters or Inches")
         file.unit, file.scale = UNITS.get(units.lower(), UNITS["millimeters"])
         factor = values.number("scalefactor", 1.0)
-        if factor <= 0:
-            problems.add(values.where, f"scalefactor {factor:g} is not positive", "a drawing at true size has 1")
+        if not LEAST_FACTOR <= factor <= 1.0 / LEAST_FACTOR:
+            problems.add(values.where, f"scalefactor {factor:g} cannot be meant", "a drawing at true size has 1")
+            return
         file.scale *= factor
         return
 
