@@ -67,7 +67,6 @@ COMMON = {"advantage", "angle", "displacement", "x", "y", "speed", "rate", "valu
 COMMON |= {"force", "moment", "effort", "power"}
 # Problems name places in files and calls, and remedies parts, that are called like attributes.
 KEYS_OF_PROBLEMS = {
-    "files/exchange/mjcf/driver_elements.py: velocity",  # an element of MuJoCo's files
     "analysis/mechanical_advantage.py: .angle",
     "dynamics/drives/driver_course.py: .effort",
     "dynamics/drives/driver_course.py: .power",

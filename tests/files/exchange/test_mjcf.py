@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -224,12 +229,12 @@ def test_random_dyads_move_the_same(seed: int) -> None:
     held_against_mujoco(shown_mechanism(random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3)).mechanism()))
 
 
-@pytest.mark.parametrize("name", ["six-bar", "planetary-train", "whitworth-quick-return"])
+@pytest.mark.parametrize("name", ["six-bar", "planetary-train", "whitworth-quick-return", "scissor-lift-loaded"])
 def test_models_run(name: str) -> None:
     """From the keyframe on, the actuators hold the speed and the constraints what is joined."""
     run, start = MujocoModel(shown(name)), shown(name)
     mujoco.mj_resetDataKeyframe(run.model, run.data, 0)
-    mujoco.mj_step(run.model, run.data, 800)
+    mujoco.mj_step(run.model, run.data, 1500)
     (driver,) = start.values
     turned = start.rates[driver] * run.data.time
     motion = ck.solve(start.mechanism, {driver: np.linspace(start.values[driver], start.values[driver] + turned, 60)})
@@ -249,3 +254,15 @@ def test_names_and_units_are_told() -> None:
 
 def crank_called(name: str) -> ck.Mechanism:
     return ck.Mechanism("m", ck.link("frame", A=0), ck.link(name, A=0, B=1), ck.drive(name))
+
+
+def test_the_page_on_mujoco_is_true(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (Path(__file__).parents[3] / "docs" / "exchange" / "mujoco.md").read_text("utf-8")
+    names: dict[str, Any] = {}
+    for code, told in re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", page, re.DOTALL):
+        if "import mujoco" not in code or find_spec("mujoco"):
+            exec(code, names)
+            assert capsys.readouterr().out == told

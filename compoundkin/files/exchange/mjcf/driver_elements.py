@@ -7,53 +7,102 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import TURN, first_entry
 from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
 from compoundkin.files.exchange.mjcf.body_elements import number
 from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
 
 # The drawn pose in motion: what the keyframe is called.
 KEYFRAME = "drawn"
+# A driver that turns as far but for so much of it makes full turns.
+_ROUNDING = 1e-9
 
 
-def driver_elements(plan: ModelPlan, world: Element, loads: Element, stiffness: float) -> Iterator[Element]:
+def driver_elements(plan: ModelPlan, world: Element, loads: Element, lag: float) -> Iterator[Element]:
     """Yield the actuators, those of loads last, and the keyframe.
 
-    `stiffness` is how many times a second a driver could catch up.
+    A driver is drawn by a critically damped spring toward a place that moves with its speed; `lag` is the time
+    constant of that in seconds. It stops at the ends of the range over which the mechanism is solved.
     """
-    actuators = Element("actuator")
+    actuators, key = Element("actuator"), Element("key", name=KEYFRAME)
     speeds = dict(_speeds(plan))
     for name, (joint, _) in speeds.items():
-        lever = plan.size**2 if plan.joints[joint].is_hinge else 1.0
-        weight = sum(mass.mass for mass in plan.masses.values()) * lever
-        SubElement(actuators, "velocity", name=name, joint=joint, kv=number(weight * stiffness))
+        weight = moved_mass(plan, name, joint)
+        words = {"kp": number(weight / lag**2), "kv": number(2.0 * weight / lag)}
+        ends = _range(plan, name, joint)
+        words |= {"actrange": " ".join(number(end) for end in ends)} if ends else {}
+        SubElement(actuators, "intvelocity", {"name": name, "joint": joint, **words})
     actuators.extend(loads)
+    rates, joints = joint_rates(plan), [joint.get("name", "") for joint in world.iter("joint")]
+    key.set("qpos", " ".join(["0"] * len(joints)))
+    key.set("qvel", " ".join(number(rates[name] * plan.unit_of(name)) for name in joints))
     if len(actuators):
-        yield actuators
-    rates = joint_rates(plan)
-    names = [joint.get("name", "") for joint in world.iter("joint")]
-    frames = Element("keyframe")
-    key = SubElement(
-        frames,
-        "key",
-        name=KEYFRAME,
-        qpos=" ".join(["0"] * len(names)),
-        qvel=" ".join(number(rates[name] * plan.unit_of(name)) for name in names),
-    )
-    if len(actuators):
-        # what a load pulls is in its gear
+        # what a load pulls is in its gear; a place that is ahead of its driver draws it with the right speed
         key.set("ctrl", " ".join([*(number(speed) for _, speed in speeds.values()), *["1"] * len(loads)]))
+        key.set("act", " ".join(number(2.0 * lag * speed) for _, speed in speeds.values()))
+        yield actuators
+    frames = Element("keyframe")
+    frames.append(key)
     yield frames
+
+
+def moved_mass(plan: ModelPlan, name: str, joint: str) -> float:
+    """Return the mass or inertia of all links as a driver feels it.
+
+    It is the median over the poses. That is twice their energy by the square of its speed; where it is not known, that of all masses at the size.
+    """
+    motion, total = plan.shown.motion, sum(mass.mass for mass in plan.masses.values())
+    rough = total * (plan.size**2 if plan.joints[joint].is_hinge else 1.0)
+    if motion is None:
+        return rough
+    energy: Number = 0.0
+    for link, own in plan.masses.items():
+        pose, length = motion.poses[link], plan.units.length
+        turning = (pose.derivative(1.0, 1) - pose.derivative(0.0, 1)) * np.conjugate(pose.u.c[0])
+        energy = energy + own.mass * np.abs(pose.derivative(own.centre / length, 1) * length) ** 2
+        energy = energy + own.inertia * turning.imag**2
+    rate = np.ravel(motion.drives[name].rate) * plan.unit_of(joint)
+    with np.errstate(all="ignore"):
+        felt = np.ravel(energy) / rate**2
+    known = felt[np.isfinite(felt) & (felt > 0.0)]
+    found = float(np.median(known)) if known.size else rough
+    # the energy is that of all drivers together
+    return min(found, rough) if len(plan.shown.values) > 1 else found
+
+
+def _range(plan: ModelPlan, name: str, joint: str) -> tuple[float, float] | None:
+    """Return from where to where a driver's joint may go; None where it makes full turns, or is known at a pose."""
+    motion = plan.shown.motion
+    if motion is None or motion.inputs.poses < 2:
+        return None
+    values = np.broadcast_to(np.ravel(motion.drives[name].value), motion.assembled.shape).ravel()
+    drawn, solved = plan.shown.values[name], np.ravel(motion.assembled)
+    if solved.all() and plan.joints[joint].is_hinge and np.ptp(values) >= TURN * (1.0 - _ROUNDING):
+        return None
+    # of several ranges that in which it is drawn
+    at = int(np.argmin(np.where(solved, np.abs(values - drawn), np.inf)))
+    gaps = np.flatnonzero(~solved)
+    run = values[gaps[gaps < at].max(initial=-1) + 1 : gaps[gaps > at].min(initial=values.size)]
+    sign = dict(_signs(plan))[name]
+    ways = sign * (np.append(run, drawn) - drawn) * plan.unit_of(joint)
+    return (float(ways.min()), float(ways.max())) if np.ptp(ways) > 0.0 else None
+
+
+def _signs(plan: ModelPlan) -> Iterator[tuple[str, int]]:
+    """Yield the drivers with 1 or -1, as their joints move with them."""
+    signs = {own.chain.pair.name: own.sign for own, _ in plan.bodies.values()}
+    for name, step in plan.shown.structure.driven.items():
+        yield name, signs[step.pair.name] * step.pair.driven_by(step.drive.link)
 
 
 def _speeds(plan: ModelPlan) -> Iterator[tuple[str, tuple[str, float]]]:
     """Yield the drivers with their joints and the speeds of these, in the model's units."""
-    signs = {branch.chain.pair.name: branch.sign for branch, _ in plan.bodies.values()}
-    for name, step in plan.shown.structure.driven.items():
+    for name, sign in _signs(plan):
+        step = plan.shown.structure.driven[name]
         joint = step.pair.name
         speed = plan.shown.rates.get(name, float(first_entry(step.drive.speed)))
-        sign = signs[joint] * step.pair.driven_by(step.drive.link)
         yield name, (joint, sign * speed * plan.unit_of(joint))
 
 

@@ -21,7 +21,7 @@ from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.geometry import FRAME
 
 # In how many steps drivers catch up.
-_OF_DRIVERS = 2.0
+_OF_DRIVERS = 16.0
 # MuJoCo's own name of the frame.
 _WORLD = "world"
 
@@ -62,7 +62,7 @@ def _model(plan: ModelPlan, bodies: Mapping[str, Element], loads: ModelLoads, no
     model.extend(settings(plan, notes))
     model.append(world)
     model.extend(constraint_elements(plan, loads.tendons))
-    model.extend(driver_elements(plan, world, loads.actuators, 1.0 / (_OF_DRIVERS * step_of(plan))))
+    model.extend(driver_elements(plan, world, loads.actuators, _OF_DRIVERS * step_of(plan)))
     return model
 
 

@@ -14,7 +14,7 @@ from compoundkin.files.exchange.mjcf.driver_elements import fastest
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
 
 # The longest step (seconds), and how many make a turn of the fastest driver, or a way of six sizes.
-_LONGEST, _STEPS = 1e-3, 2000
+_LONGEST, _STEPS = 2.5e-4, 2000
 # In how many steps constraints catch up. Two are the least in MuJoCo, which suit where nothing moves fast beside the
 # driver; with eight all shipped mechanisms run.
 _OF_CONSTRAINTS = 8.0
