@@ -56,14 +56,28 @@ def test_the_base_may_be_a_later_joint_of_its_link():
     assert "# inputs: [(3, 2)]" in write(got, "pyslvs").text
 
 
-def test_a_slide_is_driven_by_the_distance_from_where_it_is_drawn():
-    text = "M[J[P, A[20], P[3, 0], L[ground, ram]], J[R, P[3, 0], L[ram, rod]], J[R, P[6, 5], L[rod, arm]], "
-    got = read(text + "J[R, P[0, 6], L[arm, ground]]]\n[(0, 0)]").mechanism
+@pytest.mark.parametrize(
+    ("joint", "way"),
+    [("J[P, A[20], P[3, 0], L[ground, ram]]", 0.5), ("J[P, A[20], P[3, 0], L[ram, ground]]", -0.5)],
+)
+def test_a_slide_is_driven_by_the_distance_of_its_point_from_where_it_is_drawn(joint, way):
+    text = f"M[{joint}, J[R, P[3, 0], L[ram, rod]], J[R, P[6, 5], L[rod, arm]], J[R, P[0, 6], L[arm, ground]]]"
+    got = read(f"{text}\n[(0, 0)]").mechanism
     for one in (got, read(write(got, "pyslvs-project").text).mechanism):
         assert shown_mechanism(one).values == {"ram": 0.0}
         motion = ck.solve(one, driven_by(shown_mechanism(one), 0.5), order=0)
         moved = motion.points["A"].position.ravel()[-1] - 3
-        assert moved == pytest.approx(0.5 * np.exp(1j * np.deg2rad(20)))
+        assert moved == pytest.approx(way * np.exp(1j * np.deg2rad(20)))
+
+
+def test_a_pin_in_a_slot_is_driven_along_it():
+    text = "M[J[R, P[0, 0], L[ground, a]], J[R, P[3, 4], L[a, b]], J[RP, A[0], P[10, 0], L[ground, b]]]\n[(2, 2)]"
+    got = read(text).mechanism
+    for one in (got, read(write(got, "pyslvs").text).mechanism):
+        motion = ck.solve(one, driven_by(shown_mechanism(one), -1.0), order=0)
+        assert motion.points["C"].position.ravel()[-1] == pytest.approx(9)
+        off = motion.points["B"].position.ravel()[-1]
+        assert (abs(off), abs(off - 9)) == (pytest.approx(5), pytest.approx(np.sqrt(65)))
 
 
 @pytest.mark.parametrize("case", entry("pyslvs_refused")["cases"], ids=lambda case: case["reason"])

@@ -87,16 +87,13 @@ def _undriven(drawing: Drawing, notation: Notation) -> Iterator[Problem]:
     if len(drawing.drivers) > notation.most_drivers:
         called = ", ".join(repr(one.name or one.link) for one in drawing.drivers)
         yield Problem("drives", f"{len(drawing.drivers)} drivers ({called}); {program} has one")
-    guides = {guide.key: guide for guide in drawing.guides}
+    guides = {guide.key for guide in drawing.guides}
     wheels = {*(one.key for one in drawing.gears), *(one.key for one in drawing.racks)}
     wheels |= {one.key for one in drawing.arcs}
     for one in drawing.drivers:
         if one.at in wheels:
             yield Problem(one.at, f"{program} cannot drive it", "drive a pin or a slide")
-        elif one.at in guides:
-            if guides[one.at].kind == "slot" and not notation.slots_drive:
-                yield Problem(one.at, f"a pin in a slot cannot drive in {program}", "drive a pin or a slide")
-        elif not notation.loose_drivers and FRAME not in (one.on, one.link):
+        elif one.at not in guides and not notation.loose_drivers and FRAME not in (one.on, one.link):
             yield Problem(one.at, f"{program} drives pins of the frame only, this one is of {one.on} and {one.link}")
 
 

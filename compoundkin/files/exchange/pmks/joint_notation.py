@@ -14,9 +14,8 @@ from compoundkin.model.geometry import FRAME
 class Notation:
     """Such a program. `illegal` are characters that names of links may not have, `is_ground` tells names of the frame.
 
-    `gears`: whether it has them; `most_drivers`: how many it takes; `slots_drive`: whether a pin in a slot can;
-    `loose_drivers`: whether a pin of two moving links can.
-    `splits_pins`: whether a driven pin of many links is two joints.
+    `gears`: whether it has them; `most_drivers`: how many it takes; `loose_drivers`: whether a pin of two moving links
+    can drive; `splits_pins`: whether a driven pin of many links is two joints.
     """
 
     program: str
@@ -24,7 +23,6 @@ class Notation:
     is_ground: Callable[[str], bool]
     gears: bool
     most_drivers: int
-    slots_drive: bool
     loose_drivers: bool
     splits_pins: bool
 

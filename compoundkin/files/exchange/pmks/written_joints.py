@@ -15,7 +15,6 @@ PMKS = Notation(
     is_ground=means_ground,
     gears=True,
     most_drivers=1,
-    slots_drive=False,
     loose_drivers=True,
     splits_pins=True,
 )

@@ -31,7 +31,7 @@ def input_pairs(text: str, problems: Problems) -> list[tuple[int, int]]:
     if len(numbers) > 2 * MOST_JOINTS:
         problems.add("input", f"there are more than {MOST_JOINTS} inputs", "is it the right file?")
         return []
-    return list(zip(numbers[::2], numbers[1::2], strict=True))
+    return list(dict.fromkeys(zip(numbers[::2], numbers[1::2], strict=True)))
 
 
 def drivers_of(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from math import fmod, radians
+from math import fmod, pi, radians
 
 from compoundkin.base.display import short
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointKind, JointRecord, own_key
@@ -100,8 +100,11 @@ def _joint(words: ExpressionWords, found: PyslvsExpression, problems: Problems) 
         return None
     for name in own.links:
         found.names.setdefault(_key(name), name)
+    keys = tuple(map(_key, own.links))
     angle = radians(fmod(own.angle or 0.0, 360.0))
-    return JointRecord(kind or "R", tuple(map(_key, own.links)), own.at or 0j, angle, where=where)
+    # the way is told of the point on the slot: where the point is the frame's, the link with the slot goes backward
+    backward = kind == "P" and keys[1:] == (FRAME,)
+    return JointRecord(kind or "R", keys, own.at or 0j, angle + pi if backward else angle, where=where)
 
 
 def _field(words: ExpressionWords, own: _Fields, found: PyslvsExpression, where: str, problems: Problems) -> None:

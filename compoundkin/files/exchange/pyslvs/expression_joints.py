@@ -8,7 +8,7 @@ from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Imported
-from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList
+from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints, point_keys
 from compoundkin.files.exchange.pmks.record_problems import note_faults
 from compoundkin.files.exchange.problems import Problems
@@ -43,8 +43,23 @@ def _joints(title: str, found: PyslvsExpression, problems: Problems, dropped: di
         for one in drivers
     )
     counts = {"colour": found.colours, "point of no link": len(found.joints) - len(held), **dropped}
-    records = tuple(record for record in found.joints if record is not None)
-    return JointList(records, found.names, drivers, title, tuple(notes), counts)
+    records = [record for record in found.joints if record is not None]
+    names = dict(found.names)
+    drivers = tuple(_with_block(one, records, names) for one in drivers)
+    notes += (f"{name} is the block by which a pin is driven in its slot" for name in names if name not in found.names)
+    return JointList(tuple(records), names, drivers, title, tuple(notes), counts)
+
+
+def _with_block(driver: JointDriver, records: list[JointRecord], names: dict[str, str]) -> JointDriver:
+    """Return a driver of a slide: a pin that is driven in its slot is held by a block that slides there."""
+    record = records[driver.joint]
+    if record.kind != "RP" or not record.is_guide:
+        return driver
+    block = f"block {driver.joint}"
+    names[block] = block
+    records[driver.joint] = replace(record, kind="R", links=(block, *record.links[1:]))
+    records.append(replace(record, kind="P", links=(record.links[0], block)))
+    return replace(driver, joint=len(records) - 1)
 
 
 def _in_order(drawing: Drawing, joints: JointList) -> Drawing:

@@ -17,7 +17,6 @@ PYSLVS = Notation(
     is_ground=GROUND.__eq__,
     gears=False,
     most_drivers=MOST_JOINTS,
-    slots_drive=True,
     loose_drivers=False,
     splits_pins=False,
 )
