@@ -118,6 +118,7 @@ def test_refusals_with_their_words(case: dict[str, str]) -> None:
 WRONG = {
     "unknown carrier": (SLOT, ",CD,C,D", ",ZZ,C,D", "joint P: its slot is on a link 'ZZ' that is not there"),
     "unknown end": (SLOT, ",CD,C,D", ",CD,C,Q", "joint P: its slot is through a joint 'Q' that is not there"),
+    "a part of nothing": (SLOT, "YRCD", "NRCD", "joint P: its slot is on 'CD', a part that no link has"),
     "one end twice": (SLOT, ",CD,C,D", ",CD,C,C", "its slot is through the joint 'C' twice"),
     "ends of another link": (SLOT, ",CD,C,D", ",AB,C,D", "through 'C' and 'D', not of its carrier 'AB'"),
     "through itself": (SLOT, ",CD,C,D", ",CD,C,P", "its slot is through itself"),

@@ -13,6 +13,7 @@ def note_problems(shared: SharedMechanism, problems: Problems) -> None:
     """Note all that is wrong between the records."""
     joints = {joint.id: joint for joint in shared.joints}
     links = {link.id: link for link in shared.links}
+    wholes = {id_ for link in shared.links if link.is_root for id_ in (link.id, *link.parts)}
     for what, ids in (("joint", [j.id for j in shared.joints]), ("link", [k.id for k in shared.links])):
         for id_, count in Counter(ids).items():
             if count > 1 and id_:
@@ -28,8 +29,10 @@ def note_problems(shared: SharedMechanism, problems: Problems) -> None:
         _note_slot(joint, joints, links, problems)
         if joint.slides and blocks[joint.id] > 1:
             problems.add(joint.where, "it is of two blocks", "each block has a sliding joint of its own")
+        if joint.slot and joint.slot[0] in links and joint.slot[0] not in wholes:
+            problems.add(joint.where, f"its slot is on {joint.slot[0]!r}, a part that no link has")
     for force in shared.forces:
-        if force.link not in links:
+        if force.link not in links or force.link not in wholes:
             problems.add(force.where, f"it is on a link {force.link!r} that is not there")
         if force.size < 0.0:
             problems.add(force.where, f"its size {force.size:g} is negative")
