@@ -51,7 +51,8 @@ def driver_elements(plan: ModelPlan, world: Element, loads: Element, lag: float)
 def moved_mass(plan: ModelPlan, name: str, joint: str) -> float:
     """Return the mass or inertia of all links as a driver feels it.
 
-    It is the median over the poses. That is twice their energy by the square of its speed; where it is not known, that of all masses at the size.
+    It is the median over the poses. That is twice their energy by the square of its speed;
+    where it is not known, that of all masses at the size.
     """
     motion, total = plan.shown.motion, sum(mass.mass for mass in plan.masses.values())
     rough = total * (plan.size**2 if plan.joints[joint].is_hinge else 1.0)
