@@ -11,7 +11,7 @@ import click
 from compoundkin.base.suffixes import SUFFIXES, form_of, suffix_for, suffix_of
 from compoundkin.cli.drive_options import MODE, assembly_modes, names
 from compoundkin.cli.file_options import loaded, mechanism_argument, to_file, write_new
-from compoundkin.cli.foreign_export import OF_POSES, exported, form_by_suffix, pictured, refuse
+from compoundkin.cli.foreign_export import OF_POSES, ended, exported, form_by_suffix, pictured, refuse
 from compoundkin.cli.shell import put, say
 from compoundkin.files.exchange import MODULES, READ_ONLY
 from compoundkin.model.attributes import OF_POINTS
@@ -51,7 +51,8 @@ class WithTargets(click.Command):
 
         rows = []
         for one in writable_formats().values():
-            rows.append((one.name, f"{one.title} ({one.suffix})" if one.suffix else one.title))
+            told = f" ({one.suffix})" if one.suffix and one.suffix not in one.title else ""
+            rows.append((one.name, f"{one.title}{told}"))
             rows += [(f"  --option {name}=...", text) for name, text in one.options.items()]
         rows.append((TIKZ, f"the kinematic sketch for LaTeX ({suffix_for('picture', TIKZ)})"))
         with formatter.section("Formats of other programs"):
@@ -105,7 +106,7 @@ def command(file: str, path: str | None, form: str | None, force: bool, **asked:
     asked["called"] = asked["name"] or Path(path or file).stem
     content = TARGETS[form](decompose(loaded(file)), form, asked)
     if path is None:
-        put(content)
+        put(ended(content))
     else:
         write_new(Path(path), content, force)
         say(f"Wrote {path}.")

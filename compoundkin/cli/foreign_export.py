@@ -28,6 +28,15 @@ def exported(structure: Structure, form: str, asked: Mapping[str, Any]) -> bytes
     return found.content
 
 
+def ended(content: bytes) -> bytes:
+    """Return a text for standard output, with a line end. What is no text stays as it is.
+
+    >>> ended(b"a"), ended(b"a\\n"), ended(b"PK\\0")
+    (b'a\\n', b'a\\n', b'PK\\x00')
+    """
+    return content if content.endswith(b"\n") or b"\0" in content else content + b"\n"
+
+
 def pictured(structure: Structure, form: str, asked: Mapping[str, Any]) -> bytes:
     """Return the kinematic sketch for LaTeX."""
     from compoundkin.view.sketch import draw

@@ -24,8 +24,8 @@ def comparison_report(found: MechanismComparison) -> Report:
         *([Section("dimensions", "Dimensions", tuple(_dimensions(found)))] if found.lengths else []),
     )
     outcome = Outcome(not any(s.faults for s in found.structures), found.poses + found.apart, found.poses, 0, 0, 0, 0)
-    subject = found.motions[0] if found.motions else found.structures[0]
-    return Report(f"{one.title} / {other.title}", sections, outcome, subject, studied=found)
+    # of the structure a page has the sketch alone, not the dimensions to be changed, which belong to the first only
+    return Report(f"{one.title} / {other.title}", sections, outcome, found.structures[0], studied=found)
 
 
 def _about(found: MechanismComparison) -> Iterator[Block]:
@@ -99,7 +99,7 @@ def _drivers(found: MechanismComparison) -> Block:
         way = "the same" if one.sign > 0 else "the other"
         rows.append((one.name, one.other, way, *shown, unit))
     words = ("first at the common pose", "second there", "moved from", "to")
-    numbers = (Column(word, style="each") for word in words)
+    numbers = (Column(word, style="each", floor=ROUNDING * max(found.size, 360.0)) for word in words)
     return TableBlock((Column("driver"), Column("second's"), Column("way"), *numbers, Column("unit")), tuple(rows))
 
 
@@ -113,6 +113,7 @@ def _dimensions(found: MechanismComparison) -> Iterator[Block]:
     alone = [name for name in found.structures[0].mechanism.links if name not in found.links and name != FRAME]
     if alone:
         yield Paragraph(f"No link of the second stands for {listed(alone)}.")
-    heads = Column("link"), Column("distance"), Column("second's link"), Column("its distance")
+    yield Paragraph("Distances of points on the links:")
+    heads = Column("link"), Column("points"), Column("second's"), Column("its points")
     numbers = Column("first", unit, "each"), Column("second", unit, "each"), Column("difference", unit, "each", floor)
     yield TableBlock((*heads, *numbers), rows)
