@@ -252,6 +252,29 @@ def test_names_and_units_are_told() -> None:
     assert mujoco.MjModel.from_xml_string(FORMAT.write(shown_mechanism(crank_called('a"<&>'))).text).nbody == 2
 
 
+@pytest.mark.parametrize("near", [0.0, 0.1])
+def test_what_nothing_drives_is_written_as_drawn(near: float) -> None:
+    places = {"A": 0j, "D": 4 + 0j, "B": 1j, "C": 3 + 3j}
+    bars = ("AB", "BC", "CD")
+    links = [ck.link(name, **{k: (0 if k == name[0] else abs(places[name[1]] - places[name[0]])) for k in name})
+             for name in bars]  # fmt: skip
+    drawing = ck.drawn(**{**places, "C": places["C"] + near})
+    four_bar = ck.Mechanism("free", ck.link("frame", A=0, D=4), *links, drawing)
+    if near:
+        with pytest.raises(InvalidInput, match="open in the drawing"):
+            FORMAT.write(shown_mechanism(four_bar))
+    else:
+        assert MujocoModel(shown_mechanism(four_bar)).gap < 1e-12
+
+
+def test_masses_below_those_of_mujoco_are_refused() -> None:
+    small = crank_called("crank").replace(
+        ck.mass("crank", 1e-3), units={"length": "um", "mass": "mg", "force": "uN"}, unit=""
+    )
+    with pytest.raises(InvalidInput, match="too small for MuJoCo"):
+        FORMAT.write(shown_mechanism(small))
+
+
 def crank_called(name: str) -> ck.Mechanism:
     return ck.Mechanism("m", ck.link("frame", A=0), ck.link(name, A=0, B=1), ck.drive(name))
 

@@ -21,10 +21,15 @@ from compoundkin.files.exchange.mjcf.joint_tree import (
 )
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs.optional_answers import held_scales
 from compoundkin.model.pin_pairs import meant_pair
 
 # Bodies that stand on each other deeper are refused: they are written and read one in another.
 _DEEPEST = 200
+# A pair is closed but for this part of the size, or this sine: what rounding of drawn points leaves.
+_CLOSED = 1e-9
+# MuJoCo's least mass and inertia (mjMINVAL).
+_LEAST = 1e-15
 
 
 @dataclass(frozen=True)
@@ -145,9 +150,32 @@ def _hold_bounds(shown: ShownMechanism, tree: JointTree) -> None:
         raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
 
 
+def _open(shown: ShownMechanism) -> Iterator[Problem]:
+    """Find pairs that are open in a drawing that could not be solved, so that no joint could be zero there."""
+    size = shown.mechanism.geometry.size
+    for pair in shown.structure.pairs if shown.motion is None else ():
+        ends = shown.ends.get(pair.name, pair.ends(shown.mechanism.geometry))
+        poses = tuple(shown.poses[name].trimmed(0) for name in pair.members)
+        gaps = [abs(float(first_entry(held.c[0]))) for held in pair.closure(ends, poses)]
+        if any(gap > _CLOSED * scale for gap, scale in zip(gaps, held_scales(pair, size), strict=True)):
+            what = f"it is open in the drawing, by {max(gaps):.3g}, and nothing drives the mechanism to close it"
+            yield Problem(pair.name, what, "name a driver, or draw it exactly")
+
+
+def _light(masses: Mapping[str, BodyMass]) -> Iterator[Problem]:
+    """Find masses too small for MuJoCo."""
+    for name, own in masses.items():
+        if min(own.mass, own.inertia) <= _LEAST:
+            what = f"a mass of {own.mass:.3g} kg with an inertia of {own.inertia:.3g} kg m^2 is too small for MuJoCo"
+            yield Problem(name, what, f"both are to be above {_LEAST:g}: take larger units")
+
+
 def _plan(shown: ShownMechanism, tree: JointTree, driven: set[str]) -> ModelPlan:
     units = units_of(shown.mechanism)
     masses, told = masses_of(shown, units)
+    problems = [*_open(shown), *_light(masses)]
+    if problems:
+        raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
     ties = {chain.pair.name: chain.tie for chain in _carrying(tree) if chain.tie}
     ties.update(
         {pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if pair.table in GEARED}
