@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from math import ceil, log10
 from typing import Any
 
 import numpy as np
@@ -10,13 +11,16 @@ import numpy as np
 from compoundkin.base.arrays import TURN
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway
 from compoundkin.files.exchange.drawn_letters import DrawnLetters
+from compoundkin.files.written_quantities import spaced
 from compoundkin.model.elements import Drive, drive
 from compoundkin.model.pairs import Pair
 
 # How far a length is driven, as a part of the size, where the other program does not say.
 TRAVEL = 0.1
-# So many steps as a full turn has by itself, so that drivers of all kinds go together.
-STEPS = 72
+# So many steps, of which each has few digits where the way has few, as the seventy-second part has not.
+STEPS = 80
+# So many digits of a way are written: fewer would be seen, more are rounding.
+_DIGITS = 12
 
 
 def drivers_of(drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair], notes: list[str]) -> list[Drive]:
@@ -33,16 +37,28 @@ def drivers_of(drawing: Drawing, letters: DrawnLetters, pairs: dict[str, Pair], 
         travel = one.travel or _reach(guide, letters)
         words: dict[str, Any] = {} if one.speed is None else {"speed": one.speed}
         if travel is not None:
-            words["values"] = start + np.linspace(*travel, STEPS + 1)
+            words["values"] = _way(start, *travel, guide is None)
         elif guide is not None:
             reach = TRAVEL * letters.size
-            words["values"] = start + np.linspace(0.0 if several else -reach, reach, STEPS + 1)
+            words["values"] = _way(start, 0.0 if several else -reach, reach, guide is None)
             how = "one way" if several else "both ways"
             notes.append(f"{letters.link[one.link]} is driven over a length of {reach:.4g} {how}: no way is told")
         elif several:
-            words["values"] = start + np.linspace(0.0, TURN * _pace(one, drawing), STEPS + 1)
+            words["values"] = _way(start, 0.0, TURN * _pace(one, drawing), guide is None)
         found.append(_driver(one, letters, pairs, words))
     return found
+
+
+def _way(start: float, low: float, high: float, is_angle: bool) -> Any:
+    """Return values in even steps such as files write: from, to and step in degrees or lengths, in few digits."""
+    ends = np.array([start, start + low, start + high])
+    _, first, last = (np.rad2deg(ends) if is_angle else ends).tolist()
+    digits = _DIGITS - ceil(log10(abs(last - first) or 1.0))
+    first, step = round(first, digits), round((last - first) / STEPS, digits + 2)
+    found = spaced(first, first + STEPS * step, step) if step else None
+    if found is None or found.size != STEPS + 1:
+        return np.linspace(start + low, start + high, STEPS + 1)
+    return np.deg2rad(found) if is_angle else found
 
 
 def _driver(one: DrawnDriver, letters: DrawnLetters, pairs: dict[str, Pair], words: dict[str, Any]) -> Drive:
