@@ -7,15 +7,20 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
+from compoundkin.base.series import Series
 from compoundkin.files.exchange.mjcf.body_elements import number
 from compoundkin.files.exchange.mjcf.elementary_joints import JointChain
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.symbols import Wheel
 
 # Half the width of a bar, by the mechanism's size; links lie on each other, so much from one to the next.
 _HALF_WIDTH, _LAYER = 0.012, 0.03
 # Points nearer to each other than this part of the size are no bar.
 _NO_BAR = 1e-6
+_DISC, _RING = "0.3 0.5 0.7 0.35", "0.3 0.3 0.3 0.12"
 _FRAME_COLOUR = "0.45 0.45 0.45 1"
 _COLOURS = ("0.12 0.47 0.71 1", "0.89 0.47 0.12 1", "0.17 0.63 0.17 1", "0.84 0.15 0.16 1", "0.58 0.40 0.74 1",
             "0.55 0.34 0.29 1", "0.09 0.75 0.81 1", "0.74 0.74 0.13 1")  # fmt: skip
@@ -31,6 +36,28 @@ def add_shapes(plan: ModelPlan, bodies: Mapping[str, Element]) -> None:
         guide = _guide(plan, chain)
         if guide is not None:
             SubElement(bodies[chain.members[0]], "geom", guide)
+    for pair in plan.shown.pairs:
+        for link, words in _wheels(plan, pair):
+            SubElement(bodies[link], "geom", words)
+
+
+def _wheels(plan: ModelPlan, pair: Pair) -> Iterator[tuple[str, dict[str, str]]]:
+    """Yield a pair's wheels as thin discs that one can see through."""
+    poses = tuple(plan.shown.poses[name].mapped(_along_a_motion) for name in pair.members)
+    marks = pair.glyph(plan.shown.ends[pair.name], poses)
+    for mark in (mark for mark in marks if isinstance(mark, Wheel)):
+        radius, link = float(first_entry(mark.radius)), pair.members[mark.member]
+        if not radius:
+            continue
+        height = plan.layer(link) * _LAYER * plan.size
+        size = f"{number(radius * plan.units.length)} {number(0.3 * _HALF_WIDTH * plan.size)}"
+        at = _at(complex(first_entry(mark.at)) * plan.units.length, height)
+        yield link, {"type": "cylinder", "pos": at, "size": size, "rgba": _RING if mark.is_ring else _DISC}
+
+
+def _along_a_motion(series: Series) -> Series:
+    """Return a series at one pose as one over a motion of it."""
+    return Series(tuple(np.atleast_1d(part) for part in series.c[:1]))
 
 
 def _link_shapes(plan: ModelPlan, link: str) -> Iterator[dict[str, str]]:
