@@ -228,6 +228,8 @@ def test_tables_may_have_several_drivers():
     back = read(write(five, "joints").text).mechanism
     assert [one.link for one in back.drives] == [one.link for one in five.drives]
     assert ck.exchange.compare(five, back).within(1e-9)
+    at_one_pin = ck.catalog.load_named("differential")
+    assert ck.exchange.compare(at_one_pin, read(write(at_one_pin, "joints").text).mechanism).within(1e-9)
 
 
 def test_tables_keep_names_of_points_and_say_what_is_missing():

@@ -34,22 +34,23 @@ def joints_of(drawing: Drawing, notation: Notation) -> JointList:
     problems = [*_unsaid(drawing, notation)]
     if problems:
         raise InvalidInput(problems, heading=f"{drawing.title!r} cannot be said in {notation.program}")
-    driven = {driver.at: driver for driver in drawing.drivers}
     places = {point.key: point for point in drawing.points}
+    driven = {driver.at for driver in drawing.drivers}
     records: list[JointRecord] = []
     for point in _in_order(drawing):
         guides = [guide for guide in drawing.guides if guide.at == point.key]
+        drivers = [driver for driver in drawing.drivers if driver.at == point.key]
         if not any(point.links == (guide.link,) for guide in guides):
-            records += _pins(point, driven.get(point.key), notation.splits_pins)
-        records += (_line(guide, point, driven.get(guide.key)) for guide in guides)
+            records += _pins(point, drivers, notation.splits_pins)
+        records += (_line(guide, point, guide.key in driven) for guide in guides)
     records += (_contact(gear, places) for gear in drawing.gears)
     records += (_rack_contact(rack, places) for rack in drawing.racks)
-    drivers = tuple(_driver(one, drawing, records) for one in drawing.drivers)
+    of_records = tuple(_driver(one, drawing, records) for one in drawing.drivers)
     names = notation.names(drawing.links)
     notes = (*drawing.notes, *_notes(drawing, names, notation))
     least = _NOTHING * size_of(drawing)
     records = [replace(record, at=_without_noise(record.at, least)) for record in records]
-    return JointList(tuple(records), names, drivers, drawing.title, notes)
+    return JointList(tuple(records), names, of_records, drawing.title, notes)
 
 
 def _without_noise(at: complex, least: float) -> complex:
@@ -106,22 +107,23 @@ def _is_guided(rack: DrawnRack, drawing: Drawing) -> bool:
     )
 
 
-def _pins(point: DrawnPoint, driver: DrawnDriver | None, splits: bool) -> Iterator[JointRecord]:
+def _pins(point: DrawnPoint, drivers: Sequence[DrawnDriver], splits: bool) -> Iterator[JointRecord]:
     """Yield the record of a point; where it is driven the two links that are have one to themselves."""
     links = point.links
-    if driver is not None and (splits or len(links) == 2):
-        yield JointRecord("R", (driver.on, driver.link), point.at, drives=True, name=point.called)
-        links = (driver.link, *(name for name in links if name not in (driver.on, driver.link)))
-        if len(links) == 1:
-            return
-        driver = None
-    yield JointRecord("R", links, point.at, drives=driver is not None, name=point.called)
+    if drivers and (splits or len(links) == 2):
+        for one in drivers:
+            yield JointRecord("R", (one.on, one.link), point.at, drives=True, name=point.called)
+        first = drivers[0]
+        links = (first.link, *(name for name in links if name not in (first.on, first.link)))
+        drivers = ()
+    if len(links) > 1 or links == point.links:
+        yield JointRecord("R", links, point.at, drives=bool(drivers), name=point.called)
 
 
-def _line(guide: DrawnGuideway, point: DrawnPoint, driver: DrawnDriver | None) -> JointRecord:
+def _line(guide: DrawnGuideway, point: DrawnPoint, drives: bool) -> JointRecord:
     """Return the record of a line: it is drawn through the point, which is where the point runs."""
     kind, links = "P" if guide.kind == "slide" else "RP", (guide.on, guide.link)
-    return JointRecord(kind, links, point.at, guide.angle, driver is not None, point.called)  # type: ignore[arg-type]
+    return JointRecord(kind, links, point.at, guide.angle, drives, point.called)  # type: ignore[arg-type]
 
 
 def _contact(gear: DrawnGear, places: dict[str, DrawnPoint]) -> JointRecord:
@@ -150,7 +152,8 @@ def _driver(one: DrawnDriver, drawing: Drawing, records: Sequence[JointRecord]) 
         # a slide of the frame on a link is read as one of the link on the frame
         speed = -one.speed if one.speed and guide.kind == "slide" and guide.link == FRAME else one.speed
         return JointDriver(index, speed=speed)
-    index = next(k for k, r in enumerate(records) if r.drives and r.name == called[one.at])
+    driven = [k for k, r in enumerate(records) if r.drives and r.kind == "R" and r.name == called[one.at]]
+    index = next((k for k in driven if records[k].links == (one.on, one.link)), driven[0])
     toward = (k for k, r in enumerate(records) if one.link in _points(r) and r.at != records[index].at)
     return JointDriver(index, next(toward, None), one.speed)
 

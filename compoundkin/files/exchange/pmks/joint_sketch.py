@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cmath import rect
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
@@ -13,11 +14,15 @@ from compoundkin.files.exchange.drawn_elements import (
     DrawnPoint,
     GuideKind,
 )
+from compoundkin.files.exchange.drawn_letters import SAME
 from compoundkin.files.exchange.foreign_names import letters
 from compoundkin.files.exchange.pmks.joint_gears import drawn_wheels
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME
+
+# A point is on a line that is off by less than this part of the size: half of what a drawing takes for one place.
+_ON_LINE = 0.5 * SAME
 
 
 def drawing_of_joints(joints: JointList, problems: Problems, program: str) -> Drawing:
@@ -27,11 +32,16 @@ def drawing_of_joints(joints: JointList, problems: Problems, program: str) -> Dr
     points = _points(joints, pins)
     gears, racks = drawn_wheels(joints.records, pins, problems)
     problems.raise_if_any()
+    driven = {driver.joint for driver in joints.drivers}
     return Drawing(
         joints.title,
         tuple(DrawnLink(key, name.strip()) for key, name in _names(joints)),
         points,
-        guides=tuple(_guide(k, record, pins[k]) for k, record in enumerate(joints.records) if record.is_guide),
+        guides=tuple(
+            _guide(k, record, pins[k], () if k in driven else points)
+            for k, record in enumerate(joints.records)
+            if record.is_guide
+        ),
         gears=gears,
         racks=racks,
         drivers=tuple(_driver(driver, joints.records, pins) for driver in joints.drivers),
@@ -99,10 +109,15 @@ def _points(joints: JointList, pins: Mapping[int, int]) -> tuple[DrawnPoint, ...
     )
 
 
-def _guide(k: int, record: JointRecord, pin: int) -> DrawnGuideway:
+def _guide(k: int, record: JointRecord, pin: int, points: Sequence[DrawnPoint]) -> DrawnGuideway:
+    """Return a line; it runs through one of the `points` that its link has on it, else through the joint."""
     link, on = guided(record)
     kind: GuideKind = "slide" if record.kind == "P" else "slot"
-    return DrawnGuideway(guide_key(k), kind, link, on, str(pin), record.at, record.angle, where=record.where)
+    near = _ON_LINE * max((abs(one.at - two.at) for one in points for two in points[:1]), default=0.0)
+    gaps = [one.at - record.at for one in points if on in one.links]
+    on_line = [gap for gap in gaps if abs((gap * rect(1.0, -record.angle)).imag) <= near]
+    through = record.at + (0j if not on_line or 0j in on_line else on_line[0])
+    return DrawnGuideway(guide_key(k), kind, link, on, str(pin), through, record.angle, where=record.where)
 
 
 def guide_key(joint: int) -> str:
