@@ -16,6 +16,9 @@ from compoundkin.files.exchange.problems import Problems
 MOST_RECORDS = 500
 # No coordinate, length, mass or speed of a mechanism is as large; the square of a larger one may overflow.
 LARGEST = 1e100
+LARGEST_ANGLE = 1e6
+# No name has so many characters.
+_LONGEST = 1000
 
 
 def parsed_json(content: Content) -> Any:
@@ -73,7 +76,9 @@ class JsonRecord:
         if not isinstance(value, str):
             self.wrong(f"{key!r} is missing" if value is None else f"{key!r} is {short(value)}, which is no text")
             return otherwise or ""
-        return value
+        if len(value) > _LONGEST:
+            self.wrong(f"{key!r} has {len(value):,} characters; a name has at most {_LONGEST:,}")
+        return value[:_LONGEST]
 
     def number(self, key: str, otherwise: float | None = None) -> float:
         """Return a finite number. One that must be there has no stand-in."""
@@ -81,6 +86,14 @@ class JsonRecord:
         if value is None and otherwise is not None:
             return otherwise
         return self._number(key, value)
+
+    def angle(self, key: str, otherwise: float) -> float:
+        """Return an angle in radians, of so few turns that it is one to the last digits."""
+        value = self.number(key, otherwise)
+        if abs(value) > LARGEST_ANGLE and value != otherwise:
+            self.wrong(f"{key!r} is {value:g}, which is no angle in radians")
+            return 0.0
+        return value
 
     def vector(self, key: str, otherwise: complex | None = None) -> complex:
         """Return a planar vector of a list of two numbers."""
@@ -100,7 +113,7 @@ class JsonRecord:
         if not isinstance(value, list | tuple) or not all(isinstance(one, str | int) for one in value):
             self.wrong(f"{key!r} is {short(value)}, no list of names")
             return ()
-        return tuple(str(one) for one in self._few(key, value))
+        return tuple(str(one)[:_LONGEST] for one in self._few(key, value))
 
     def records(self, key: str, called: str) -> Iterator[JsonRecord]:
         """Yield the objects of a list, or of a table by their names.
@@ -110,11 +123,11 @@ class JsonRecord:
         value = self.given.get(key)
         if isinstance(value, Mapping):
             for name in self._few(key, list(value)):
-                yield JsonRecord(value[name], f"{called} {name}", self.problems)
+                yield JsonRecord(value[name], f"{called} {name[:_LONGEST]}", self.problems)
         elif isinstance(value, list | tuple):
             for k, one in enumerate(self._few(key, value)):
                 own = one.get("id", one.get("name", k)) if isinstance(one, Mapping) else k
-                yield JsonRecord(one, f"{called} {short(own) if not isinstance(own, str) else own}", self.problems)
+                yield JsonRecord(one, f"{called} {own[:80] if isinstance(own, str) else short(own)}", self.problems)
         elif value is not None:
             self.wrong(f"{key!r} is {short(value)}, no list of {called}s")
 

@@ -81,8 +81,8 @@ def test_samples_have_their_positions(case: dict[str, Any]) -> None:
 
 
 # Mechanisms of pins and of slots of the frame: class II, with ternary cranks, tracers, several drivers, arcs.
-STEPPED = ("five-bar-pendulum", "hart-inversor", "jansen-leg", "sewing-machine-needle-drive",
-           "slider-crank-offset", "stephenson-i", "triple-rocker", "v-engine", "watt-ii-driven-at-ternary")  # fmt: skip
+STEPPED = ("five-bar-pendulum", "hart-inversor", "sewing-machine-needle-drive",
+           "slider-crank-offset", "stephenson-i", "v-engine", "watt-ii-driven-at-ternary")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", STEPPED)
@@ -100,6 +100,29 @@ def test_what_is_written_pylinkage_steps(name: str) -> None:
     held(back, theirs, 5)
     assert theirs.indeterminacy() == ck.decompose(back).mobility.freedoms
     assert "a step of pylinkage is" in written.notes[0]
+
+
+def test_the_catalog_comes_back_digit_by_digit() -> None:
+    """Where the drawing is exact nothing needs to be solved, which makes it quick."""
+    said = 0
+    for name in ck.catalog.names():
+        mechanism = loaded(name)
+        try:
+            if not {*mechanism.links} <= {*mechanism.drawn_poses}:
+                continue
+            poses = {k: pose.entry((0, 0)) for k, pose in mechanism.drawn_poses.items()}
+            rates = {drive.name: 1.0 for drive in mechanism.drives}
+            shown = ShownMechanism(ck.decompose(mechanism), poses, rates, rates)
+            back = read(FORMAT.write(shown).text).mechanism
+        except InvalidInput:
+            continue
+        said += 1
+        for point in shown.drawing.points:
+            assert abs(back.sketch[legal(point.key)] - point.at) < 1e-14 * mechanism.geometry.size
+            left = {link for link in point.links if link not in back.links}
+            assert {*back.carriers[legal(point.key)]} == {*point.links} - left
+            assert all(any(pair.link == link for pair in mechanism.written_pairs) for link in left)
+    assert said > 50
 
 
 def random_mechanism(rng: np.random.Generator) -> Any:

@@ -54,8 +54,12 @@ def fixed_bodies(file: SimFile, problems: Problems) -> dict[str, Placed]:
 
 
 def size_of(file: SimFile) -> float:
-    """Return the length of the longest body, 1 where all are points."""
-    spans = (abs(a - b) for body in file.bodies.values() for a in body.points.values() for b in body.points.values())
+    """Return the size of the largest body, 1 where all are points."""
+    spans = []
+    for body in file.bodies.values():
+        places = [*body.points.values()] or [0j]
+        across, upward = [place.real for place in places], [place.imag for place in places]
+        spans += [max(across) - min(across), max(upward) - min(upward)]
     return max(spans, default=0.0) or 1.0
 
 

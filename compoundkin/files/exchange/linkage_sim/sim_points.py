@@ -22,6 +22,7 @@ class SimPoints:
 
     def __init__(self, file: SimFile, placed: dict[str, Placed], problems: Problems) -> None:
         self._file, self._placed = file, placed
+        self._near = ROUNDING * size_of(file)
         self.names = NamesGiven()
         hosts = dict.fromkeys(one.host for one in placed.values())
         self.link = {h: FRAME if h == GROUND else self.names.give(file.bodies[h].name, h) for h in hosts}
@@ -45,8 +46,7 @@ class SimPoints:
         """Return the letter of a place of a body, perhaps a new one."""
         placed = self._placed[body]
         own, at = self.of[placed.host], placed.at(place)
-        near = ROUNDING * size_of(self._file)
-        found = next((letter for letter, here in own.items() if abs(here - at) <= near), None)
+        found = next((letter for letter, here in own.items() if abs(here - at) <= self._near), None)
         if found is None:
             found = self.names.give(name, name)
             own[found] = at
@@ -80,11 +80,10 @@ class SimPoints:
         else:
             wanted = name if self._called[name] == 1 else f"{body}-{name}"
         letter = self.names.give(wanted, wanted)
-        near = ROUNDING * size_of(self._file)
         for key, point in spots:
             self.letter[key, point] = letter
             placed = self._placed[key]
             here = placed.at(self._file.bodies[key].points[point])
-            if abs(self.of[placed.host].setdefault(letter, here) - here) > near:
+            if abs(self.of[placed.host].setdefault(letter, here) - here) > self._near:
                 what = f"joints hold two of its points at one place, among them {point!r}"
                 problems.add(f"body {key}", what, "look for a joint too many")

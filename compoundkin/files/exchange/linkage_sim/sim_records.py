@@ -15,6 +15,8 @@ GROUND = "ground"
 _POINTS = ("attachment_points", "mount_points", "coupler_points")
 _JOINTS = ("revolute", "fixed", "prismatic")
 _SPEED = "constant_speed"
+# All bodies together have so many points, at most.
+_MOST_POINTS = 1000
 # One of their keys is a word of ours.
 _RATE = VELOCITY
 
@@ -109,8 +111,10 @@ def _body(key: str, record: JsonRecord) -> SimBody:
             record.wrong(f"{word!r} is no table of points")
         elif table:
             inner = JsonRecord(table, f"{record.where}, {word}", record.problems)
-            for name in list(table)[:200]:
+            for name in list(table)[:_MOST_POINTS]:
                 points.setdefault(str(name), inner.vector(name))
+            if len(table) > _MOST_POINTS:
+                record.wrong(f"{word!r} has {len(table):,} entries")
     word = "Izz_cg" if "Izz_cg" in record.given else "izz_cg"
     centre = record.vector("cg_local" if "cg_local" in record.given else "ch_local", 0j)
     masses = [(record.number("mass", 0.0), centre, record.number(word, 0.0))]
@@ -130,7 +134,7 @@ def _joint(record: JsonRecord) -> SimJoint:
     bodies = record.text("body_i"), record.text("body_j")
     points = record.text("point_i"), record.text("point_j")
     key = record.where.removeprefix("joint ")
-    return SimJoint(key, kind, bodies, points, axis, record.number("delta_theta_0", 0.0), record.where)
+    return SimJoint(key, kind, bodies, points, axis, record.angle("delta_theta_0", 0.0), record.where)
 
 
 def _driver(record: JsonRecord) -> SimDriver:
@@ -140,7 +144,7 @@ def _driver(record: JsonRecord) -> SimDriver:
         record.wrong(what, "give it a constant speed there, and a law here")
     bodies = record.text("body_i"), record.text("body_j")
     key = record.where.removeprefix("driver ")
-    return SimDriver(key, bodies, record.number("theta_0", 0.0), record.number("omega", 1.0), record.where)
+    return SimDriver(key, bodies, record.angle("theta_0", 0.0), record.number("omega", 1.0), record.where)
 
 
 def _linear(record: JsonRecord, problems: Problems) -> SimDriver:
@@ -155,7 +159,9 @@ def _linear(record: JsonRecord, problems: Problems) -> SimDriver:
 
 
 def _check_names(file: SimFile, problems: Problems) -> None:
-    """Note bodies and points that are not there."""
+    """Note bodies and points that are not there, or too many."""
+    if sum(len(body.points) for body in file.bodies.values()) > _MOST_POINTS:
+        problems.add("bodies", f"they have more than {_MOST_POINTS:,} points")
     joined: list[SimJoint | SimDriver] = [*file.joints, *file.drivers]
     for one in joined:
         for key in (key for key in one.bodies if key not in file.bodies):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -20,6 +21,8 @@ PLACE, RATE = POSITION, next(word for word, one in LINK.items() if one.order == 
 STEP, ARC_END = math.tau / 360, 3.14159
 # Links have so many joints together, at most.
 _MOST_LISTED = 5000
+# More keys than this are counted together.
+_MOST_TOLD = 9
 # What they keep of each, besides what is read of it.
 _KNOWN = {
     "joint": {"id", "type", PLACE, "name", "axis", "line_point", "slide_distance"}
@@ -89,18 +92,22 @@ def linkage_file(data: Any, problems: Problems) -> PylinkageFile:
     problems.raise_if_any()
     if not (joints and links):
         problems.add("", f"there are no {'links' if joints else 'joints'}", _MODERN)
-    unknown: dict[str, int] = {}
-    for called, records in (("joint", joints), ("link", links)):
-        for key in (key for one in records for key in one.given if key not in _KNOWN[called]):
-            unknown[f"{called}.{key}"] = unknown.get(f"{called}.{key}", 0) + 1
     found = PylinkageFile(
         record.text("name", ""),
         _by_key(map(_joint, joints), problems),
         _by_key(map(_link, links), problems),
-        tuple(unknown.items()),
+        _unknown({"joint": joints, "link": links}),
     )
     _check_names(found, record, problems)
     return found
+
+
+def _unknown(records: Mapping[str, list[JsonRecord]]) -> tuple[tuple[str, int], ...]:
+    """Return how often each key stands there that means nothing to motion; of many keys how many there are."""
+    found = Counter(
+        f"{k}.{key}" for k, own in records.items() for one in own for key in one.given if key not in _KNOWN[k]
+    )
+    return tuple(found.items()) if len(found) <= _MOST_TOLD else (("unknown key", found.total()),)
 
 
 def _joint(record: JsonRecord) -> PylinkageJoint:
@@ -125,7 +132,7 @@ def _joint(record: JsonRecord) -> PylinkageJoint:
         axis or 1 + 0j,
         record.vector("line_point", 0j),
         (record.text("ref_joint1_id", ""), record.text("ref_joint2_id", "")),
-        (record.number("distance", 0.0), record.number("angle", 0.0)),
+        (record.number("distance", 0.0), record.angle("angle", 0.0)),
     )
 
 
@@ -135,10 +142,10 @@ def _link(record: JsonRecord) -> PylinkageLink:
         record.wrong(f"{kind!r} is no type of link", f"known: {', '.join(LINKS)}")
     arc = None
     if kind == "arc_driver":
-        arc = record.number("arc_start", 0.0), record.number("arc_end", ARC_END)
+        arc = record.angle("arc_start", 0.0), record.angle("arc_end", ARC_END)
         if not arc[0] < arc[1]:
             record.wrong(f"its arc ends at {arc[1]:.15g}, before it begins", "let arc_start be less than arc_end")
-    start = record.number("initial_angle", math.inf if kind == "arc_driver" else 0.0)
+    start = record.angle("initial_angle", math.inf if kind == "arc_driver" else 0.0)
     return PylinkageLink(
         key,
         kind,
@@ -146,7 +153,7 @@ def _link(record: JsonRecord) -> PylinkageLink:
         record.text("name", key),
         record.where,
         record.text("motor_joint", ""),
-        record.number(RATE, STEP),
+        record.angle(RATE, STEP),
         arc[0] if arc and math.isinf(start) else start,
         arc,
     )
