@@ -88,7 +88,7 @@ class JsonRecord:
         return self._number(key, value)
 
     def angle(self, key: str, otherwise: float) -> float:
-        """Return an angle in radians, of so few turns that it is one to the last digits."""
+        """Return an angle in radians, of few turns."""
         value = self.number(key, otherwise)
         if abs(value) > LARGEST_ANGLE and value != otherwise:
             self.wrong(f"{key!r} is {value:g}, which is no angle in radians")

@@ -10,7 +10,7 @@ from compoundkin.files.exchange.linkage_sim.sim_points import SimPoints
 from compoundkin.files.exchange.linkage_sim.sim_records import GROUND, SimFile
 from compoundkin.model.elements import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads import damper, force, gravity, mass, spring, torque
+from compoundkin.model.loads import Gravity, damper, force, mass, spring, torque
 
 _CONSTANT = "Constant"
 
@@ -81,18 +81,18 @@ class SimLoads:
         """Return gravity, or a constant force or torque on a link."""
         if kind == "Gravity" and not self._file.is_mounted:
             vector = one.vector("g_vector")
-            return gravity(vector.real, vector.imag)
+            return Gravity(vector)
         modulation = one.given.get("modulation", {})
         constant = isinstance(modulation, Mapping) and modulation.get("modulation_type", _CONSTANT) == _CONSTANT
-        body = one.given.get("body_id")
+        body = str(one.given.get("body_id"))
         if kind not in ("ExternalForce", "ExternalTorque") or not constant or body not in self._file.bodies:
             return None
-        if self._placed[str(body)].host == GROUND:
+        if self._placed[body].host == GROUND:
             return None
-        name = self._points.named(str(body))
+        name = self._points.named(body)
         if kind == "ExternalTorque":
             return torque(name, one.number("torque"), name=f"torque {k}")
-        return force(name, one.vector("force"), at=self._end(one, str(body), "")[1], name=f"force {k}")
+        return force(name, one.vector("force"), at=self._end(one, body, "")[1], name=f"force {k}")
 
     def _bodies(self, one: JsonRecord, *keys: str) -> tuple[str, ...] | None:
         """Return the bodies that a load joins; none where it names one that is not there."""

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import cmath
 import math
+import warnings
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from compoundkin.base.display import counted
-from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.errors import CompoundkinError, LikelySlip
 from compoundkin.files.exchange.linkage_sim.fixed_bodies import ROUNDING, Placed, fixed_bodies, size_of
 from compoundkin.files.exchange.linkage_sim.sim_loads import SimLoads
 from compoundkin.files.exchange.linkage_sim.sim_points import SimPoints
 from compoundkin.files.exchange.linkage_sim.sim_records import GROUND, SimDriver, SimFile
 from compoundkin.files.exchange.problems import Problems
-from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive, Item, drawn, drive, link
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
@@ -23,6 +23,8 @@ from compoundkin.model.pairs.cylinder import cylinder
 from compoundkin.structure import decompose
 
 _UNITS = {"length": "m", "mass": "kg", "force": "N"}
+# The dyads of pins and slides that have two modes; the others have one.
+_TWO_MODES = ("RRR", "RRP", "RPR")
 # So many steps have a turn, and the way of a length, which goes over such a part of the size.
 _STEPS, _TRAVEL = 72, 0.1
 
@@ -48,13 +50,18 @@ def sim_mechanism(file: SimFile, problems: Problems, title: str) -> tuple[Mechan
     as_drawn = _drawn(file, points)
     if as_drawn:
         notes.append("the axes of all bodies agree in the file, which is taken as the pose drawn")
-        return _made(title, [*items, drawn(**as_drawn)]), notes
-    mechanism = _made(title, items)
+        return _made(title, [*items, drawn(**as_drawn)], notes), notes
+    mechanism = _made(title, items, notes)
     return mechanism, [*notes, _modes(mechanism)]
 
 
-def _made(title: str, items: list[Item]) -> Mechanism:
-    return Mechanism(title, *items, units=_UNITS)
+def _made(title: str, items: list[Item], notes: list[str]) -> Mechanism:
+    """Return a mechanism. What is odd in another program's file is told with what else is told of it."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", LikelySlip)
+        made = Mechanism(title, *items, units=_UNITS)
+    notes += [str(one.message) for one in said]
+    return made
 
 
 def _slides(file: SimFile, placed: Mapping[str, Placed], points: SimPoints, problems: Problems) -> Iterator[Item]:
@@ -141,10 +148,14 @@ def _drawn(file: SimFile, points: SimPoints) -> dict[str, complex]:
 def _modes(mechanism: Mechanism) -> str:
     """Return the note on the modes: what nothing chooses is chosen by default, four-bar loops are open."""
     told = "no pose is in the file, and its mode is the default one"
+    pins = sum(len(links) - 1 for links in mechanism.carriers.values())
+    if 3 * (len(mechanism.links) - 1) - 2 * (pins + len(mechanism.written_pairs)) != len(mechanism.drives):
+        # looking for what holds too much takes long, and is done when it is asked for
+        return told
     try:
-        solvers = SolvingOrder(decompose(mechanism)).solvers
+        groups = decompose(mechanism).groups
     except CompoundkinError:
         return told
-    two = sum(solver.modes == 2 for solver in solvers)
-    more = " and those of larger groups" if any(not solver.modes for solver in solvers) else ""
+    two = sum(group.name in _TWO_MODES for group in groups)
+    more = " and those of larger groups" if any(group.class_ > 2 or len(group.bodies) > 2 for group in groups) else ""
     return f"{told}: open loops, else +, of {2**two}{more}; all are found by configurations"
