@@ -23,8 +23,6 @@ from compoundkin.model.pairs.cylinder import cylinder
 from compoundkin.structure import decompose
 
 _UNITS = {"length": "m", "mass": "kg", "force": "N"}
-# The dyads of pins and slides that have two modes; the others have one.
-_TWO_MODES = ("RRR", "RRP", "RPR")
 # So many steps have a turn, and the way of a length, which goes over such a part of the size.
 _STEPS, _TRAVEL = 72, 0.1
 
@@ -156,6 +154,8 @@ def _modes(mechanism: Mechanism) -> str:
         groups = decompose(mechanism).groups
     except CompoundkinError:
         return told
-    two = sum(group.name in _TWO_MODES for group in groups)
-    more = " and those of larger groups" if any(group.class_ > 2 or len(group.bodies) > 2 for group in groups) else ""
+    dyads = [group for group in groups if len(group.bodies) == 2]
+    # of pins and slides, those with two slides have one mode, the others two
+    two = sum(sum(not pair.free_is_angle for pair in (*group.inner, *group.outer)) < 2 for group in dyads)
+    more = " and those of larger groups" if len(dyads) < len(groups) else ""
     return f"{told}: open loops, else +, of {2**two}{more}; all are found by configurations"
