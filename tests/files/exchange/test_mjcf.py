@@ -243,6 +243,24 @@ def test_models_run(name: str) -> None:
     assert np.abs(run.places - places).max() < 0.01 * motion.size * run.length
 
 
+def test_drivers_and_guides_have_their_ends() -> None:
+    """A driver may go where the mechanism is solved, a cylinder as far as its stroke; a crank goes round."""
+    boom = ck.Mechanism(
+        "boom",
+        ck.link("frame", O=(0, 0), C=(100, -50)),
+        ck.link("boom", O=(0, 0), D=(150, 20), T=(400, 0)),
+        ck.cylinder("boom", "D", to="frame", at="C", stroke=(50, 130)),
+        ck.drive("boom cylinder", values=np.linspace(60, 120, 13), speed=-5),
+        unit="mm",
+    )
+    run = MujocoModel(shown_mechanism(boom, {"boom cylinder": 90}))
+    assert run.model.joint("boom cylinder").range == pytest.approx([-0.04, 0.04])
+    run = MujocoModel(shown_mechanism(boom))
+    length = run.shown.values["boom cylinder"]
+    assert run.model.actuator_actrange[0] == pytest.approx([(60 - length) / 1000, (120 - length) / 1000])
+    assert not MujocoModel(shown("crank-rocker")).model.actuator_actlimited.any()
+
+
 def test_names_and_units_are_told() -> None:
     """Names that MuJoCo or XML would not take as they are; what is left out, made up, converted."""
     found = FORMAT.write(shown("andrews-squeezer-dynamics"))
