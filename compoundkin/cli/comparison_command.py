@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from compoundkin.cli.file_options import loaded, put_report, report_options
+from compoundkin.cli.file_options import complete_mechanism, loaded, put_report, report_options
 from compoundkin.cli.shell import FAILED, say
 
 
@@ -16,8 +16,8 @@ Examples:
   compoundkin compare mine.toml 'https://app.pmksplus.com/?...' -o both.md
 """
 )
-@click.argument("one", metavar="A")
-@click.argument("other", metavar="B")
+@click.argument("one", metavar="A", shell_complete=complete_mechanism)
+@click.argument("other", metavar="B", shell_complete=complete_mechanism)
 @click.option("--tolerance", type=click.FloatRange(min=0.0), metavar="PART",
               help="How far apart they may come, as a part of the size; 1e-4 if left out.")  # fmt: skip
 @report_options

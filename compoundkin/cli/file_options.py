@@ -59,14 +59,14 @@ def complete_name(ctx: click.Context, param: click.Parameter, incomplete: str) -
     return [CompletionItem(name) for name in names() if name.startswith(incomplete)]
 
 
-def _complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """The names that begin so, and files."""
+def complete_mechanism(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Return the names that begin so, and files."""
     return [*complete_name(ctx, param, incomplete), CompletionItem(incomplete, type="file")]
 
 
 def mechanism_argument(command: F) -> F:
     """Add the argument FILE to a command."""
-    return click.argument("file", metavar="FILE", shell_complete=_complete)(command)
+    return click.argument("file", metavar="FILE", shell_complete=complete_mechanism)(command)
 
 
 def loaded(file: str) -> Mechanism:

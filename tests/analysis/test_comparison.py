@@ -120,6 +120,12 @@ def test_what_cannot_be_compared_says_why() -> None:
         assert "not compared" in ck.report(found).text()
 
 
+def test_what_has_no_driver_is_compared_where_it_stands() -> None:
+    truss = ck.link("frame", A=0, B=4), ck.link("left", A=0, C=3), ck.link("right", B=0, C=3)
+    found = ck.exchange.compare(ck.Mechanism("Truss", *truss), ck.Mechanism("Truss", *truss))
+    assert (found.poses, found.within(1e-12)) == (1, True)
+
+
 def test_the_catalog_as_drawings_is_the_catalog() -> None:
     """Links of letters, other drivers' zeros: what every format makes of a mechanism."""
     for name in ("six-bar", "planetary-train", "five-bar", "scotch-yoke", "oscillating-cylinder", "class-iii-six-bar"):

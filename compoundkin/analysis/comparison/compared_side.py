@@ -79,12 +79,12 @@ class ComparedSide:
 
         Rates are those by each driver alone at unit speed, (points, drivers).
         """
-        motions = [
-            quietly_solved(self.structure, values, 1, {name: float(name == moved) for name in values})
-            for moved in values
-        ]
-        found = [[np.ravel(motion.points[k].velocity)[0] for k in self.letters] for motion in motions]
-        return self.places(motions[0])[0], np.array(found).T * self.scale
+        rates = np.zeros((len(self.letters), len(values)), dtype=complex)
+        motion = self.there
+        for column, moved in enumerate(values):
+            motion = quietly_solved(self.structure, values, 1, {name: float(name == moved) for name in values})
+            rates[:, column] = [np.ravel(motion.points[k].velocity)[0] for k in self.letters]
+        return self.places(motion)[0], rates * self.scale
 
     def places(self, motion: Motion) -> Number:
         """Return where its points are, (poses, points)."""
