@@ -267,6 +267,9 @@ def test_names_and_units_are_told() -> None:
     assert found.notes == ("lengths are in m, masses in kg, forces in N, torques in N m",)
     with pytest.raises(InvalidInput, match="world"):
         FORMAT.write(shown_mechanism(crank_called("world")))
+    twice = loaded_slider_crank().replace(ck.force("rod", (1, 0), at="G", name="crank"))
+    with pytest.raises(InvalidInput, match="crank: two of one name: actuator"):
+        FORMAT.write(shown_mechanism(twice))
     assert mujoco.MjModel.from_xml_string(FORMAT.write(shown_mechanism(crank_called('a"<&>'))).text).nbody == 2
 
 

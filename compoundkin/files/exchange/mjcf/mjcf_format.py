@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 from xml.etree.ElementTree import Element, indent, tostring
 
@@ -55,7 +55,6 @@ class MjcfFormat(Writable):
 def _model(plan: ModelPlan, bodies: Mapping[str, Element], loads: ModelLoads, notes: tuple[str, ...]) -> Element:
     """Return the whole model."""
     world = bodies[FRAME]
-    _hold_names(world, loads.actuators, plan.shown.structure.driven)
     add_shapes(plan, bodies)
     world.append(camera(plan))
     model = Element("mujoco", model=printable(plan.shown.mechanism.title))
@@ -63,6 +62,7 @@ def _model(plan: ModelPlan, bodies: Mapping[str, Element], loads: ModelLoads, no
     model.append(world)
     model.extend(constraint_elements(plan, loads.tendons))
     model.extend(driver_elements(plan, world, loads.actuators, _OF_DRIVERS * step_of(plan)))
+    _hold_names(model)
     return model
 
 
@@ -78,15 +78,16 @@ def _notes(plan: ModelPlan, left: list[str]) -> Iterator[str]:
         yield f"loads that no model says are left out: {', '.join(left)}"
 
 
-def _hold_names(world: Element, loads: Element, drives: Iterable[str]) -> None:
-    """Raise InvalidInput where two bodies, joints, points or loads would have one name."""
-    elements = (*world.iter(), *loads)
-    named = Counter((element.tag, element.get("name", "")) for element in elements if element.get("name"))
-    named["body", _WORLD] += 1
-    named.update(("motor", drive) for drive in drives)
+def _hold_names(model: Element) -> None:
+    """Raise InvalidInput where two elements of one sort would have one name."""
+    named = Counter({("body", _WORLD): 1})
+    for section in model:
+        within = section.iter() if section.tag == "worldbody" else iter(section)
+        sort = "" if section.tag == "worldbody" else section.tag
+        named.update((sort or own.tag, own.get("name", "")) for own in within if own.get("name"))
     twice = [
-        Problem(name, f"two of one name: {tag}", "call one of them otherwise")
-        for (tag, name), count in named.items()
+        Problem(name, f"two of one name: {sort}", "call one of them otherwise")
+        for (sort, name), count in named.items()
         if count > 1
     ]
     if twice:
