@@ -12,7 +12,7 @@ LAST = 0xFFFF
 
 
 def in_ascii(text: str) -> bytes:
-    r"""Return a text with other letters written out as DXF has it, so that no code page matters.
+    r"""Return a text with other letters written out as DXF has it. So no code page matters.
 
     >>> in_ascii("bär")
     b'b\\U+00E4r'
@@ -21,7 +21,7 @@ def in_ascii(text: str) -> bytes:
 
 
 def sayable(text: str) -> str:
-    """Return a text with `_` for what DXF cannot say: what does not print, letters beyond four digits."""
+    """Return a text with `_` for what DXF cannot say. That does not print, or is a letter beyond four digits."""
     return "".join(c if c.isprintable() and ord(c) <= LAST else "_" for c in text)
 
 
