@@ -308,6 +308,15 @@ def test_changed_lengths_are_told() -> None:
     held(from_pylinkage(four_bar).mechanism, four_bar, 3)
 
 
+@pytest.mark.parametrize("speed", [1e-320, 1e49, 0.0])
+def test_speeds_that_are_none_are_written_as_numbers(speed: float) -> None:
+    bar = loaded("crank-rocker")
+    made = bar.replace(ck.drive("crank", speed=speed))
+    links = json.loads(FORMAT.write(shown_mechanism(made)).text)["links"]
+    (rate,) = (link["angular_velocity"] for link in links if link["id"] == "crank")
+    assert math.isfinite(rate)
+
+
 def test_what_pylinkage_cannot_say_is_refused_at_once() -> None:
     with pytest.raises(InvalidInput) as error:
         FORMAT.write(shown_mechanism(loaded("geared-press")))

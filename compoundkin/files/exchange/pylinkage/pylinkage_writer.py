@@ -9,11 +9,15 @@ from collections.abc import Iterator
 from typing import Any
 
 from compoundkin.base.display import counted
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver
 from compoundkin.files.exchange.pylinkage.pylinkage_layout import PylinkageLayout
 from compoundkin.files.exchange.pylinkage.pylinkage_records import PLACE, RATE
 from compoundkin.files.exchange.pylinkage.step_order import LinkEntry, found_order, link_entries
 from compoundkin.model.geometry import FRAME
+
+# A driver that is slower rests, and one so much faster has no speed that means anything.
+_SLOWEST = 1e-100
 
 
 def linkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
@@ -21,8 +25,8 @@ def linkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
     layout = PylinkageLayout(drawing)
     order = found_order(layout)
     entries = link_entries(layout, order)
-    speeds = [abs(driver.speed or 0.0) for driver in drawing.drivers]
-    step = math.tau / steps / (max(speeds, default=0.0) or 1.0)
+    fastest = max((abs(driver.speed or 0.0) for driver in drawing.drivers), default=0.0)
+    step = math.tau / steps / (fastest if _SLOWEST < fastest < 1.0 / _SLOWEST else 1.0)
     ids = _Ids(drawing)
     data = {
         "name": drawing.title,
@@ -31,7 +35,15 @@ def linkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
         + [_link(layout, entry, ids.of(entry), step) for entry in entries],
         "ground": ids.ground,
     }
-    return json.dumps(data, indent=2) + "\n", tuple(_notes(layout, order, entries, step, steps))
+    return _dumped(data), tuple(_notes(layout, order, entries, step, steps))
+
+
+def _dumped(data: Any) -> str:
+    try:
+        return json.dumps(data, indent=2, allow_nan=False) + "\n"
+    except ValueError:
+        what = "a place or a speed of it is no finite number"
+        raise InvalidInput(Problem(str(data["name"]), what, "look at its pose")) from None
 
 
 class _Ids:
