@@ -193,7 +193,7 @@ def every_link_leads_somewhere(site: Site) -> None:
 
 def it_can_be_searched(site: Site) -> None:
     index = (site.root / "searchindex.js").read_text(encoding="utf-8")
-    assert "peaucellier" in index
+    assert "planetary" in index
     assert (site.root / "search.html") in site.pages
 
 
