@@ -43,11 +43,11 @@ def number_of(word: str) -> float | None:
     return float(word)
 
 
-def is_short(text: str, problems: Problems) -> bool:
+def is_short(text: str, problems: Problems, most: int = MOST_CHARACTERS) -> bool:
     """Return whether a text is no longer than mechanisms are; note where it is."""
-    if len(text) <= MOST_CHARACTERS:
+    if len(text) <= most:
         return True
-    what = f"it has {len(text):,} characters; joints are told in {MOST_CHARACTERS:,}"
+    what = f"it has {len(text):,} characters; a mechanism is told in {most:,}"
     problems.add("", what, "look whether it is the right file")
     return False
 

@@ -8,13 +8,16 @@ from __future__ import annotations
 import re
 
 from compoundkin.base.display import short
+from compoundkin.files.exchange.pmks.joint_text import is_short
 from compoundkin.files.exchange.problems import Problems
 
 _ENTRY = re.compile(r"(['\"]?)(\w+)\1:(?:\s+(.*))?")
-_ESCAPED = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8})|([ \t]*\n\s*)|(.))", re.DOTALL)
+_ESCAPED = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8})|(.))", re.DOTALL)
 _PLAIN_ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", '"': '"', "'": "'", " ": " ", "/": "/", "r": "\r", "0": ""}
 # What stands before keeps the search from beginning anew at every blank of a row.
-_FOLDED = re.compile(r"(?<![ \t])[ \t]*\n\s*")
+_JOINED = re.compile(r"(?<!\\)(?:\\\\)*\\$")
+# Recorded paths may make projects long.
+_MOST_CHARACTERS = 2_000_000
 # Projects have a dozen.
 _MOST_ENTRIES = 1000
 # What begins a tag, an anchor, an alias: never in what these programs write of a mechanism.
@@ -27,6 +30,8 @@ def project_entries(text: str, problems: Problems) -> dict[str, tuple[str, int]]
     >>> project_entries("input:\\n- - 0\\n  - 1\\n", Problems())
     {'input': ('\\n- - 0\\n  - 1', 1)}
     """
+    if not is_short(text, problems, _MOST_CHARACTERS):
+        return {}
     if text.lstrip().startswith("{"):
         return _of_one_line(text.strip(), problems)
     found: dict[str, tuple[list[str], int]] = {}
@@ -42,6 +47,8 @@ def project_entries(text: str, problems: Problems) -> dict[str, tuple[str, int]]
             found[key][0].append(line)
         elif line.strip() and not line.startswith(("#", "---", "...", "%YAML")):
             problems.add(f"line {number}", f"{short(line[:40])} is no entry of a project", "entries are key: value")
+            if len(problems.found) > _MOST_ENTRIES:
+                break
     return {key: ("\n".join(lines), number) for key, (lines, number) in found.items()}
 
 
@@ -101,29 +108,34 @@ def scalar(raw: str, where: str, problems: Problems) -> str:
     """Return the text that a raw one means: quoted, folded, or plain."""
     text = raw.strip()
     if text.startswith(_REFUSED):
-        problems.add(
-            where, f"{short(text[:20])} is a tag or an anchor of YAML, which is not read", "save the text plainly"
-        )
+        problems.add(where, f"{short(text[:20])} is a tag or an anchor of YAML", "only plain texts are read")
+        return ""
+    if not is_short(text, problems):
         return ""
     if text[:1] in ("'", '"'):
         if len(text) < 2 or text[-1] != text[0]:
             problems.add(where, "a quoted text does not end", "look whether the file is whole")
             return ""
-        inside = text[1:-1]
-        return _FOLDED.sub(" ", inside.replace("''", "'")) if text[0] == "'" else _unescaped(inside)
+        return _folded(text[1:-1].replace("''", "'")) if text[0] == "'" else _unescaped(text[1:-1])
     if text[:1] in ("|", ">"):
-        text = text.partition("\n")[2].strip()
-    return _FOLDED.sub(" ", text)
+        text = text.partition("\n")[2]
+    return _folded(text)
+
+
+def _folded(text: str) -> str:
+    return " ".join(line.strip() for line in text.split("\n"))
 
 
 def _unescaped(text: str) -> str:
-    folded = re.sub(r"(?<![\\ \t])[ \t]*\n\s*", " ", text)
-    return _ESCAPED.sub(_meant, folded)
+    """Return what a text in double quotes means: a backslash at the end of a line joins it to the next."""
+    lines = [line.strip() for line in text.split("\n")]
+    joined = "".join(line[:-1] if _JOINED.search(line) else f"{line} " for line in lines)
+    return _ESCAPED.sub(_meant, joined)
 
 
 def _meant(found: re.Match[str]) -> str:
     code = found[1] or found[2] or found[3]
-    if code:
-        number = int(code, 16)
-        return chr(number) if number <= 0x10FFFF else "?"
-    return "" if found[4] is not None else _PLAIN_ESCAPES.get(found[5], found[5])
+    if not code:
+        return _PLAIN_ESCAPES.get(found[4], found[4])
+    number = int(code, 16)
+    return chr(number) if number <= 0x10FFFF else "?"
