@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.suffixes import form_of, suffix_of
+from compoundkin.base.suffixes import SUFFIXES, suffix_for, suffix_of
 from compoundkin.cli.shell import say
 
 if TYPE_CHECKING:
@@ -90,7 +90,16 @@ def form_by_suffix(path: str) -> str:
     """Return the format whose files end so. Raises InvalidInput where there is none, or several."""
     from compoundkin.files.exchange.known_formats import writable_formats
 
-    found = [name for name, one in writable_formats().items() if one.suffix and one.suffix == suffix_of(path)]
+    suffix, known = suffix_of(path), writable_formats()
+    found = [name for name, one in known.items() if one.suffix and one.suffix == suffix]
     if len(found) > 1:
         raise InvalidInput(Problem(path, f"files of {len(found)} programs end so", f"give --to {' or '.join(found)}"))
-    return found[0] if found else form_of("program", path)
+    if not found:
+        what = f"nothing is exported as {suffix!r}" if suffix else "the file has no suffix"
+        ends = (
+            *SUFFIXES["program"],
+            *(one.suffix for one in known.values() if one.suffix),
+            suffix_for("picture", "tikz"),
+        )
+        raise InvalidInput(Problem(path, what, f"give --to, or end it in {', '.join(ends)}"))
+    return found[0]

@@ -72,7 +72,7 @@ def test_what_differs_has_its_own_exit_code(tmp_path: Path) -> None:
     (["import", "a.bin"], "binary"),
     (["report", "a.bin"], "binary"),
     (["import", "empty"], "it is empty"),
-    (["export", "six-bar", "-o", "a.zzz"], "is not saved as '.zzz'"),
+    (["export", "six-bar", "-o", "a.zzz"], "nothing is exported as '.zzz'"),
     (["export", "six-bar", "--to", "linkage", "--free", "crank.D"], "does not go with --to linkage"),
     (["export", "six-bar", "--to", "c", "--at", "3"], "does not go with --to c"),
     (["export", "six-bar", "--to", "tikz", "--option", "a=1"], "does not go with --to tikz"),

@@ -32,6 +32,21 @@ def positive(name: str, given: Any, otherwise: float, least: float = 0.0) -> flo
     return value
 
 
+def whole(name: str, given: Any, least: int, most: int) -> int:
+    """Return a whole number between bounds. Raises InvalidInput for what is none.
+
+    >>> whole("points", "12", 8, 100)
+    12
+    """
+    try:
+        value = float(given) if not isinstance(given, bool) else 0.5
+    except (TypeError, ValueError, OverflowError):
+        value = 0.5
+    if not (least <= value <= most and value.is_integer()):
+        raise InvalidInput(Problem(name, f"{given!r} is no count", f"give one from {least} to {most:,}"))
+    return int(value)
+
+
 def flag(name: str, given: Any) -> bool:
     """Return whether an option is set. Raises InvalidInput for what is no yes or no.
 
@@ -45,11 +60,17 @@ def flag(name: str, given: Any) -> bool:
 
 
 def letters_of(name: str, given: Any) -> tuple[str, ...]:
-    """Return names, from a list of them or a text with commas. Raises InvalidInput for anything else.
+    """Return names, from a list of them or a text with commas.
 
-    >>> letters_of("curves", "E, F")
-    ('E', 'F')
+    A plain no is none of them. Raises InvalidInput for anything else.
+
+    >>> letters_of("curves", "E, F"), letters_of("curves", False), letters_of("curves", 5)
+    (('E', 'F'), (), ('5',))
     """
+    if given is False:
+        return ()
+    if isinstance(given, int) and given is not True:
+        return (str(given),)  # a command line takes the name for a number
     if isinstance(given, str):
         return tuple(filter(None, (part.strip() for part in given.split(","))))
     if isinstance(given, Sequence) and all(isinstance(one, str) for one in given):

@@ -110,6 +110,9 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
     if motion.inputs.designs > 1:
         what = f"it has {motion.inputs.designs} designs, a file of another program holds one"
         raise InvalidInput(Problem(mechanism.title, what, "give the dimensions of one design"))
+    if at is not None and motion.inputs.poses > 1:
+        what = f"it is given {motion.inputs.poses} poses, a file of another program holds one"
+        raise InvalidInput(Problem("at", what, "give one value of each driver"))
     exact = exactly_drawn(motion) if at is None else None
     shown, pose = (motion, pose_nearest_to_drawing(motion)) if exact is None else (exact, 0)
     return ShownMechanism(

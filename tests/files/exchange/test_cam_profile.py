@@ -76,6 +76,8 @@ def test_points_at_equal_steps_tell_their_error() -> None:
     for count in (3, "many", 1e9):
         with pytest.raises(ck.errors.InvalidInput, match="points: "):
             table(eccentric(), points=count)
+    with pytest.raises(ck.errors.InvalidInput, match="both given"):
+        table(eccentric(), points=90, tolerance=0.1)
 
 
 def test_of_several_cams_one_is_named() -> None:

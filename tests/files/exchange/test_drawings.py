@@ -93,6 +93,11 @@ FOUR_BAR = Drawing(
 )
 
 
+def test_a_file_holds_one_pose() -> None:
+    with pytest.raises(ck.errors.InvalidInput, match="at: it is given 2 poses"):
+        shown_mechanism(catalog_mechanism("crank-rocker"), {"crank": np.array([0.0, 1.0])})
+
+
 def test_names_that_cannot_be_are_changed_and_told() -> None:
     found = mechanism_of(FOUR_BAR, "sample")
     assert "crank-1" in found.mechanism.links

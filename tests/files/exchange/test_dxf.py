@@ -145,6 +145,19 @@ def test_names_of_links_are_made_legal() -> None:
     assert (document.header["$INSUNITS"], document.header["$MEASUREMENT"]) == (2, 0)
 
 
+def test_names_that_mean_something_in_dxf_are_names() -> None:
+    plate = ck.link("Defpoints", A=0, **{"x^2 50%%c": 5})
+    odd = ck.Mechanism(
+        "Odd", ck.link("frame", A=0), ck.link("0", A=0, B=2), plate, ck.drive("0"), ck.drive("Defpoints"),
+        ck.outline("0", 1, pin=0.5), ck.outline("Defpoints", 1, pin=0.5),
+    )  # fmt: skip
+    document = ezdxf.read(io.StringIO(write(odd, "dxf", parts=True).text))
+    # on layer 0 nothing has a colour of its own, Defpoints is not plotted
+    assert {one.dxf.layer for one in document.modelspace().query("LWPOLYLINE")} == {"0-2", "Defpoints-2"}
+    written = [one.plain_text() for one in read(odd, curves=False).modelspace().query("TEXT")]
+    assert "x^2 50%%c" in written
+
+
 # --- paths ------------------------------------------------------------------------------------------------
 
 

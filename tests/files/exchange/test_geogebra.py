@@ -253,6 +253,27 @@ def test_the_pose_asked_for_is_shown() -> None:
     assert abs(evaluated(lines, {})["G"] - (31.639333709086156 + 10.988360299582874j)) < 1e-12
 
 
+def test_sliders_begin_at_the_drawn_pose_by_whole_turns() -> None:
+    rocker = catalog.mechanism("crank-rocker")
+    at = shown_mechanism(rocker, {"crank": ck.deg(-145)})
+    drawn = ck.drawn(**{letter: at.place(links[0], letter) for letter, links in rocker.carriers.items()})
+    for seen in (at, shown_mechanism(rocker.replace(drawn)), shown_mechanism(rocker, {"crank": ck.deg(215 + 360)})):
+        found = COMMANDS.write(seen)
+        begun = float(found.text.splitlines()[1].removeprefix("SetValue(φ_{crank}, ").removesuffix(")"))
+        assert begun == pytest.approx(215.0)
+        assert not found.notes
+        assert abs(evaluated(found.text.splitlines(), {})["C"] - at.place("coupler", "C")) < 1e-9
+    # a wheel that turns with the crank is elsewhere after a turn of it
+    geared = ck.Mechanism(
+        "Gears", ck.link("frame", A=0, B=5), ck.link("crank", A=0), ck.link("wheel", B=0, C=1), ck.drive("crank"),
+        ck.gear("crank", "wheel", teeth=(20, 30), carrier="frame"),
+    )  # fmt: skip
+    (note,) = COMMANDS.write(shown_mechanism(geared, {"crank": ck.deg(420)})).notes
+    assert note.startswith("crank begins at the end of its range")
+    fixed = rocker.replace(ck.drive("crank", values=[1.0]))
+    assert COMMANDS.write(shown_mechanism(fixed, {"crank": ck.deg(90)})).text.startswith("φ_{crank} = 90")
+
+
 def test_all_that_cannot_be_constructed_is_told_at_once() -> None:
     class_iii = catalog.mechanism("class-iii-six-bar")
     frame = ck.link("frame", **{**class_iii.links["frame"].points, "Z": (100, 100)})

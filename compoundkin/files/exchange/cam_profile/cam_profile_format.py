@@ -13,7 +13,7 @@ from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.exchange.cam_profile.profile_points import ProfilePoints, profile_points
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
-from compoundkin.files.exchange.option_values import positive
+from compoundkin.files.exchange.option_values import positive, whole
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
 
@@ -33,10 +33,10 @@ class CamProfileFormat(Writable):
     suffix: ClassVar[str] = suffix_for("table", "csv")
     options: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
-            "cam": "The pair whose profile it is, where there are several.",
-            "tolerance": "How far chords may be off, a length; 1/100000 of the profile's size if left out.",
-            "points": "Instead of a tolerance so many points at equal steps, of the cam's angle where made for one.",
-            "cutter": "The radius of a cutter, whose path is added.",
+            "cam": "the pair whose profile it is, where there are several",
+            "tolerance": "how far chords may be off, a length; 1/100000 of the profile's size if left out",
+            "points": "instead of a tolerance so many points at equal steps, of the cam's angle where made for one",
+            "cutter": "the radius of a cutter, whose path is added",
         }
     )
 
@@ -45,7 +45,7 @@ class CamProfileFormat(Writable):
         pair = _pair(shown, options.get("cam"))
         tolerance = positive("tolerance", options.get("tolerance"), CHORD * pair.extent, FINEST * pair.extent)
         cutter = None if options.get("cutter") is None else positive("cutter", options["cutter"], 0.0)
-        found = profile_points(pair, tolerance, cutter, _count(options.get("points")))
+        found = profile_points(pair, tolerance, cutter, _count(options))
         unit = shown.mechanism.unit
         text = io.StringIO()
         rows = csv.writer(text, lineterminator="\n")
@@ -67,13 +67,13 @@ def _pair(shown: ShownMechanism, name: Any) -> Profiled:
     return known[wanted]
 
 
-def _count(given: Any) -> int | None:
-    if given is None:
+def _count(options: Mapping[str, Any]) -> int | None:
+    """How many points are asked for, if any."""
+    if options.get("points") is None:
         return None
-    count = int(positive("points", given, 0.0))
-    if not FEWEST <= count <= MOST:
-        raise InvalidInput(Problem("points", f"{count} is no count of points", f"{FEWEST} to {MOST:,}"))
-    return count
+    if options.get("tolerance") is not None:
+        raise InvalidInput(Problem("points", "points and a tolerance are both given", "leave one of them out"))
+    return whole("points", options["points"], FEWEST, MOST)
 
 
 def _heads(found: ProfilePoints, unit: str) -> Iterator[str]:

@@ -41,9 +41,9 @@ class DxfFormat(Writable):
     suffix: ClassVar[str] = ".dxf"
     options: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
-            "curves": "Points whose paths are drawn, by commas; if left out those of outputs and of one link alone.",
-            "tolerance": "How far curves may be off, a length; 1/10000 of the mechanism's size if left out.",
-            "parts": "Instead of a pose the parts side by side, as a laser cuts them: contours and holes alone.",
+            "curves": "points whose paths are drawn, by commas; if left out those of outputs and of one link alone",
+            "tolerance": "how far curves may be off, a length; 1/10000 of the mechanism's size if left out",
+            "parts": "instead of a pose the parts side by side, as a laser cuts them: contours and holes alone",
         }
     )
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.files.exchange.dxf.legal_names import sayable
+from compoundkin.files.exchange.dxf.legal_names import literal
 from compoundkin.files.exchange.dxf.outline_contours import Contour
 from compoundkin.files.exchange.dxf.profile_splines import ProfileSpline
 
@@ -66,7 +66,7 @@ class DxfPen:
 
     def text(self, text: str, place: complex, height: float) -> None:
         """Write a text that begins at a place."""
-        self.layout.add_text(sayable(text), height=height, dxfattribs={**self._own, "insert": self._pair(place)})
+        self.layout.add_text(literal(text), height=height, dxfattribs={**self._own, "insert": self._pair(place)})
 
     @property
     def _own(self) -> dict[str, str]:

@@ -7,12 +7,16 @@ import re
 # What AutoCAD refuses in names of layers and blocks.
 _REFUSED = re.compile(r"[<>/\\\":;?*|=`,]")
 LONGEST = 200
+# Layers that every file has, or that are not plotted.
+RESERVED = ("0", "Defpoints")
 # The last letter that DXF can write out.
 LAST = 0xFFFF
 
 
 def in_ascii(text: str) -> bytes:
-    r"""Return a text with other letters written out as DXF has it. So no code page matters.
+    r"""Return a text with other letters written out as DXF has it.
+
+    No code page matters then.
 
     >>> in_ascii("bär")
     b'b\\U+00E4r'
@@ -21,8 +25,20 @@ def in_ascii(text: str) -> bytes:
 
 
 def sayable(text: str) -> str:
-    """Return a text with `_` for what DXF cannot say. That does not print, or is a letter beyond four digits."""
+    """Return a text with `_` for what DXF cannot say.
+
+    That is what does not print, and letters beyond four digits.
+    """
     return "".join(c if c.isprintable() and ord(c) <= LAST else "_" for c in text)
+
+
+def literal(text: str) -> str:
+    r"""Return a text in which signs that would command something stand for themselves.
+
+    >>> print(literal("50%%c x^2"))
+    50%%%%%%c x^ 2
+    """
+    return sayable(text).replace("%%", "%%%%%%").replace("^", "^ ").replace("\\U+", "\\U+005CU+")
 
 
 class LegalNames:

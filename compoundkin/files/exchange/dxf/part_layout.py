@@ -7,7 +7,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.dxf.dxf_pen import DxfPen
-from compoundkin.files.exchange.dxf.legal_names import LegalNames
+from compoundkin.files.exchange.dxf.legal_names import RESERVED, LegalNames
 from compoundkin.files.exchange.dxf.link_parts import LinkPart
 from compoundkin.files.exchange.dxf.pose_layers import CENTRES, LETTER, NAMES, draw_centre_lines, draw_part
 from compoundkin.files.exchange.dxf.profile_splines import ProfileSpline
@@ -22,7 +22,7 @@ def draw_parts(document: Any, parts: Sequence[LinkPart], splines: Mapping[int, P
     if not cut:
         what = "no link has an outline, and there is no cam to cut"
         raise InvalidInput(Problem("parts", what, 'write outlines: outline("crank", 8, pin=5)'))
-    model, names = document.modelspace(), LegalNames(NAMES, CENTRES)
+    model, names = document.modelspace(), LegalNames(NAMES, CENTRES, *RESERVED)
     corner, tallest = 0j, 0.0
     for part in cut:
         layers: list[int | None] = [sheet.layer for sheet in part.sheets]

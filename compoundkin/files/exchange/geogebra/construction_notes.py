@@ -25,6 +25,8 @@ def _notes(shown: ShownMechanism, build: Construction) -> Iterator[str]:
     changing = [step.name for step in build.steps if step.look == "helper" and step.caption and "mode" in step.caption]
     for name in changing:
         yield f"{name} changes where the links are in line, as the motion does: with other lengths set it to 1 or -1"
+    for name in build.beyond:
+        yield f"{name} begins at the end of its range: the pose that is asked for, or drawn, lies beyond"
     for name, slider in build.driven.items():
         if not build.is_slider(slider):
             yield f"{name} has a single value: it is a number to be changed"

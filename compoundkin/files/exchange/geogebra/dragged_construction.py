@@ -63,6 +63,7 @@ class Construction:
         self.names = ObjectNames()
         self.steps: list[ConstructionStep] = []
         self.driven: dict[str, str] = {}  # the sliders of drivers, by these
+        self.beyond: tuple[str, ...] = ()  # the drivers whose sliders do not reach the pose shown
         self.sizes: dict[str, tuple[str, ...]] = {}  # the numbers of wheels: of gears two, of a wheel on a line one
 
     @property

@@ -19,6 +19,7 @@ from compoundkin.files.exchange.geogebra.pair_sides import PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import InsideBody, PlacedBodies
 from compoundkin.files.exchange.geogebra.point_dimensions import link_points
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, in_degrees
+from compoundkin.files.exchange.geogebra.slider_values import slider_values
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.groups import GroupSolver, as_dyad
@@ -31,8 +32,9 @@ def construction_of(shown: ShownMechanism) -> Construction:
     motion = ranged_motion(shown)
     build = Construction()
     sliders = build.driven
+    begun, build.beyond = slider_values(shown, motion)
     for name in motion.drives:
-        sliders[name] = _slider(build, motion, name, shown.values.get(name))
+        sliders[name] = _slider(build, motion, name, begun[name])
     chosen = ChosenSides(build, motion, sliders)
     problems = [*_problems(motion, chosen)]
     if problems:
@@ -50,16 +52,17 @@ def ranged_motion(shown: ShownMechanism) -> Motion:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return solve(shown.structure, order=1)
+            found = solve(shown.structure, order=1)
     except (InvalidInput, NotAssembled, NotDetermined) as error:
         what = f"it cannot be solved: {error.problems[0].what}"
         raise InvalidInput(Problem(shown.mechanism.title, what, "drive it where it can be assembled")) from None
+    # of drivers without a range the pose asked for is all there is
+    return found if found.inputs.poses > 1 or motion is None else motion
 
 
-def _slider(build: Construction, motion: Motion, name: str, at: float | None) -> str:
+def _slider(build: Construction, motion: Motion, name: str, value: float) -> str:
     """Add the slider of a driver; a number where its range is a single value. Return its name."""
     values, is_angle = np.ravel(motion.drives[name].value), motion.structure.driven_angles[name]
-    value = float(values[0] if at is None else at)
     if is_angle:
         values, value = np.round(np.rad2deg(values), 9), in_degrees(value)
     stem, caption = ("φ", f"{name}, degrees") if is_angle else ("s", name)
