@@ -72,6 +72,7 @@ WRONG: tuple[Any, ...] = (
 )  # fmt: skip
 
 
+@cache
 def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
     """Every public function, with arguments that are right."""
     h = at_hand()

@@ -25,6 +25,7 @@ def test_right_motions_pass(name):
     check = ck.verify(catalog.motion(name))
     assert check.failed == ()
     assert check.passed
+    assert check.singular == 0
     assert check.verdict == f"all {len(check.findings)} checks passed"
 
 

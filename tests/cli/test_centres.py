@@ -138,8 +138,9 @@ def test_a_file_takes_its_form_from_its_name(run: Run, tmp_path: Path) -> None:
     assert r"(frame input)(input block) x (frame output)(output block)" in text
 
 
-@pytest.mark.parametrize("name", shipped_mechanisms.names())
-def test_every_mechanism_fits_80_columns_and_agrees(run: Run, name: str) -> None:
+# every third; of all others tests/analysis/centres/test_catalog.py tells that they agree
+@pytest.mark.parametrize("name", shipped_mechanisms.names()[::3])
+def test_mechanisms_fit_80_columns_and_agree(run: Run, name: str) -> None:
     result = run("centres", name)
     assert result.exit_code == 0
     assert max(map(len, result.stdout.splitlines())) <= 80
