@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cached_property
 from importlib import import_module
@@ -39,6 +39,16 @@ def counted(number: int, one: str, many: str = "") -> str:
     ('1 driver', '2 branches')
     """
     return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def few(texts: Sequence[str], most: int = 8) -> str:
+    """Say some texts, and how many more there are.
+
+    >>> few(["A", "B"]), few(["A", "B", "C", "D"], 2)
+    ('A, B', 'A, B and 2 more')
+    """
+    more = f" and {len(texts) - most} more" if len(texts) > most else ""
+    return ", ".join(texts[:most]) + more
 
 
 class Shows:

@@ -1,4 +1,4 @@
-"""Texts of users: characters that would hide, reorder or overwrite what is shown, found and written out."""
+"""Texts of users: characters that would hide, reorder or overwrite what is shown, found, written out, left out."""
 
 from __future__ import annotations
 
@@ -35,3 +35,12 @@ def written_out(text: str) -> str:
     if text.isascii() and text.isprintable():
         return text
     return _UNSEEN.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
+
+
+def printable(text: str) -> str:
+    r"""Return a text with blanks for what does not print, ends of lines too.
+
+    >>> printable("four\x00bar\n")
+    'four bar '
+    """
+    return "".join(c if c.isprintable() else " " for c in text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, isfinite
 
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnArc, DrawnGuideway, DrawnPoint
@@ -94,11 +95,18 @@ class DrawnLetters:
 
 
 def size_of(drawing: Drawing) -> float:
-    """Return the diagonal of the box around all that is drawn.
+    """Return the diagonal of the box around all that is drawn."""
+    return size_around([point.at for point in drawing.points] + [guide.through for guide in drawing.guides])
 
-    It is 1 where that is nothing.
+
+def size_around(places: Sequence[complex]) -> float:
+    """Return the diagonal of the box around places.
+
+    Where they are one it is their distance from the origin, where that is nothing 1.
+
+    >>> size_around([1j, 3 + 1j, 4j]), size_around([2j]), size_around([])
+    (4.242640687119285, 2.0, 1.0)
     """
-    places = [point.at for point in drawing.points] + [guide.through for guide in drawing.guides]
     if not places:
         return 1.0
     wide = max(p.real for p in places) - min(p.real for p in places)

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from typing import Any
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import counted, few
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, LikelySlip, Problem
 from compoundkin.files.exchange.drawn_drivers import drivers_of
 from compoundkin.files.exchange.drawn_elements import Drawing
@@ -97,8 +97,7 @@ def _coinciding(key: str, drawing: Drawing) -> Iterator[str]:
 def _renamed(letters: DrawnLetters) -> Iterator[str]:
     changed = [f"{old!r} is {new!r}" for old, new in letters.names.changed]
     if changed:
-        more = f" and {len(changed) - 8} more" if len(changed) > 8 else ""
-        yield f"names are unique here, without dots and commas: {', '.join(changed[:8])}{more}"
+        yield f"names are unique here, without dots and commas: {few(changed)}"
 
 
 def _left_out(drawing: Drawing) -> Iterator[str]:

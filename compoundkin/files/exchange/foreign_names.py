@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import count
 
+from compoundkin.base.texts import printable
 from compoundkin.model.geometry import FRAME
 
 # What names of other programs may hold and ours may not, and what stands for it.
@@ -20,8 +21,7 @@ def legal(name: str) -> str:
     >>> legal(" coupler.0_tip "), legal("\\t")
     ('coupler-0_tip', '')
     """
-    printable = "".join(c if c.isprintable() else " " for c in name).translate(_REPLACED)
-    return printable.strip()[:LONGEST].strip()
+    return printable(name).translate(_REPLACED).strip()[:LONGEST].strip()
 
 
 def letters(taken: Iterable[str] = ()) -> Iterator[str]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import TURN, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawn_elements import (
     Drawing,
@@ -157,7 +157,7 @@ def _driver(shown: ShownMechanism, one: Drive) -> DrawnDriver:
     if one.values is not None or one.law is not None:
         values = np.ravel(shown.motion.drives[one.name].value)
         low, high = float(values.min() - here), float(values.max() - here)
-        turns = shown.structure.driven_angles[one.name] and high - low >= (1.0 - _ROUNDING) * 2.0 * np.pi
+        turns = shown.structure.driven_angles[one.name] and high - low >= (1.0 - _ROUNDING) * TURN
         travel = None if turns else (low, high)
     return DrawnDriver(one.link, one.on, at, shown.rates[one.name], travel, called)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from compoundkin.base.texts import printable
+
 _COMMANDS: Mapping[str, str] = {
     "\\": r"\textbackslash{}",
     "^": r"\textasciicircum{}",
@@ -43,7 +45,7 @@ def tex_text(text: str) -> str:
     >>> print(tex_text("50 % of a_1 at ω₁₂, -0.5°"))
     50 \% of a\_1 at \ensuremath{\omega}\ensuremath{_{12}}, -0.5\ensuremath{^\circ}
     """
-    shown = _DOUBLED.sub(r"\1\0", "".join(c if c.isprintable() else " " for c in text))
+    shown = _DOUBLED.sub(r"\1\0", printable(text))
     return "".join(_set(run) for run in _RUNS.findall(shown)).replace("\0", "{}")
 
 
@@ -53,7 +55,7 @@ def tex_comment(text: str) -> str:
     >>> tex_comment("one\ntwo")
     '% one two'
     """
-    return "% " + "".join(c if c.isprintable() else " " for c in text)
+    return "% " + printable(text)
 
 
 def _set(run: str) -> str:

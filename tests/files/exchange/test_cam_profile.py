@@ -121,4 +121,4 @@ def test_a_cutter_that_would_cut_into_the_profile_is_refused() -> None:
 def test_a_flat_face_has_no_pitch_curve() -> None:
     columns, notes = table(load_named("flat-faced-follower"), points=16)
     assert not any(name.startswith("pitch") for name in columns)
-    assert notes[-1] == "A flat face has no pitch curve."
+    assert notes[-1] == "a flat face has no pitch curve"

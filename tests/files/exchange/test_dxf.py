@@ -108,9 +108,9 @@ def test_the_same_drawing_is_the_same_bytes() -> None:
     first, again = (write(load_named("jansen-leg"), "dxf") for _ in range(2))
     assert first.content == again.content
     assert not ezdxf.options.write_fixed_meta_data_for_testing
-    assert first.notes[0] == "The lengths have no unit."
+    assert first.notes[0] == "the lengths have no unit"
     assert (
-        first.notes[2] == "Links without an outline, drawn as lines between their points: crank, j, bde, k, c, f, ghi."
+        first.notes[2] == "links without an outline, drawn as lines between their points: crank, j, bde, k, c, f, ghi"
     )
 
 
@@ -164,7 +164,7 @@ def test_names_that_mean_something_in_dxf_are_names() -> None:
 def test_paths_are_within_the_stated_error_and_closed() -> None:
     leg, tolerance = load_named("jansen-leg"), 0.02
     exported = write(leg, "dxf", curves="foot", tolerance=str(tolerance))
-    assert "Curves are within 0.02 of the exact ones." in exported.notes
+    assert "curves are within 0.02 of the exact ones" in exported.notes
     document = ezdxf.read(io.StringIO(exported.text))
     (path,) = document.modelspace().query('LWPOLYLINE[layer=="CURVES"]')
     assert path.closed

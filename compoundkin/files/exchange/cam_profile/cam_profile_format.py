@@ -92,10 +92,10 @@ def _rows(found: ProfilePoints) -> Iterator[tuple[float, ...]]:
 
 def _notes(pair: Profiled, found: ProfilePoints, unit: str) -> Iterator[str]:
     closed = "closed: the last is the first again" if pair.curve.closed else "open"
-    yield f"{len(found.parameters)} points of the profile of {pair.name}, in the frame of {pair.on}; {closed}."
-    yield f"Chords between them are off by {found.error:.3g}{f' {unit}' if unit else ''} at most."
+    yield f"{len(found.parameters)} points of the profile of {pair.name}, in the frame of {pair.on}; {closed}"
+    yield f"chords between them are off by {found.error:.3g}{f' {unit}' if unit else ''} at most"
     if pair.is_flat:
-        yield "A flat face has no pitch curve."
+        yield "a flat face has no pitch curve"
 
 
 FORMAT = CamProfileFormat()

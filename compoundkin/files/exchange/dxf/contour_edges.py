@@ -5,9 +5,9 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import pi, sqrt, tan
+from math import sqrt, tan
 
-TURN = 2.0 * pi
+from compoundkin.base.arrays import TURN
 
 
 @dataclass(frozen=True)

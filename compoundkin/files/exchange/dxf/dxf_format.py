@@ -103,13 +103,13 @@ def _content(document: Any) -> bytes:
 def _notes(shown: ShownMechanism, parts: Sequence[LinkPart], error: float | None, instead: str) -> Iterator[str]:
     unit = shown.mechanism.unit
     if not unit:
-        yield "The lengths have no unit."
+        yield "the lengths have no unit"
     elif unit not in UNITS:
-        yield f"DXF has no number for the unit {unit!r}; lengths are written as they are."
+        yield f"DXF has no number for the unit {unit!r}; lengths are written as they are"
     if error is not None:
-        yield f"Curves are within {error:.3g}{f' {unit}' if unit else ''} of the exact ones."
+        yield f"curves are within {error:.3g}{f' {unit}' if unit else ''} of the exact ones"
     if bare := [part.link for part in parts if not part.is_cut and part.link != FRAME]:
-        yield f"Links without an outline, {instead}: {', '.join(bare)}."
+        yield f"links without an outline, {instead}: {', '.join(bare)}"
 
 
 FORMAT = DxfFormat()

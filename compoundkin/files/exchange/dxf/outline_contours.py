@@ -10,7 +10,8 @@ from itertools import pairwise
 from math import pi
 from typing import TypeAlias
 
-from compoundkin.files.exchange.dxf.contour_edges import TURN, ContourEdge
+from compoundkin.base.arrays import TURN
+from compoundkin.files.exchange.dxf.contour_edges import ContourEdge
 from compoundkin.model.outlines.outline_shapes import OutlineShape
 
 # Places nearer to each other than this part of the outline's size are one; on which side of an edge material lies is

@@ -6,8 +6,8 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
 
+from compoundkin.base.display import few
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.xml_tree import XmlElement
 
@@ -40,9 +40,8 @@ def unknown_attributes(root: XmlElement) -> Iterator[str]:
             if name not in _KNOWN:
                 met.setdefault(name[:40], element.line)
     if met:
-        said = [f"{name} (line {line})" for name, line in islice(met.items(), 8)]
-        more = f" and {len(met) - 8} more" if len(met) > 8 else ""
-        yield f"attributes that are not known are not looked at: {', '.join(said)}{more}"
+        said = [f"{name} (line {line})" for name, line in met.items()]
+        yield f"attributes that are not known are not looked at: {few(said)}"
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import phase
 from collections.abc import Iterator
-from math import pi, radians
+from math import radians
 from typing import NamedTuple
 
 from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway, DrawnPoint
@@ -12,6 +12,7 @@ from compoundkin.files.exchange.drawn_pairs import AXIS
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import rod
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink
+from compoundkin.files.written_quantities import RPM
 from compoundkin.model.geometry import FRAME
 
 # Turns a minute are clockwise there.
@@ -41,7 +42,7 @@ def inputs_of(points: ConnectorPoints) -> Iterator[DrawnDriver]:
 
 def _input(one: LinkageConnector, at: str, links: tuple[str, str], sense: float) -> DrawnDriver:
     """Return the driver of the first link against the second, whose speed has a sign."""
-    speed = None if one.manual or not one.rpm else sense * one.rpm * 2.0 * pi / SECONDS
+    speed = None if one.manual or not one.rpm else sense * one.rpm * RPM
     ahead = sense if one.rpm >= 0 else -sense
     travel = (0.0, ahead * radians(abs(one.range))) if one.range else None
     return DrawnDriver(*links, at, speed, travel, where=one.where)

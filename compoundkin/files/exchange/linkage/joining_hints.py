@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations, islice
 
+from compoundkin.base.display import few
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
 
@@ -35,6 +36,5 @@ def hint(pairs: list[tuple[LinkageConnector, LinkageConnector]]) -> str:
     >>> hint([])
     ''
     """
-    said = [f"{one.id} and {two.id}" for one, two in pairs[:_MOST]]
-    more = f" (and {len(pairs) - _MOST} more)" if len(pairs) > _MOST else ""
-    return f"did you mean to join connectors {', '.join(said)}?{more}" if said else ""
+    said = [f"{one.id} and {two.id}" for one, two in pairs]
+    return f"did you mean to join connectors {few(said, _MOST)}?" if said else ""

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import degrees, pi
+from math import degrees
 
 import numpy as np
 
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnPoint
-from compoundkin.files.exchange.linkage.input_drivers import CLOCKWISE, SECONDS
+from compoundkin.files.exchange.linkage.input_drivers import CLOCKWISE
 from compoundkin.files.exchange.linkage.linkage_elements import WrittenConnector, WrittenLink, WrittenRatio
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.files.written_quantities import RPM
 from compoundkin.model.geometry import FRAME
 
 # An end of a range is the pose written that is nearer to it than this part of the range.
@@ -99,7 +100,7 @@ class LinkagePlan:
         """Make a connector for two links at a pin that is driven; those beside them do not turn with them."""
         turned = driver if driver.link != FRAME else _reversed(driver)
         made = self.connector(point.at, [turned.on, turned.link], point.called)
-        made.rpm = CLOCKWISE * (turned.speed or 0.0) * SECONDS / (2.0 * pi)
+        made.rpm = CLOCKWISE * (turned.speed or 0.0) / RPM
         self._hold(point.key, made, [turned.link])
         links.remove(turned.link)
         if links == [turned.on]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway
+from compoundkin.files.exchange.drawn_letters import size_around
 from compoundkin.files.exchange.drawn_mechanism import MOST
 from compoundkin.files.exchange.linkage.attribute_values import unknown_attributes
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
@@ -30,7 +31,7 @@ def drawing_in(content: Content) -> tuple[Drawing, str]:
     problems = Problems(content.where)
     joined = _joined(content, problems)
     file = joined.file
-    size = _size([one.at for one in file.connectors.values()])
+    size = size_around([one.at for one in file.connectors.values()])
     points = ConnectorPoints(joined)
     sliders, gears = sliders_of(joined), tuple(gears_of(points))
     actuators = list(actuators_of(points))
@@ -83,13 +84,6 @@ def _few(notes: list[str]) -> list[str]:
     return (
         notes if len(notes) <= _MOST_NOTES else [*notes[:_MOST_NOTES], f"and {len(notes) - _MOST_NOTES} more like this"]
     )
-
-
-def _size(places: list[complex]) -> float:
-    """Return the diagonal of the box around all places; 1 where that is nothing."""
-    wide = max((p.real for p in places), default=0.0) - min((p.real for p in places), default=0.0)
-    high = max((p.imag for p in places), default=0.0) - min((p.imag for p in places), default=0.0)
-    return abs(complex(wide, high)) or 1.0
 
 
 def _find_floating(

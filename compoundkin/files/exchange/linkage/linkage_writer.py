@@ -29,7 +29,7 @@ def linkage_text(shown: ShownMechanism) -> tuple[str, list[str]]:
     except InvalidInput as error:
         unsaid += error.problems
     if unsaid:
-        raise InvalidInput(unsaid, heading=f"Linkage cannot say all of {shown.mechanism.title!r}")
+        raise InvalidInput(unsaid, heading=f"{shown.mechanism.title!r} cannot be said in Linkage")
     problems = Problems(shown.mechanism.title)
     plan = linkage_layout(shown, problems)
     problems.raise_if_any()

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from xml.etree.ElementTree import Element, indent, tostring
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.texts import printable
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
 from compoundkin.files.exchange.mjcf.body_elements import body_elements
@@ -16,7 +17,7 @@ from compoundkin.files.exchange.mjcf.constraint_elements import constraint_eleme
 from compoundkin.files.exchange.mjcf.driver_elements import driver_elements
 from compoundkin.files.exchange.mjcf.load_elements import ModelLoads
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan, plan_of
-from compoundkin.files.exchange.mjcf.model_settings import camera, printable, settings, step_of
+from compoundkin.files.exchange.mjcf.model_settings import camera, settings, step_of
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.geometry import FRAME
 

@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from compoundkin.base.arrays import TURN, first_entry
+from compoundkin.base.texts import printable
 from compoundkin.files.exchange.mjcf.body_elements import number, place
 from compoundkin.files.exchange.mjcf.driver_elements import fastest
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
@@ -67,15 +68,6 @@ def camera(plan: ModelPlan) -> Element:
     height = _ROOM * width / 2.0 / tan(radians(_ANGLE / 2.0))
     at = f"{number(middle.real)} {number(middle.imag)} {number(height)}"
     return Element("camera", name="plane", pos=at, xyaxes="1 0 0 0 1 0", fovy=number(_ANGLE))
-
-
-def printable(text: str) -> str:
-    """Return a text without what XML cannot hold.
-
-    >>> printable("four\\x00bar")
-    'four bar'
-    """
-    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def _view(plan: ModelPlan) -> tuple[complex, float]:

@@ -7,12 +7,14 @@ from collections import Counter
 from collections.abc import Iterator
 from math import pi, remainder
 
+from compoundkin.base.arrays import TURN
 from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnLink
 from compoundkin.files.exchange.pmks_plus.rigid_links import RigidLinks
 from compoundkin.files.exchange.pmks_plus.shared_loads import forces_of, masses_of
 from compoundkin.files.exchange.pmks_plus.shared_points import SharedPoints
-from compoundkin.files.exchange.pmks_plus.shared_records import GRAVITY, RPM, UNITS, SharedJoint, SharedMechanism
+from compoundkin.files.exchange.pmks_plus.shared_records import GRAVITY, UNITS, SharedJoint, SharedMechanism
 from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.written_quantities import RPM
 from compoundkin.model.geometry import FRAME
 
 # Angles are written to so much: one that is within it of a quarter turn may have been meant as that.
@@ -66,7 +68,7 @@ def _guides(
         at = points.key(joint if points.stands_apart(joint) else pin)
         if joint.slot is None:
             notes.extend(_said_of_angle(joint))
-            angle = remainder(joint.angle, 2.0 * pi)
+            angle = remainder(joint.angle, TURN)
             yield DrawnGuideway(_key(joint), "slide", body, carrier, at, joint.at, angle, where=joint.where)
         else:
             start, end = (rigid.joints[id_] for id_ in joint.slot[1:])

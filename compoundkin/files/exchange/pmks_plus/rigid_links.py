@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
+from compoundkin.base.display import few
 from compoundkin.files.exchange.pmks_plus.shared_records import SharedJoint, SharedLink, SharedMechanism
 from compoundkin.model.geometry import FRAME
-
-# So many names are enough in a sentence.
-_MOST = 8
 
 
 class RigidLinks:
@@ -127,14 +125,9 @@ def _said(held: list[tuple[str, str]]) -> Iterator[str]:
     framed = [other if one == FRAME else one for one, other in held if FRAME in (one, other)]
     twins = [f"{one} and {other}" for one, other in held if FRAME not in (one, other)]
     if framed:
-        yield f"pinned to the frame twice, and so part of it: {_listed(framed)}"
+        yield f"pinned to the frame twice, and so part of it: {few(framed)}"
     if twins:
-        yield f"with two pins in common, and so one link: {_listed(twins)}"
-
-
-def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
-    return ", ".join(names[:_MOST]) + more
+        yield f"with two pins in common, and so one link: {few(twins)}"
 
 
 def _key(link: str) -> str:

@@ -9,7 +9,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnPoint
 from compoundkin.files.exchange.pmks_plus.share_joints import ShareJoints
 from compoundkin.files.exchange.pmks_plus.share_scale import rounded
-from compoundkin.files.exchange.pmks_plus.shared_records import RPM
+from compoundkin.files.written_quantities import RPM
 from compoundkin.model.geometry import FRAME
 
 # What the program turns at where we have no speed.

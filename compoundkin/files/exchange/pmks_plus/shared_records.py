@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 # By the digit of the length unit: the units of length, mass and force that the program counts in.
@@ -11,7 +10,6 @@ UNITS = (("in", "lb", "lbf"), ("cm", "g", "N"), ("m", "kg", "N"))
 INERTIA_UNITS = (1.0, 1000.0, 1.0)
 # In m/s^2, what the program takes gravity for.
 GRAVITY = 9.81
-RPM = math.pi / 30.0
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ class PylinkageLayout:
         self._near = _ROUNDING * max((abs(place - centre) for place in self.places.values()), default=0.0)
         problems = [*self._unsaid(), *self._placed_lines(), *self._made_links()]
         if problems:
-            raise InvalidInput(problems, heading=f"pylinkage cannot say {self.drawing.title!r}")
+            raise InvalidInput(problems, heading=f"{self.drawing.title!r} cannot be said in pylinkage")
 
     def apart(self, first: str, second: str) -> bool:
         """Return whether two points are at different places."""
