@@ -63,10 +63,10 @@ def _in_short(found: Imported) -> str:
 def _piped() -> str:
     """Return what is piped in; a line end tells it from a path."""
     from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.files.exchange.content import MOST_BYTES
+    from compoundkin.files.exchange.content import MOST_BYTES, as_utf8
 
     raw = sys.stdin.buffer.read(MOST_BYTES + 1)
     try:
-        return raw.decode("utf-8-sig") + "\n"
+        return as_utf8(raw).decode("utf-8-sig") + "\n"
     except UnicodeDecodeError:
         raise InvalidInput(Problem("standard input", "it is not UTF-8 text", "name the file")) from None

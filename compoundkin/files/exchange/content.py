@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
 from dataclasses import dataclass
@@ -32,10 +33,12 @@ class Content:
     def text(self) -> str:
         """The content as text. Raises InvalidInput where it is none."""
         try:
-            return self.raw.decode("utf-8-sig")
+            text = self.raw.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             what = f"it is not UTF-8 text (byte {error.start})"
             raise InvalidInput(Problem(self.where, what, "save it as UTF-8")) from None
+        # spreadsheets on a Mac still end lines so
+        return text.replace("\r\n", "\n").replace("\r", "\n")
 
     @cached_property
     def is_text(self) -> bool:
@@ -81,13 +84,36 @@ def content_of(source: str | os.PathLike[str]) -> Content:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(path)[:200], f"it cannot be read: {what}")) from None
     hold_size(str(path), len(raw), MOST_BYTES)
-    return Content(raw, str(path))
+    return Content(as_utf8(raw), str(path))
+
+
+def as_utf8(raw: bytes) -> bytes:
+    """Return a text of UTF-16 as UTF-8, anything else as it is.
+
+    Shells and editors of Windows write UTF-16, with a mark that tells it.
+
+    >>> as_utf8("R,0,0".encode("utf-16"))
+    b'R,0,0'
+    """
+    if not raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return raw
+    try:
+        return raw.decode("utf-16").encode("utf-8")
+    except UnicodeError:
+        return raw
 
 
 def _is_itself(source: str) -> bool:
     """Return whether a text is what is to be read and no path: nothing is ever fetched."""
     records = "|" in source and "," in source
-    return "\n" in source or "://" in source or source.lstrip()[:2] in ("M[", '{"') or "mech=" in source or records
+    return (
+        "\n" in source
+        or "\r" in source
+        or "://" in source
+        or source.lstrip()[:2] in ("M[", '{"')
+        or "mech=" in source
+        or records
+    )
 
 
 def _is_pasted(source: str) -> bool:

@@ -49,6 +49,17 @@ def test_formats_are_recognised_by_their_contents_whatever_the_file_is_called(tm
         ck.exchange.read(path, "linkage")
 
 
+def test_texts_are_read_as_windows_and_macs_write_them(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    for form in READ:
+        text = contents(form)[0]
+        meant = ck.exchange.read(text).mechanism
+        ends = text.replace("\n", "\r"), text.replace("\n", "\r\n"), "\ufeff" + text
+        for raw in (*(one.encode() for one in ends), text.encode("utf-16")):
+            path.write_bytes(raw)
+            assert ck.exchange.read(path).mechanism.replace(title=meant.title) == meant, form
+
+
 @pytest.mark.parametrize("form", READ)
 def test_damaged_files_are_read_or_refused_soon(form: str) -> None:
     found = list(failures(form, DAMAGED))

@@ -470,6 +470,31 @@ def test_pasted_strings_are_read_by_the_face_of_the_house() -> None:
         assert ck.exchange.read(text).form == "pmks+"
 
 
+def test_links_are_read_as_mails_and_notes_hold_them() -> None:
+    link = ADDRESS + FOUR_BAR + check_character(FOUR_BAR)
+    sent = (
+        *(
+            f"<{link}>",
+            f"[my four-bar]({link})",
+            f'"{link}".',
+            f"{link[:60]}\n{link[60:]}\n",
+            f"{link[:60]} \r\n{link[60:]}",
+        ),
+        *(link.replace(",", "%2C"), f"{link}&utm_source=mail&utm_medium=link", f"{link}&fbclid=IwAR0x"),
+    )
+    meant = read(link).mechanism
+    assert all(ck.exchange.read(text).mechanism == meant for text in sent)
+    for cut in (f"<{link[:-9]}>", f"{link[:-9]}&utm_source=mail"):
+        with pytest.raises(InvalidInput, match="cut off"):
+            ck.exchange.read(cut)
+
+
+def test_inputs_without_a_speed_are_told() -> None:
+    still = FOUR_BAR.replace(".K,0.", ".0,0.")
+    found = read(still)
+    assert (found.mechanism.drives[0].speed, found.notes[0]) == (1.0, "A has no speed there: it turns at 1 rad/s here")
+
+
 def test_names_of_all_kinds_come_back() -> None:
     names = "50% é 雪 🚀", "a/b&c?d=e+f*", "no #1~2", "plain"
     items = [ck.link("frame", A=0, D=4), ck.link(names[0], A=0, B=1), ck.link(names[1], B=0, C=3)]

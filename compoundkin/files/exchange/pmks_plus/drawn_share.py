@@ -109,6 +109,8 @@ def _drivers(
             linear = None if settings.linear_speed is None else sense * settings.linear_speed
             if rigid.pin(joint) is not None:
                 speed = joint.speed or linear
+                if speed is None:
+                    notes.append(f"{joint.id} has no speed there: it slides by 1 {settings.unit}/s here")
                 yield DrawnDriver(rigid.at(joint)[0], _carrier(joint, rigid), _key(joint), speed, where=joint.where)
             continue
         bodies = rigid.at(joint)
@@ -119,4 +121,6 @@ def _drivers(
         if len(bodies) > 2:
             notes.append(f"at {joint.id} the frame holds several links: {bodies[1]}, the first, is driven")
         turn = joint.speed or sense * settings.rpm
+        if not turn:
+            notes.append(f"{joint.id} has no speed there: it turns at 1 rad/s here")
         yield DrawnDriver(bodies[1], bodies[0], points.key(joint), turn * RPM if turn else None, where=joint.where)

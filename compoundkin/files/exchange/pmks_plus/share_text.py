@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from urllib.parse import quote, unquote
 
@@ -20,6 +20,9 @@ _WITHIN = re.compile(r"https?://[^?#\s]{0,100}pmks[^?#\s]{0,100}\?(?P<query>[^#\
 _HASH = re.compile(r"\*(?P<hash>[0-9A-Za-z]{1,6})$")
 # What is left as it is: of the signs that have a meaning in links the app decodes none.
 _PLAIN = ",.-_~*;/?:@&=+$!'()"
+# What stands around a link in mails and notes, and what services put behind it: neither is ever its check character.
+_AROUND = "<>()[]{}\"'`“”’«».,;: "
+_TRACKED = re.compile(r"&(utm_|fbclid|gclid|sa=|usg=|source=).*", re.DOTALL)
 _AGAIN = "copy the link again, whole, from its first character to its last"
 
 
@@ -36,7 +39,7 @@ class Sections:
 
 def is_share_string(text: str) -> bool:
     """Return whether a text begins as a share string or its link does."""
-    return bool(_BEGINNING.match(_query(text)))
+    return bool(_BEGINNING.match(unquote(_query(text))))
 
 
 def sections_of(text: str, where: str) -> Sections:
@@ -44,7 +47,8 @@ def sections_of(text: str, where: str) -> Sections:
     if len(text) > MOST_OF_LINK:
         what = f"it has {len(text):,} characters; a link has at most {MOST_OF_LINK:,}"
         raise InvalidInput(Problem(where, what, "look whether it is the right one"))
-    body = _checked(_query(text), where)
+    wrapped = "".join(line.strip() for line in text.splitlines())
+    body = _checked([_query(text), _query(wrapped)], where)
     records = iter(body.split("."))
     one, two, three, four = (next(records, "") for _ in range(4))
     joints, links, forces = (_until_empty(records) for _ in range(3))
@@ -73,18 +77,36 @@ def _query(text: str) -> str:
     return found["query"] if found else stripped
 
 
-def _checked(text: str, where: str) -> str:
-    """Return a share string without its check character. Links have names written with percent signs, files as is."""
-    for whole in dict.fromkeys((unquote(text), text)):
-        hashed = _HASH.search(whole)
-        if hashed:
-            whole = whole[: hashed.start()]
-            if hash_of(whole).lstrip("0") != hashed["hash"].lstrip("0"):
-                continue
-        if whole and whole[-1] == check_character(whole[:-1]):
-            return whole[:-1]
-    what = f"its check character {text[-1:]!r} does not fit its length of {len(text) - 1}: it is cut off or changed"
+def _checked(texts: Iterable[str], where: str) -> str:
+    """Return the first share string whose check character fits, without it.
+
+    Links have names written with percent signs, files as is; mails break lines and put signs around.
+    """
+    given = next(iter(texts))
+    for whole in dict.fromkeys(one for text in texts for one in _spellings(text)):
+        body = _body(whole)
+        if body is not None:
+            return body
+    what = f"its check character {given[-1:]!r} does not fit its length of {len(given) - 1}: it is cut off or changed"
     raise InvalidInput(Problem(where, what, _AGAIN))
+
+
+def _spellings(text: str) -> Iterator[str]:
+    """Yield what a text may have been before it was sent about, the likeliest first."""
+    for whole in (unquote(text), text):
+        yield whole
+        yield whole.rstrip(_AROUND)
+        yield _TRACKED.sub("", whole)
+
+
+def _body(whole: str) -> str | None:
+    """Return a share string without its check character. None where that, or its hash, does not fit."""
+    hashed = _HASH.search(whole)
+    if hashed:
+        whole = whole[: hashed.start()]
+        if hash_of(whole).lstrip("0") != hashed["hash"].lstrip("0"):
+            return None
+    return whole[:-1] if whole and whole[-1] == check_character(whole[:-1]) else None
 
 
 def _until_empty(records: Iterator[str]) -> tuple[str, ...]:
