@@ -1,4 +1,4 @@
-"""Files of other programs, in and out: one file or folder for each format, and this registry."""
+"""Files of other programs, in and out: a folder for each format, drawings between them, and this registry."""
 
 from __future__ import annotations
 

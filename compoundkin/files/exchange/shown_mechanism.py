@@ -14,7 +14,6 @@ from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.files.exchange.drawn_elements import Drawing
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
 from compoundkin.model.mechanism import Mechanism
@@ -85,13 +84,6 @@ class ShownMechanism:
     def pairs(self) -> tuple[Pair, ...]:
         """The pairs that are written out: all but the pins."""
         return self.mechanism.written_pairs
-
-    @cached_property
-    def drawing(self) -> Drawing:
-        """The mechanism as a drawing of this pose. Raises InvalidInput listing all that no drawing can say."""
-        from compoundkin.files.exchange.mechanism_drawn import drawing_of
-
-        return drawing_of(self)
 
 
 def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None) -> ShownMechanism:

@@ -10,8 +10,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnLink, DrawnMass, DrawnPoint
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnLink, DrawnMass, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from compoundkin.files.mechanism_files import dumps, loads
 from tests.catalog import NAMES
@@ -45,7 +46,7 @@ def test_random_mechanisms_come_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
     sketch = random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3))
     mechanism = sketch.mechanism()
-    back = mechanism_of(shown_mechanism(mechanism).drawing, "drawing").mechanism
+    back = mechanism_of(drawing_of(shown_mechanism(mechanism)), "drawing").mechanism
     same_motion(mechanism, back, 1e-3)
     assert loads(dumps(back)) == back
 
@@ -55,7 +56,7 @@ def test_the_catalog_comes_back() -> None:
     for name in NAMES:
         mechanism = catalog_mechanism(name)
         try:
-            drawing = shown(name).drawing
+            drawing = drawing_of(shown(name))
         except InvalidInput as error:
             refused += [problem.where.split("[")[0].split(".")[0] for problem in error.problems]
             continue
@@ -75,8 +76,8 @@ def test_the_catalog_comes_back() -> None:
 
 
 def test_several_drivers_start_together_from_the_drawn_pose() -> None:
-    robot = mechanism_of(replace(shown("3-rrr").drawing, drivers=tuple(
-        replace(one, travel=None) for one in shown("3-rrr").drawing.drivers)), "sample").mechanism  # fmt: skip
+    robot = mechanism_of(replace(drawing_of(shown("3-rrr")), drivers=tuple(
+        replace(one, travel=None) for one in drawing_of(shown("3-rrr")).drivers)), "sample").mechanism  # fmt: skip
     with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(robot)
     assert motion.assembled[0]

@@ -12,6 +12,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks_plus.packed_numbers import (
     check_character,
@@ -260,7 +261,7 @@ def test_what_was_read_is_written_digit_by_digit(published: dict[str, object]) -
 
 def as_drawn(first: ShownMechanism, back: ck.Mechanism) -> float:
     """Return by how much the pins of a mechanism and of what was written are apart as drawn, as a part of the size."""
-    scale = share_scale(first.drawing, None)
+    scale = share_scale(drawing_of(first), None)
     return (
         max((abs(back.sketch[k] - scale.factor * _place(first, k)) for k in pins(first, back)), default=0) / scale.size
     )
@@ -268,7 +269,7 @@ def as_drawn(first: ShownMechanism, back: ck.Mechanism) -> float:
 
 def moved(first: ShownMechanism, second: ShownMechanism, step: float) -> float:
     """Return by how much they are apart when their drivers have made a step."""
-    scale = share_scale(first.drawing, None)
+    scale = share_scale(drawing_of(first), None)
     motions = []
     assert len(first.values) == len(second.values)
     for one, factor in ((first, 1.0), (second, scale.factor)):
@@ -313,14 +314,14 @@ def test_the_catalog_comes_back_as_far_as_it_can_be_said() -> None:
             assert any("held more than once" in note for note in link.notes)
             continue
         back = read(link.text).mechanism
-        slots = sum(guide.kind == "slot" for guide in first.drawing.guides)
+        slots = sum(guide.kind == "slot" for guide in drawing_of(first).guides)
         assert len(back.links) == len(first.mechanism.links) + slots
         assert set(first.mechanism.links) <= set(back.links)
         # three decimals of 100 units or more; mechanisms with masses are left as small as they are
-        assert as_drawn(first, back) <= (5e-5 if first.drawing.masses else 1e-5)
+        assert as_drawn(first, back) <= (5e-5 if drawing_of(first).masses else 1e-5)
         theirs = {one.link: one for one in back.drives}
         for one in first.mechanism.drives:
-            scale = 1.0 if first.structure.driven_angles[one.name] else share_scale(first.drawing, None).factor
+            scale = 1.0 if first.structure.driven_angles[one.name] else share_scale(drawing_of(first), None).factor
             told = theirs[one.link].speed
             assert told is not None
             assert float(told) == pytest.approx(first.rates[one.name] * scale, abs=0.0005)

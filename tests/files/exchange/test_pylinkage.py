@@ -15,6 +15,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.foreign_names import legal
 from compoundkin.files.exchange.pylinkage.pylinkage_format import FORMAT
@@ -96,7 +97,7 @@ def test_what_is_written_pylinkage_steps(name: str) -> None:
     written = FORMAT.write(shown)
     back = read(written.text).mechanism
     places = shown_mechanism(back)
-    for point in shown.drawing.points:
+    for point in drawing_of(shown).points:
         assert (
             abs(places.place(back.carriers[point.key][0], point.key) - point.at) < 1e-12 * shown.mechanism.geometry.size
         )
@@ -122,7 +123,7 @@ def test_the_catalog_comes_back_digit_by_digit() -> None:
         except InvalidInput:
             continue
         said += 1
-        for point in shown.drawing.points:
+        for point in drawing_of(shown).points:
             assert abs(back.sketch[legal(point.key)] - point.at) < 1e-14 * mechanism.geometry.size
             left = {link for link in point.links if link not in back.links}
             assert {*back.carriers[legal(point.key)]} == {*point.links} - left

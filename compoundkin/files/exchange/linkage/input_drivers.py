@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from math import radians
 from typing import NamedTuple
 
-from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway, DrawnPoint
-from compoundkin.files.exchange.drawn_pairs import AXIS
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnDriver, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_pairs import AXIS
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import rod
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector, LinkageLink

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 
-from compoundkin.files.exchange.drawn_elements import DrawnLink
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnLink
 from compoundkin.files.exchange.linkage.linkage_records import (
     Fastening,
     LinkageConnector,

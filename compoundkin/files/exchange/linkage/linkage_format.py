@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import MOST_BYTES, Content
 from compoundkin.files.exchange.contract import Readable, Writable
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.linkage.linkage_reader import drawing_in
 from compoundkin.files.exchange.linkage.linkage_writer import linkage_text

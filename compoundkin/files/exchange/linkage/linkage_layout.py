@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnGuideway
 from compoundkin.files.exchange.linkage.linkage_plan import LinkagePlan
 from compoundkin.files.exchange.linkage.standing_pins import PinSlot, blocks_of, rams_of
 from compoundkin.files.exchange.linkage.written_actuators import actuator_ends, write_actuator
@@ -12,10 +12,9 @@ from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 
-def linkage_layout(shown: ShownMechanism, problems: Problems) -> LinkagePlan:
+def linkage_layout(shown: ShownMechanism, drawing: Drawing, problems: Problems) -> LinkagePlan:
     """Return a mechanism's elements. What they cannot say is added to the problems."""
-    plan = LinkagePlan(shown, problems)
-    drawing = plan.drawing
+    plan = LinkagePlan(shown, drawing, problems)
     rams, blocks = rams_of(plan), blocks_of(plan)
     guides = {guide.key: guide for guide in drawing.guides}
     lengths = {driver.at: driver for driver in drawing.drivers if driver.at in guides}

@@ -7,7 +7,7 @@ from math import degrees
 
 import numpy as np
 
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnPoint
 from compoundkin.files.exchange.linkage.input_drivers import CLOCKWISE
 from compoundkin.files.exchange.linkage.linkage_elements import WrittenConnector, WrittenLink, WrittenRatio
 from compoundkin.files.exchange.problems import Problems
@@ -25,8 +25,8 @@ class LinkagePlan:
     `gone` are links that others stand for: blocks, barrels and rods.
     """
 
-    def __init__(self, shown: ShownMechanism, problems: Problems) -> None:
-        self.shown, self.drawing, self.problems = shown, shown.drawing, problems
+    def __init__(self, shown: ShownMechanism, drawing: Drawing, problems: Problems) -> None:
+        self.shown, self.drawing, self.problems = shown, drawing, problems
         self.size = shown.mechanism.geometry.size
         self.connectors: list[WrittenConnector] = []
         self.links: dict[str, WrittenLink] = {}

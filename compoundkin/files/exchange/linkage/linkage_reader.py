@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGear, DrawnGuideway
-from compoundkin.files.exchange.drawn_letters import size_around
-from compoundkin.files.exchange.drawn_mechanism import MOST
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnGear, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_letters import size_around
+from compoundkin.files.exchange.drawings.drawn_mechanism import MOST
 from compoundkin.files.exchange.linkage.attribute_values import unknown_attributes
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.input_drivers import actuators_of, inputs_of

@@ -7,7 +7,8 @@ from math import floor, log10
 
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.linkage.linkage_elements import plain
 from compoundkin.files.exchange.linkage.linkage_layout import linkage_layout
 from compoundkin.files.exchange.linkage.linkage_records import MM_PER_INCH, PER_INCH
@@ -25,13 +26,13 @@ def linkage_text(shown: ShownMechanism) -> tuple[str, list[str]]:
     """Return the text and what is told of it. Raises InvalidInput with all that cannot be said."""
     unsaid = list(_unsaid(shown))
     try:
-        drawing = shown.drawing
+        drawing = drawing_of(shown)
     except InvalidInput as error:
         unsaid += error.problems
     if unsaid:
         raise InvalidInput(unsaid, heading=f"{shown.mechanism.title!r} cannot be said in Linkage")
     problems = Problems(shown.mechanism.title)
-    plan = linkage_layout(shown, problems)
+    plan = linkage_layout(shown, drawing, problems)
     problems.raise_if_any()
     unit, scale, factor, notes = _scale(drawing, plan.size)
     lines = ["<linkage2>"]

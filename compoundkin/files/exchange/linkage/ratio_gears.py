@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from compoundkin.files.exchange.drawn_elements import DrawnGear
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnGear
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageLink, LinkageRatio

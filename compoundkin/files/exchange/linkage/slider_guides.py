@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from math import sqrt
 
 from compoundkin.base.display import few
-from compoundkin.files.exchange.drawn_elements import DrawnArc, DrawnGuideway
-from compoundkin.files.exchange.drawn_letters import SAME
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnArc, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_letters import SAME
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector

@@ -5,8 +5,8 @@ from __future__ import annotations
 from cmath import rect
 from dataclasses import dataclass
 
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGuideway, DrawnPoint
-from compoundkin.files.exchange.drawn_pairs import AXIS, GUIDE
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_pairs import AXIS, GUIDE
 from compoundkin.files.exchange.linkage.linkage_plan import LinkagePlan
 from compoundkin.model.geometry import FRAME
 

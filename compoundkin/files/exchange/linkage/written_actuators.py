@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import rect
 
-from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnDriver, DrawnGuideway
 from compoundkin.files.exchange.linkage.input_drivers import SECONDS
 from compoundkin.files.exchange.linkage.linkage_elements import WrittenConnector
 from compoundkin.files.exchange.linkage.linkage_plan import LinkagePlan

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.files.exchange.drawn_elements import DrawnGear
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnGear
 from compoundkin.files.exchange.linkage.linkage_elements import WrittenLink, WrittenRatio
 from compoundkin.files.exchange.linkage.linkage_plan import LinkagePlan
 from compoundkin.model.geometry import FRAME

@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from compoundkin.files.exchange.drawn_elements import DrawnArc, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnArc, DrawnGuideway
 from compoundkin.files.exchange.linkage.linkage_elements import WrittenConnector
 from compoundkin.files.exchange.linkage.linkage_plan import LinkagePlan
 from compoundkin.files.exchange.linkage.standing_pins import CLOSE

@@ -9,7 +9,7 @@ from math import pi
 
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import (
+from compoundkin.files.exchange.drawings.drawn_elements import (
     Drawing,
     DrawnDriver,
     DrawnGear,
@@ -17,8 +17,8 @@ from compoundkin.files.exchange.drawn_elements import (
     DrawnPoint,
     DrawnRack,
 )
-from compoundkin.files.exchange.drawn_letters import size_of
-from compoundkin.files.exchange.drawn_pairs import GUIDE
+from compoundkin.files.exchange.drawings.drawn_letters import size_of
+from compoundkin.files.exchange.drawings.drawn_pairs import GUIDE
 from compoundkin.files.exchange.pmks.joint_notation import Notation
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
 from compoundkin.model.geometry import FRAME

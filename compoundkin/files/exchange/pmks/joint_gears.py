@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, sin
 
-from compoundkin.files.exchange.drawn_elements import DrawnGear, DrawnRack, GearKind
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnGear, DrawnRack, GearKind
 from compoundkin.files.exchange.pmks.joint_record import JointRecord
 from compoundkin.files.exchange.problems import Problems
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from compoundkin.files.exchange.drawn_elements import DrawnLink
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnLink
 from compoundkin.model.geometry import FRAME
 
 

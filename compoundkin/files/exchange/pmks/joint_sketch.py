@@ -6,7 +6,7 @@ from cmath import rect
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
-from compoundkin.files.exchange.drawn_elements import (
+from compoundkin.files.exchange.drawings.drawn_elements import (
     Drawing,
     DrawnDriver,
     DrawnGuideway,
@@ -14,7 +14,7 @@ from compoundkin.files.exchange.drawn_elements import (
     DrawnPoint,
     GuideKind,
 )
-from compoundkin.files.exchange.drawn_letters import SAME
+from compoundkin.files.exchange.drawings.drawn_letters import SAME
 from compoundkin.files.exchange.foreign_names import letters
 from compoundkin.files.exchange.pmks.joint_gears import drawn_wheels
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord

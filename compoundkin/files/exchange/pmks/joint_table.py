@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks.joint_notation import plain
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, kind_of
@@ -53,7 +54,7 @@ class JointTable(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the table, with the names of the points."""
-        joints = pmks_joints(shown.drawing, _TABLE)
+        joints = pmks_joints(drawing_of(shown), _TABLE)
         text = io.StringIO()
         table = csv.writer(text, lineterminator="\n")
         table.writerow(HEADING)

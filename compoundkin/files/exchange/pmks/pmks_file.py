@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.json_text import JsonRecord, parsed_json
 from compoundkin.files.exchange.pmks.joint_record import (

@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks.joint_notation import plain
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
@@ -40,7 +41,7 @@ class PmksFormat(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the records, a joint a line."""
-        joints = pmks_joints(shown.drawing)
+        joints = pmks_joints(drawing_of(shown))
         lines = [*record_lines(joints), *(f"s={plain(d.speed)}" for d in joints.drivers if d.speed)]
         if joints.title:
             lines.append(f"name={joints.title}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import degrees, radians, remainder
 
-from compoundkin.files.exchange.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks.drawn_joints import joints_of, turned_back
 from compoundkin.files.exchange.pmks.joint_notation import Notation, plain
 from compoundkin.files.exchange.pmks.joint_record import JointList, JointRecord, means_ground

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from math import pi, remainder
 
 from compoundkin.base.arrays import TURN
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnLink
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnLink
 from compoundkin.files.exchange.pmks_plus.rigid_links import RigidLinks
 from compoundkin.files.exchange.pmks_plus.shared_loads import forces_of, masses_of
 from compoundkin.files.exchange.pmks_plus.shared_points import SharedPoints

@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.option_values import flag, positive
 from compoundkin.files.exchange.pmks_plus.drawn_share import drawing_of_shared
@@ -59,7 +60,7 @@ class PmksPlusFormat(Readable, Writable):
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the link."""
         scale = None if options.get("scale") is None else positive("scale", options["scale"], 1.0)
-        shared = share_of_drawing(shown.drawing, scale, flag("on_rails", options.get("on_rails")))
+        shared = share_of_drawing(drawing_of(shown), scale, flag("on_rails", options.get("on_rails")))
         notes = shared.notes
         if shown.structure.redundant:
             named = ", ".join(pair.name for pair in shown.structure.redundant)

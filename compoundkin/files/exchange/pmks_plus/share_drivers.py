@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import DrawnDriver, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnDriver, DrawnPoint
 from compoundkin.files.exchange.pmks_plus.share_joints import ShareJoints
 from compoundkin.files.exchange.pmks_plus.share_scale import rounded
 from compoundkin.files.written_quantities import RPM

@@ -10,7 +10,7 @@ from itertools import product
 from math import pi
 from string import ascii_letters
 
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnGuideway
 from compoundkin.files.exchange.pmks_plus.share_scale import ShareScale, rounded
 from compoundkin.files.exchange.pmks_plus.shared_records import SharedJoint
 from compoundkin.model.geometry import FRAME

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import ceil, floor, log10
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing
-from compoundkin.files.exchange.drawn_letters import size_of
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawn_letters import size_of
 from compoundkin.files.exchange.pmks_plus.packed_numbers import MOST
 from compoundkin.files.exchange.pmks_plus.shared_records import UNITS
 from compoundkin.model.units import LENGTHS

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import count
 
-from compoundkin.files.exchange.drawn_elements import DrawnLoad, DrawnMass
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnLoad, DrawnMass
 from compoundkin.files.exchange.pmks_plus.rigid_links import RigidLinks
 from compoundkin.files.exchange.pmks_plus.shared_records import INERTIA_UNITS, SharedLink, SharedMechanism
 from compoundkin.files.exchange.problems import Problems

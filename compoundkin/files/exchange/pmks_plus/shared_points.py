@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from compoundkin.files.exchange.drawn_elements import DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_elements import DrawnPoint
 from compoundkin.files.exchange.pmks_plus.rigid_links import RigidLinks
 from compoundkin.files.exchange.pmks_plus.shared_records import SharedJoint, SharedMechanism
 

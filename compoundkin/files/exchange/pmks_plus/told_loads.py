@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from compoundkin.base.display import counted
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnMass
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnMass
 from compoundkin.files.exchange.pmks_plus.share_joints import ShareJoints, plain_name
 from compoundkin.files.exchange.pmks_plus.share_scale import ShareScale
 from compoundkin.files.exchange.pmks_plus.shared_records import (

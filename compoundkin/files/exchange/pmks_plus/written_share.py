@@ -9,7 +9,7 @@ from math import degrees
 
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks_plus.share_drivers import ShareDrivers, in_order
 from compoundkin.files.exchange.pmks_plus.share_joints import ShareJoints, plain_name
 from compoundkin.files.exchange.pmks_plus.share_scale import rounded, share_scale

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from compoundkin.base.display import counted
-from compoundkin.files.exchange.drawn_elements import (
+from compoundkin.files.exchange.drawings.drawn_elements import (
     Drawing,
     DrawnDriver,
     DrawnGuideway,

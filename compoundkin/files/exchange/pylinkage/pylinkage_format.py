@@ -10,7 +10,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import JSON
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.json_text import parsed_json
 from compoundkin.files.exchange.problems import Problems
@@ -51,7 +52,7 @@ class PylinkageFormat(Readable, Writable):
         steps = int(given) if isinstance(given, int | str) and str(given).isdecimal() and len(str(given)) < 8 else 0
         if not steps:
             raise InvalidInput(Problem("steps", f"{short(given)} is no number of steps", f"{_STEPS} are usual"))
-        text, notes = linkage_text(shown.drawing, steps)
+        text, notes = linkage_text(drawing_of(shown), steps)
         return Exported(text.encode(), self.name, notes)
 
 

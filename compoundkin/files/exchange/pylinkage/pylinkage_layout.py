@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnGuideway, DrawnPoint
 from compoundkin.model.geometry import FRAME
 
 # Points nearer to each other than this part of the size are at one place, and tell no direction; directions

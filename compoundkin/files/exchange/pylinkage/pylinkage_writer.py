@@ -10,7 +10,7 @@ from typing import Any
 
 from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver
 from compoundkin.files.exchange.pylinkage.pylinkage_layout import PylinkageLayout
 from compoundkin.files.exchange.pylinkage.pylinkage_records import PLACE, RATE
 from compoundkin.files.exchange.pylinkage.step_order import LinkEntry, found_order, link_entries

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawn_elements import Drawing
-from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.pmks.joint_record import JointDriver, JointList, JointRecord
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints, point_keys

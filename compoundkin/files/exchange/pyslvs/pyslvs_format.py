@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.pyslvs.expression import parsed_expression
@@ -38,7 +39,7 @@ class PyslvsFormat(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the expression, with its inputs in a comment."""
-        joints = pyslvs_joints(shown.drawing)
+        joints = pyslvs_joints(drawing_of(shown))
         text = f"# inputs: {inputs_of(joints)}\n{expression_of(joints, chr(10) + '  ')}\n"
         return Exported(text.encode(), self.name, pyslvs_notes(joints))
 

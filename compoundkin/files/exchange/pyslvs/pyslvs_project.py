@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
+from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.pyslvs.expression import GROUND, PyslvsExpression, parsed_expression
@@ -60,7 +61,7 @@ class PyslvsProject(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the project, as Pyslvs-UI writes it."""
-        joints = pyslvs_joints(shown.drawing)
+        joints = pyslvs_joints(drawing_of(shown))
         inputs = "".join(f"- - {base}\n  - {driver}\n" for base, driver in inputs_of(joints))
         colours = {name: "White" if name == GROUND else "Blue" for name in joints.names.values()}
         text = (

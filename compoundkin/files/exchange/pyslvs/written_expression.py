@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import degrees
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks.drawn_joints import joints_of
 from compoundkin.files.exchange.pmks.joint_notation import Notation, plain
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointList, JointRecord

@@ -8,11 +8,11 @@ from typing import Any
 
 from compoundkin.base.display import counted, few
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, LikelySlip, Problem
-from compoundkin.files.exchange.drawn_drivers import drivers_of
-from compoundkin.files.exchange.drawn_elements import Drawing
-from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters, check
-from compoundkin.files.exchange.drawn_loads import loads_of
-from compoundkin.files.exchange.drawn_pairs import pairs_of
+from compoundkin.files.exchange.drawings.drawn_drivers import drivers_of
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing
+from compoundkin.files.exchange.drawings.drawn_letters import SAME, DrawnLetters, check
+from compoundkin.files.exchange.drawings.drawn_loads import loads_of
+from compoundkin.files.exchange.drawings.drawn_pairs import pairs_of
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.attributes import OF_POINTS

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.base.arrays import first_entry
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnMass
-from compoundkin.files.exchange.drawn_letters import DrawnLetters
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnMass
+from compoundkin.files.exchange.drawings.drawn_letters import DrawnLetters
 from compoundkin.model.elements import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads import force, gravity, mass

@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.drawn_elements import (
+from compoundkin.files.exchange.drawings.drawn_elements import (
     Drawing,
     DrawnArc,
     DrawnDriver,

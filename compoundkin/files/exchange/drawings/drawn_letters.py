@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import atan2, isfinite
 
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnArc, DrawnGuideway, DrawnPoint
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnArc, DrawnGuideway, DrawnPoint
 from compoundkin.files.exchange.foreign_names import NamesGiven, letters
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME

@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnArc, DrawnGear, DrawnGuideway, DrawnRack
-from compoundkin.files.exchange.drawn_letters import SAME, DrawnLetters
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnArc, DrawnGear, DrawnGuideway, DrawnRack
+from compoundkin.files.exchange.drawings.drawn_letters import SAME, DrawnLetters
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair, arc, belt, gear, rack, slide, slot
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import TURN
-from compoundkin.files.exchange.drawn_elements import Drawing, DrawnDriver, DrawnGuideway
-from compoundkin.files.exchange.drawn_letters import DrawnLetters
+from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnGuideway
+from compoundkin.files.exchange.drawings.drawn_letters import DrawnLetters
 from compoundkin.files.written_quantities import spaced
 from compoundkin.model.elements import Drive, drive
 from compoundkin.model.pairs import Pair
