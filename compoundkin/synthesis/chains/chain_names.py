@@ -9,6 +9,7 @@ names by D. E. Foster and G. R. Pennock, J. Mechanical Design, 2003 and 2005. Ot
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import product
 
 from compoundkin.base.arguments import checked
@@ -57,8 +58,13 @@ def inversion_number(chain: Chain, frame: int) -> int:
     """
     # link k of the listed chain is the link of this one that comes k-th in the canonical order
     place = chain.canonical.order.index(frame)
-    listed = Chain.from_code(chain.code).inversions
-    return next(k for k, alike in enumerate(listed, 1) if place in alike)
+    return next(k for k, alike in enumerate(_listed_inversions(chain.code), 1) if place in alike)
+
+
+@lru_cache(maxsize=1024)
+def _listed_inversions(code: str) -> tuple[tuple[int, ...], ...]:
+    """Return the links of a listed chain that give one inversion each."""
+    return Chain.from_code(code).inversions
 
 
 def _six_bar(chain: Chain, frame: int | None) -> str:
@@ -138,8 +144,14 @@ def derived_names(joints: Joints, frame: int | None) -> tuple[str, ...]:
     if len(joints.links) > MOST_LINKS and max(joints.degrees) > _BINARY:
         # of chains so large only single loops have names
         return ()
-    names = {chain_name(chain, frame): None for chain in derived_chains(joints) if chain.links}
+    names = {chain_name(chain, frame): None for chain in _chains_to_name(joints)}
     return tuple(sorted((name for name in names if name), key=_by_number))
+
+
+# One report names a mechanism, its chain and its inversion: thousands of chains would be compared for each.
+@lru_cache(maxsize=16)
+def _chains_to_name(joints: Joints) -> tuple[Chain, ...]:
+    return tuple(chain for chain in derived_chains(joints) if chain.links)
 
 
 def variety_of(joints: Joints) -> int | None:

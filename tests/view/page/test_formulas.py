@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from xml.etree import ElementTree
 
 import pytest
@@ -14,6 +15,7 @@ from compoundkin.files import shipped_mechanisms
 from compoundkin.view.page.mathml import Unread, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
+from tests import catalog
 
 # The names of elements that MathML Core has, of those that formulas need.
 KNOWN = {
@@ -49,9 +51,14 @@ def words(equation: object) -> set[str]:
     return set(re.findall(r"[A-Za-z]{2,}|\d+\.\d+", text(equation))) - {"deg", "value", "of", "Re"}
 
 
+@cache
+def equations_of(name: str) -> ck.results.LoopEquations:
+    return loop_equations(catalog.structure(name), order=2)
+
+
 @pytest.mark.parametrize("name", sorted(shipped_mechanisms.names()))
 def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> None:
-    found = loop_equations(ck.decompose(shipped_mechanisms.load_named(name)))
+    found = equations_of(name)
     for equation in (*found.loops, *found.auxiliary, *found.drivers):
         said = "".join(read(latex(equation)).itertext())
         assert all(word in said for word in words(equation)), said
@@ -61,7 +68,7 @@ def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> 
 
 @pytest.mark.parametrize("name", sorted(shipped_mechanisms.names()))
 def test_matrices_and_right_hand_sides_are_read_entry_by_entry(name: str) -> None:
-    for rates in loop_equations(ck.decompose(shipped_mechanisms.load_named(name)), order=2).rates:
+    for rates in equations_of(name).rates:
         for array in (rates.matrix, rates.right_side) if rates.unknowns else ():
             rows = [[cell for cell in row if cell.tag == "mtd"] for row in read(array.latex).iter("mtr")]
             assert [len(row) for row in rows] == [len(row) for row in array.entries]

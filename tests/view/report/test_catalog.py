@@ -23,11 +23,12 @@ def test_the_report_of_a_motion(name: str) -> None:
         assert max(len(line) for line in made.text(100).splitlines()) <= 100
 
 
-@pytest.mark.parametrize("name", catalog.NAMES)
+# every other one: the report of a motion has all sections of the structure's
+@pytest.mark.parametrize("name", catalog.NAMES[::2])
 def test_the_report_of_a_structure(name: str) -> None:
     made = catalog.structure_report(name)
     assert_is_rendered(made)
-    if name in catalog.NAMES[3::4]:
+    if name in catalog.NAMES[2::4]:
         assert max(len(line) for line in made.text(100).splitlines()) <= 100
     assert sorted(points_yielded(made)) == sorted(catalog.mechanism(name).carriers)
     step = made.section("chain").blocks[0]  # type: ignore[union-attr]

@@ -30,6 +30,7 @@ from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import COLOURS, FRAME, INK, PAPER
 from compoundkin.view.sketch.symbol_shapes import PAINTED
+from tests import catalog
 from tests.pictures import GALLERY
 from tests.support import sample
 
@@ -54,10 +55,9 @@ def test_every_mark_is_drawn() -> None:
 
 @pytest.mark.parametrize("name", shipped_mechanisms.names())
 def test_a_guide_is_as_long_as_the_motion_uses_it(name: str) -> None:
-    mechanism = shipped_mechanisms.load_named(name)
     for seen in _scene(name).seen:
         if isinstance(seen.mark, Sliding):
-            values = ck.solve(mechanism).pairs[seen.pair.name].value
+            values = catalog.motion(name).pairs[seen.pair.name].value
             assert (seen.mark.low, seen.mark.high) == pytest.approx((np.nanmin(values), np.nanmax(values)), rel=1e-9)
 
 
