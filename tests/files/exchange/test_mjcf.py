@@ -292,8 +292,26 @@ def test_masses_below_those_of_mujoco_are_refused() -> None:
     small = crank_called("crank").replace(
         ck.mass("crank", 1e-3), units={"length": "um", "mass": "mg", "force": "uN"}, unit=""
     )
-    with pytest.raises(InvalidInput, match="too small for MuJoCo"):
+    with pytest.raises(InvalidInput, match=r"an inertia of .* is too small for MuJoCo"):
         FORMAT.write(shown_mechanism(small))
+
+
+def test_lengths_below_those_of_mujoco_are_refused() -> None:
+    with pytest.raises(InvalidInput, match=r"a mechanism of 7e-06 m is too small for MuJoCo"):
+        FORMAT.write(shown_mechanism(ck.catalog.load_named("crank-rocker").replace(unit="um")))
+    # what is somewhat larger keeps together
+    links = {
+        "frame": {"A": 0, "D": 11},
+        "crank": {"A": 0, "B": 4},
+        "rod": {"B": 0, "C": 10},
+        "rocker": {"D": 0, "C": 8},
+    }
+    double = ck.Mechanism("d", *(ck.link(k, **own) for k, own in links.items()), ck.drive("crank"), unit="um")
+    run = MujocoModel(shown_mechanism(double))
+    mujoco.mj_resetDataKeyframe(run.model, run.data, 0)
+    mujoco.mj_step(run.model, run.data, 1000)
+    assert np.abs(run.data.efc_pos[run.data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]).max() < 1e-11
+    assert run.data.qpos[0] == pytest.approx(run.data.time, rel=1e-3)
 
 
 def crank_called(name: str) -> ck.Mechanism:

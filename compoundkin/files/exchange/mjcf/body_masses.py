@@ -53,7 +53,7 @@ def units_of(mechanism: Mechanism) -> ModelUnits:
     if length is None:
         unit = f"in {mechanism.unit}, which is unknown, and" if mechanism.unit else "without a unit and"
         return ModelUnits(1.0, mass, force, f"lengths are {unit} kept as they are; taken as m, {forces}")
-    kept = "" if length == 1.0 else f" (1 {mechanism.unit} is {length!r} m)"
+    kept = "" if length == 1.0 else f" (1 {mechanism.unit} is {length:.12g} m)"
     return ModelUnits(length, mass, force, f"lengths are in m{kept}, {forces}")
 
 

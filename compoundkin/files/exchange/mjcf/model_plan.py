@@ -30,6 +30,9 @@ _DEEPEST = 200
 _CLOSED = 1e-9
 # MuJoCo's least mass and inertia (mjMINVAL).
 _LEAST = 1e-15
+# Mechanisms smaller than this (metres) are not held together: at 1.2e-6 m MuJoCo lets go of a four-bar's closing pin,
+# whatever its masses; a tenth of what is left is for links that are short beside others.
+_SMALLEST = 1e-5
 
 
 @dataclass(frozen=True)
@@ -162,8 +165,12 @@ def _open(shown: ShownMechanism) -> Iterator[Problem]:
             yield Problem(pair.name, what, "name a driver, or draw it exactly")
 
 
-def _light(masses: Mapping[str, BodyMass]) -> Iterator[Problem]:
-    """Find masses too small for MuJoCo."""
+def _small(shown: ShownMechanism, units: ModelUnits, masses: Mapping[str, BodyMass]) -> Iterator[Problem]:
+    """Find lengths and masses too small for MuJoCo."""
+    size = shown.mechanism.geometry.size * units.length
+    if size < _SMALLEST:
+        what = f"a mechanism of {size:.3g} m is too small for MuJoCo, whose loops come apart"
+        yield Problem("lengths", what, f"it is to have {_SMALLEST:g} m or more: take larger units")
     for name, own in masses.items():
         if min(own.mass, own.inertia) <= _LEAST:
             what = f"a mass of {own.mass:.3g} kg with an inertia of {own.inertia:.3g} kg m^2 is too small for MuJoCo"
@@ -173,7 +180,7 @@ def _light(masses: Mapping[str, BodyMass]) -> Iterator[Problem]:
 def _plan(shown: ShownMechanism, tree: JointTree, driven: set[str]) -> ModelPlan:
     units = units_of(shown.mechanism)
     masses, told = masses_of(shown, units)
-    problems = [*_open(shown), *_light(masses)]
+    problems = [*_open(shown), *_small(shown, units, masses)]
     if problems:
         raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
     ties = {chain.pair.name: chain.tie for chain in _carrying(tree) if chain.tie}
