@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import first_entry, turns_above
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
+from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
@@ -16,6 +18,8 @@ from compoundkin.kinematics.solution import solve
 ROUNDING = 1e-6
 # A drawing is exact that is met to this part of the size: what rounding to printed digits never leaves.
 DIGITS = 1e-9
+# What rounding leaves of angles (radians): one at the end of a range seems beyond it by so much.
+_ROUNDING = 1e-9
 
 
 def pose_nearest_to_drawing(motion: Motion) -> int:
@@ -46,7 +50,8 @@ def pose_nearest_to_drawing(motion: Motion) -> int:
 def exactly_drawn(motion: Motion) -> Motion | None:
     """Return the pose that the drawing shows, solved to the first order.
 
-    None where there is none, or it is not drawn to the last digits.
+    None where there is none, or it is not drawn to the last digits. Drivers' angles are within the motion's ranges if
+    whole turns bring them there and it is the same pose.
     """
     shown, sketch = motion.tracker.shown, motion.mechanism.sketch
     values: dict[str, float] = {}
@@ -57,6 +62,32 @@ def exactly_drawn(motion: Motion) -> Motion | None:
         values[name] = float(np.ravel(value)[0])
     if not values:
         return None
+    inside = {
+        name: turned_within(value, motion.drives[name].value) if motion.structure.driven_angles[name] else value
+        for name, value in values.items()
+    }
+    found = _drawn_at(motion, inside)
+    return _drawn_at(motion, values) if found is None and inside != values else found
+
+
+def turned_within(angle: float, row: Number) -> float:
+    """Return an angle within a range that differs by whole turns.
+
+    It is the angle itself where there is none.
+
+    >>> turned_within(-1.0, np.array([5.0, 6.0])), turned_within(-1.0, np.array([0.0, 1.0]))
+    (5.283185307179586, -1.0)
+    """
+    low, high = float(np.min(row)) - _ROUNDING, float(np.max(row)) + _ROUNDING
+    if low <= angle <= high:
+        return angle
+    found = angle - float(turns_above(np.float64(angle), np.float64(low)))
+    return found if found <= high else angle
+
+
+def _drawn_at(motion: Motion, values: Mapping[str, float]) -> Motion | None:
+    """Return the pose at driver values if it is the drawn one."""
+    sketch = motion.mechanism.sketch
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

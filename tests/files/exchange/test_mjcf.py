@@ -296,6 +296,17 @@ def test_masses_below_those_of_mujoco_are_refused() -> None:
         FORMAT.write(shown_mechanism(small))
 
 
+def test_the_range_of_a_driver_is_that_of_the_drawn_pose() -> None:
+    """A crank drawn at -145 degrees that is driven from 200 to 230 is drawn at 215."""
+    rocker = ck.catalog.load_named("crank-rocker")
+    at = shown_mechanism(rocker, {"crank": ck.deg(215)})
+    drawing = ck.drawn(**{letter: at.place(links[0], letter) for letter, links in rocker.carriers.items()})
+    swung = rocker.replace(drawing, ck.drive("crank", values=ck.deg(np.linspace(200, 230, 31))))
+    run = MujocoModel(shown_mechanism(swung))
+    assert run.shown.values["crank"] == pytest.approx(ck.deg(215))
+    assert run.model.actuator_actrange[0] == pytest.approx(ck.deg(np.array([-15, 15])))
+
+
 def test_lengths_below_those_of_mujoco_are_refused() -> None:
     with pytest.raises(InvalidInput, match=r"a mechanism of 7e-06 m is too small for MuJoCo"):
         FORMAT.write(shown_mechanism(ck.catalog.load_named("crank-rocker").replace(unit="um")))

@@ -6,13 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from compoundkin.base.arrays import turns_above
 from compoundkin.base.errors import InvalidInput, NotAssembled
-from compoundkin.base.series import Number
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.nearest_pose import turned_within
 
-# What rounding leaves of angles, and of lengths as a part of their range: one at its end seems beyond it by so much.
+# What rounding leaves of values, as a part of their range: one at its end seems beyond it by so much.
 _ROUNDING = 1e-9
 # Points nearer to each other than this part of the size are one.
 _SAME = 1e-9
@@ -27,7 +26,7 @@ def slider_values(shown: ShownMechanism, motion: Motion) -> tuple[Mapping[str, f
     """
     rows = {name: np.ravel(drive.value) for name, drive in motion.drives.items()}
     wanted = {name: shown.values.get(name, float(row[0])) for name, row in rows.items()}
-    lifted = {name: _lifted(value, rows[name]) if motion.structure.driven_angles[name] else value
+    lifted = {name: turned_within(value, rows[name]) if motion.structure.driven_angles[name] else value
               for name, value in wanted.items()}  # fmt: skip
     if lifted != wanted and not _is_shown(shown, lifted):
         lifted = wanted
@@ -35,14 +34,6 @@ def slider_values(shown: ShownMechanism, motion: Motion) -> tuple[Mapping[str, f
     return found, tuple(
         name for name, value in found.items() if abs(value - lifted[name]) > _ROUNDING * np.ptp(rows[name])
     )
-
-
-def _lifted(angle: float, row: Number) -> float:
-    """Return an angle within a range that differs from one by whole turns; that one where there is none."""
-    if row.min() - _ROUNDING <= angle <= row.max() + _ROUNDING:
-        return angle
-    found = angle - float(turns_above(angle, row.min() - _ROUNDING))
-    return found if found <= row.max() + _ROUNDING else angle
 
 
 def _is_shown(shown: ShownMechanism, values: Mapping[str, float]) -> bool:
