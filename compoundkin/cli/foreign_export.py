@@ -59,31 +59,19 @@ def refuse(form: str, asked: Mapping[str, Any], options: Mapping[str, str]) -> N
             raise InvalidInput(Problem(option, f"it does not go with --to {form}", "leave it out"))
 
 
-def options_of(given: Sequence[str]) -> dict[str, Any]:
-    """Return options from texts NAME=VALUE: yes and no, numbers, else words.
+def options_of(given: Sequence[str]) -> dict[str, str]:
+    """Return options from texts NAME=VALUE. Formats know what kind of value each has.
 
-    >>> options_of(["curves=no", "scale=2.5", "layer=A"])
-    {'curves': False, 'scale': 2.5, 'layer': 'A'}
+    >>> options_of(["curves=no", "scale=2.5"])
+    {'curves': 'no', 'scale': '2.5'}
     """
     found = {}
     for text in given:
         name, equals, value = text.partition("=")
         if not (name and equals):
             raise InvalidInput(Problem(f"--option {text}", "this is no option", "write NAME=VALUE"))
-        found[name] = _value(value)
+        found[name] = value
     return found
-
-
-def _value(text: str) -> Any:
-    """A number where it is one, yes and no as such."""
-    if text in ("yes", "true", "no", "false"):
-        return text in ("yes", "true")
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return text
 
 
 def form_by_suffix(path: str) -> str:

@@ -64,13 +64,11 @@ def letters_of(name: str, given: Any) -> tuple[str, ...]:
 
     A plain no is none of them. Raises InvalidInput for anything else.
 
-    >>> letters_of("curves", "E, F"), letters_of("curves", False), letters_of("curves", 5)
-    (('E', 'F'), (), ('5',))
+    >>> letters_of("curves", "E, F"), letters_of("curves", False), letters_of("curves", "no")
+    (('E', 'F'), (), ())
     """
-    if given is False:
+    if given is False or given == _NO[1]:
         return ()
-    if isinstance(given, int) and given is not True:
-        return (str(given),)  # a command line takes the name for a number
     if isinstance(given, str):
         return tuple(filter(None, (part.strip() for part in given.split(","))))
     if isinstance(given, Sequence) and all(isinstance(one, str) for one in given):

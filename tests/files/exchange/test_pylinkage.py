@@ -323,7 +323,7 @@ def test_what_pylinkage_cannot_say_is_refused_at_once() -> None:
         FORMAT.write(shown_mechanism(loaded("geared-press")))
     assert len(error.value.problems) > 1
     assert "mesh: a gear or belt" in str(error.value)
-    with pytest.raises(InvalidInput, match="0 is no number of steps"):
+    with pytest.raises(InvalidInput, match="0 is no count"):
         FORMAT.write(shown_mechanism(loaded("triple-rocker")), steps=0)
 
 

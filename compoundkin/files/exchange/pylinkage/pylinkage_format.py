@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import JSON
 from compoundkin.files.exchange.content import Content
@@ -14,6 +13,7 @@ from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.json_text import parsed_json
+from compoundkin.files.exchange.option_values import whole
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.pylinkage.pylinkage_elements import linkage_drawing
 from compoundkin.files.exchange.pylinkage.pylinkage_records import linkage_file
@@ -23,7 +23,7 @@ from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 # What stands in their files of mechanisms, and of structures alone: graphs, and graphs of graphs.
 _LISTS, _TOPOLOGY = (b'"joints"', b'"links"'), ((b'"nodes"', b'"edges"'), (b'"instances"', b'"connections"'))
 # Steps of a turn, where nothing is said: pylinkage's own.
-_STEPS = 360
+_STEPS, _MOST_STEPS = 360, 10_000_000
 _REMEDY = "save the mechanism itself: mechanism_to_json(to_mechanism(graph, dimensions), path)"
 
 
@@ -48,10 +48,7 @@ class PylinkageFormat(Readable, Writable):
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the file. Raises InvalidInput listing what is no pin, and no slot of the frame."""
-        given = options.get("steps", _STEPS)
-        steps = int(given) if isinstance(given, int | str) and str(given).isdecimal() and len(str(given)) < 8 else 0
-        if not steps:
-            raise InvalidInput(Problem("steps", f"{short(given)} is no number of steps", f"{_STEPS} are usual"))
+        steps = whole("steps", options.get("steps", _STEPS), 1, _MOST_STEPS)
         text, notes = linkage_text(drawing_of(shown), steps)
         return Exported(text.encode(), self.name, notes)
 
