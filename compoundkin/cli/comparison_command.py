@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from math import isnan
+
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.cli.file_options import complete_mechanism, loaded, put_report, report_options
 from compoundkin.cli.shell import FAILED, say
 
@@ -32,6 +35,8 @@ def command(one: str, other: str, tolerance: float | None, form: str | None, pat
     from compoundkin.analysis.comparison.comparison_of_mechanisms import compare
     from compoundkin.view.report.comparison_report import comparison_report
 
+    if tolerance is not None and isnan(tolerance):
+        raise InvalidInput(Problem("--tolerance", "nan is no number", "give a part of the size, such as 1e-4"))
     found = compare(loaded(one), loaded(other))
     put_report(comparison_report(found), form, path)
     allowed = TOLERANCE if tolerance is None else tolerance

@@ -14,6 +14,7 @@ from compoundkin.cli.file_options import loaded, mechanism_argument, to_file, wr
 from compoundkin.cli.foreign_export import OF_POSES, ended, exported, form_by_suffix, pictured, refuse
 from compoundkin.cli.shell import put, say
 from compoundkin.files.exchange import MODULES, READ_ONLY
+from compoundkin.files.exchange.content import is_itself
 from compoundkin.model.attributes import OF_POINTS
 
 if TYPE_CHECKING:
@@ -103,8 +104,10 @@ def command(file: str, path: str | None, form: str | None, force: bool, **asked:
     if form is None and path is None:
         raise InvalidInput(Problem("--to", "it is not said as what", f"give one of {', '.join(TARGETS)}"))
     form = form or _form_of(path or "")
-    asked["called"] = asked["name"] or Path(path or file).stem
-    content = TARGETS[form](decompose(loaded(file)), form, asked)
+    mechanism = loaded(file)
+    # a link is no name
+    asked["called"] = asked["name"] or Path(path or (mechanism.title if is_itself(file) else file)).stem
+    content = TARGETS[form](decompose(mechanism), form, asked)
     if path is None:
         put(ended(content))
     else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from os.path import exists, isdir
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -78,12 +79,13 @@ def loaded(file: str) -> Mechanism:
     from compoundkin.files import load
     from compoundkin.files.shipped_mechanisms import resolve
 
-    if Path(file).is_dir():
+    # unlike those of paths these answer for pasted texts, which are longer than names of files may be
+    if isdir(file):
         raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
     if is_foreign(file):
         return imported(file).mechanism
     # what is there but is no regular file, such as a pipe, is for `load` to judge
-    return load(file if Path(file).exists() else resolve(file))
+    return load(file if exists(file) else resolve(file))
 
 
 def write_new(path: Path, content: bytes, force: bool) -> None:

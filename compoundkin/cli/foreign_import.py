@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from os.path import isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,12 +19,13 @@ _MANY = 100
 
 def is_foreign(source: str) -> bool:
     """Tell whether a link or a file is to be read as another program's. Nothing is said of what is neither."""
-    if "://" in source:
+    from compoundkin.files.exchange.content import content_of, is_itself
+
+    if is_itself(source):
         return True
-    if suffix_of(source) == suffix_for("mechanism", "toml") or not Path(source).is_file():
+    if suffix_of(source) == suffix_for("mechanism", "toml") or not isfile(source):
         return False
     from compoundkin.base.errors import InvalidInput
-    from compoundkin.files.exchange.content import content_of
     from compoundkin.files.exchange.known_formats import readable_formats
     from compoundkin.files.exchange.recognition import recognised
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from os import PathLike, fspath
+from os.path import isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -79,7 +80,7 @@ def resolve(name_or_path: str | PathLike[str]) -> Path:
     compoundkin.base.errors.UnknownName: six-bra: neither a file nor in the catalog; did you mean 'six-bar'?
     """
     text = fspath(name_or_path)
-    if Path(text).is_file():
+    if isfile(text):
         return Path(text)
     if text in names():
         return path(text)

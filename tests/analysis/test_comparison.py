@@ -137,6 +137,29 @@ def test_the_catalog_as_drawings_is_the_catalog() -> None:
         assert not found.only_one, name
 
 
+def test_tracers_of_one_name_that_are_elsewhere_differ() -> None:
+    rocker = "ground,crank,R,0,0,tfft\ncrank,rod,R,1,2\nrod,rocker,R,6,4\nrocker,ground,R,5,0\n"
+    one, other = (ck.exchange.read(f"{rocker}rod,R,{place}\n").mechanism for place in ("4,5.5", "4.1,5.5"))
+    found = ck.exchange.compare(one, other)
+    assert found.points["E"] == "E"
+    assert found.largest is not None
+    assert (found.largest.point, found.largest.distance) == ("E", pytest.approx(0.1))
+    assert not found.within()
+    assert not ck.exchange.compare(one, one).within(float("nan"))
+
+
+def test_speeds_that_differ_are_told() -> None:
+    one, other = four_bar(unit="mm"), drawn_at(1.0, 0.1, "cm")
+    speed = ck.solve(one).drives["crank"].rate.flat[0]
+    # driven the other way round: its frame against its wheel
+    for times, told in ((-1.0, False), (1.0, True), (-1.01, True)):
+        driven = other.replace(ck.drive("frame", on="wheel", speed=times * speed))
+        found = ck.exchange.compare(one, driven)
+        assert found.drivers[0].other_speed == pytest.approx(-times * speed)
+        assert found.within(1e-11)
+        assert ("Speeds differ" in ck.report(found).text()) is told
+
+
 def test_the_report_has_the_numbers_in_every_form() -> None:
     found = ck.exchange.compare(four_bar(unit="mm"), four_bar(3.2, unit="mm"))
     report = ck.report(found)

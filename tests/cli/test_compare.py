@@ -41,6 +41,16 @@ def test_a_file_is_imported_and_is_the_same(linkage: str) -> None:
     assert run("solve", linkage, "--at", "0").stdout.count("\n") == 2
 
 
+def test_links_stand_for_files_in_every_spelling() -> None:
+    link = ck.exchange.write(ck.catalog.load_named("jansen-leg"), "pmks+").text.strip()
+    bare = link.partition("?")[2]
+    assert len(bare) > 255  # than which no file has a longer name
+    told = [run("structure", spelt) for spelt in (link, link.removeprefix("https://"), bare)]
+    assert [one.exit_code for one in told] == [0, 0, 0]
+    assert told[0].stdout == told[1].stdout == told[2].stdout
+    assert "pmks_mechanism: one pose" in run("export", bare, "--to", "python").stdout
+
+
 def test_nothing_is_replaced_unless_forced(linkage: str) -> None:
     Path("mine.toml").write_text("mine")
     refused = run("import", linkage, "-o", "mine.toml")
@@ -65,12 +75,14 @@ def test_what_differs_has_its_own_exit_code(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("args", "told"), [
     (["import", "no-such.linkage2"], "there is no such file"),
     (["import", "."], "this is a folder"),
+    (["compare", "six-bar", "six-bar", "--tolerance", "nan"], "nan is no number"),
     (["import", "https://example.org/a.html"], "nothing is fetched"),
     (["import", "bar.linkage2", "--form", "linkge"], "did you mean 'linkage'?"),
     (["import", "bar.linkage2", "-o", "a.xml"], "a mechanism is not saved as '.xml'"),
     (["import", "own.toml"], "a mechanism file of compoundkin"),
     (["import", "a.bin"], "binary"),
     (["report", "a.bin"], "binary"),
+    (["structure", 5000 * "x"], "neither a file nor in the catalog"),
     (["import", "empty"], "it is empty"),
     (["export", "six-bar", "-o", "a.zzz"], "nothing is exported as '.zzz'"),
     (["export", "six-bar", "--to", "linkage", "--free", "crank.D"], "does not go with --to linkage"),

@@ -56,6 +56,12 @@ class ComparedSide:
         moving = [k for k in self.letters if k not in self.fixed]
         return tuple(k for k in moving if k in self.mechanism.pins) or tuple(moving)
 
+    @cached_property
+    def tracers(self) -> tuple[str, ...]:
+        """The moving points of one link that no pair has."""
+        used = {k for pair in self.mechanism.written_pairs for k in pair.letters}.union(self.fixed, self.mechanism.pins)
+        return tuple(k for k in self.letters if k not in used)
+
     @property
     def shown(self) -> dict[str, float]:
         """The drivers' values at the pose nearest to the drawing."""
@@ -69,6 +75,10 @@ class ComparedSide:
     def values(self, pose: int) -> dict[str, float]:
         """Return the drivers' values at a pose of its own motion."""
         return _values(self.motion, pose)
+
+    def speed(self, name: str) -> float:
+        """Return the speed of a driver at the start of its own motion."""
+        return float(np.ravel(self.motion.drives[name].rate)[0])
 
     def at(self, values: Mapping[str, Number], order: int = 1) -> Motion:
         """Return its motion at other values of the drivers, quietly."""

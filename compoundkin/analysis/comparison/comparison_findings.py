@@ -52,7 +52,8 @@ class ComparedDriver:
     """A driver of each mechanism. `sign` is -1 where the two count in opposite directions.
 
     `start` are their values at the common pose, `other_start` in the second's own unit and sense, `reach` the range of
-    displacements from there that both have: radians, or the first's unit of length.
+    displacements from there that both have: radians, or the first's unit of length. `speed` and `other_speed` are their
+    speeds at the start, the second's in the first's unit and sense. Driven alike, both go at any speed.
     """
 
     name: str
@@ -62,6 +63,8 @@ class ComparedDriver:
     start: float
     other_start: float
     reach: tuple[float, float] = (0.0, 0.0)
+    speed: float = 1.0
+    other_speed: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -133,9 +136,9 @@ class MechanismComparison(Shows):
         """
         if not self.places or self.apart:
             return False
-        # negated, so that what is not a number is no agreement
-        off = [one.distance > tolerance * self.size for one in self.places]
-        return not any(off) and all(one.angle <= tolerance for one in self.turns)
+        # what is not a number is no agreement
+        near = all(one.distance <= tolerance * self.size for one in self.places)
+        return near and all(one.angle <= tolerance for one in self.turns)
 
     @property
     def verdict(self) -> str:

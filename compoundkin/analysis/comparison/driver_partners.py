@@ -32,7 +32,10 @@ def driver_partners(common: CommonPose) -> tuple[ComparedDriver, ...]:
             is_angle = one.structure.driven_angles[name]
             start, there = common.values[name], common.other_values[partner]
             matched = ComparedDriver(name, partner, is_angle, sign, start, there)
-            found[name] = replace(matched, reach=_reach(matched, one, other))
+            scale = sign * (1.0 if is_angle else other.scale)
+            speeds = one.speed(name), scale * other.speed(partner)
+            reach = _reach(matched, one, other)
+            found[name] = replace(matched, reach=reach, speed=speeds[0], other_speed=speeds[1])
             taken.add(partner)
     return tuple(found[name] for name in one.motion.drives if name in found)
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
 from compoundkin.analysis.comparison.compared_side import ComparedSide
+from compoundkin.analysis.comparison.link_partners import link_partners
 from compoundkin.base.series import Number
 
 # Points nearer to each other than this part of the size are in the same place: files of other programs are rounded to
@@ -37,6 +38,14 @@ def partners_by_place(one: ComparedSide, at_one: Number, other: ComparedSide, at
 def partners_by_name(one: ComparedSide, other: ComparedSide) -> dict[str, str]:
     """Return the points that have the same name. Both are of the frame, or both are not."""
     return {k: k for k in one.letters if k in other.letters and (k in one.fixed) == (k in other.fixed)}
+
+
+def tracers_by_name(one: ComparedSide, other: ComparedSide, points: Mapping[str, str]) -> dict[str, str]:
+    """Return the tracers left that have one name, on links that stand for each other."""
+    links = link_partners(one.mechanism, other.mechanism, points)
+    mine, theirs = one.mechanism.carriers, other.mechanism.carriers
+    left = set(other.tracers).difference(points.values())
+    return {k: k for k in one.tracers if k in left and k not in points and links.get(mine[k][0]) == theirs[k][0]}
 
 
 def _near(one: ComparedSide, at_one: Number, other: ComparedSide, at_other: Number, most: float) -> Number:

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.analysis.comparison.common_pose import CommonPose
 from compoundkin.analysis.comparison.comparison_findings import ComparedDriver, PlaceDifference, TurnDifference
-from compoundkin.analysis.comparison.point_partners import partners_by_place
+from compoundkin.analysis.comparison.point_partners import partners_by_place, tracers_by_name
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -61,13 +61,18 @@ class SharedCourse:
 
     @cached_property
     def points(self) -> dict[str, str]:
-        """The points that stand for each other. Of several in one place it is those that go on together."""
+        """The points that stand for each other. Of several in one place it is those that go on together.
+
+        Tracers that are left, elsewhere on their links, go by their names.
+        """
         one, other = self.common.one, self.common.other
         if self.common.matched_by != "place":
             return dict(self.common.points)
         there = one.places(one.at(self.common.values, 0)), other.places(other.at(self.common.other_values, 0))
         at_one, at_other = one.places(self.motions[0]), other.places(self.motions[1])
-        return partners_by_place(one, np.concatenate([there[0], at_one]), other, np.concatenate([there[1], at_other]))
+        mine, theirs = np.concatenate([there[0], at_one]), np.concatenate([there[1], at_other])
+        points = partners_by_place(one, mine, other, theirs)
+        return points | tracers_by_name(one, other, points)
 
     def places(self) -> Iterator[PlaceDifference]:
         """Yield how far apart points come."""

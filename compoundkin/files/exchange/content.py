@@ -65,7 +65,7 @@ def content_of(source: str | os.PathLike[str]) -> Content:
     Of a path it is the file, of a link or of a text of several lines that itself. Nothing is ever fetched. Raises
     InvalidInput for what cannot be read or is too large.
     """
-    if isinstance(source, str) and (_is_itself(source) or _is_pasted(source)):
+    if isinstance(source, str) and is_itself(source):
         raw = source.encode("utf-8", "surrogatepass")
         hold_size("the text", len(raw), MOST_BYTES if "\n" in source else MOST_OF_LINK)
         return Content(raw)
@@ -103,8 +103,14 @@ def as_utf8(raw: bytes) -> bytes:
         return raw
 
 
-def _is_itself(source: str) -> bool:
-    """Return whether a text is what is to be read and no path: nothing is ever fetched."""
+def is_itself(source: str) -> bool:
+    """Return whether a text is what is to be read, and no path.
+
+    >>> is_itself("https://a.org/?mech=b"), is_itself("app.pmksplus.com/b.txt")
+    (True, False)
+    """
+    if _is_pasted(source):
+        return True
     records = "|" in source and "," in source
     return (
         "\n" in source

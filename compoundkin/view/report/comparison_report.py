@@ -12,6 +12,9 @@ from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Pa
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import brief, counted, listed, number
 
+# Speeds that differ by no more than this part are the same: some programs have rpm of three decimals.
+_SAME_SPEED = 1e-3
+
 
 def comparison_report(found: MechanismComparison) -> Report:
     """Report two mechanisms side by side."""
@@ -20,7 +23,7 @@ def comparison_report(found: MechanismComparison) -> Report:
         Section("about", "", tuple(_about(found))),
         Section("structure", "Structure", (_structure(found),)),
         *([Section("points", "Motion", tuple(_motion(found)))] if found.places else []),
-        *([Section("drivers", "Drivers", (_drivers(found),))] if found.drivers else []),
+        *([Section("drivers", "Drivers", tuple(_drivers(found)))] if found.drivers else []),
         *([Section("dimensions", "Dimensions", tuple(_dimensions(found)))] if found.lengths else []),
     )
     outcome = Outcome(not any(s.faults for s in found.structures), found.poses + found.apart, found.poses, 0, 0, 0, 0)
@@ -89,8 +92,17 @@ def _at(found: MechanismComparison, drives: Mapping[str, float]) -> Iterator[Cel
         yield degrees(drives[one.name]) if one.is_angle else drives[one.name]
 
 
-def _drivers(found: MechanismComparison) -> Block:
-    """Return the drivers, their values at the common pose, and the range of displacements from there."""
+def _drivers(found: MechanismComparison) -> Iterator[Block]:
+    """Yield the drivers, their values at the common pose, and the range of displacements from there."""
+    differing = [one for one in found.drivers if abs(one.speed - one.other_speed) > _SAME_SPEED * abs(one.speed)]
+    if differing:
+        unit = found.structures[0].mechanism.unit or "1"
+        told = (
+            f"{one.name} has {number(one.speed)}, in the second {number(one.other_speed)} "
+            f"{'rad' if one.is_angle else unit}/s"
+            for one in differing
+        )
+        yield Paragraph(f"Speeds differ, and are not compared: {listed(told)}.")
     rows: list[tuple[Cell, ...]] = []
     for one in found.drivers:
         unit = "deg" if one.is_angle else found.structures[0].mechanism.unit
@@ -100,7 +112,7 @@ def _drivers(found: MechanismComparison) -> Block:
         rows.append((one.name, one.other, way, *shown, unit))
     words = ("first at the common pose", "second there", "moved from", "to")
     numbers = (Column(word, style="each", floor=ROUNDING * max(found.size, 360.0)) for word in words)
-    return TableBlock((Column("driver"), Column("second's"), Column("way"), *numbers, Column("unit")), tuple(rows))
+    yield TableBlock((Column("driver"), Column("second's"), Column("way"), *numbers, Column("unit")), tuple(rows))
 
 
 def _dimensions(found: MechanismComparison) -> Iterator[Block]:
