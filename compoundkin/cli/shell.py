@@ -63,6 +63,8 @@ def put(text: str | bytes) -> None:
     """Write results to stdout; where nobody reads them any more, end quietly."""
     if sys.stdout is None:
         raise NotWritten(Problem("", "standard output is closed", "write to a file with -o"))
+    if isinstance(text, bytes) and b"\0" in text and sys.stdout.isatty():
+        raise NotWritten(Problem("", "this is no text for a terminal", "write to a file with -o"))
     try:
         # a name that the terminal's encoding lacks becomes a question mark, not an accident
         rest = memoryview(text if isinstance(text, bytes) else text.encode(sys.stdout.encoding or "utf-8", "replace"))

@@ -522,6 +522,12 @@ def test_colour_is_for_terminals_that_want_it(monkeypatch: pytest.MonkeyPatch) -
     assert not shell.has_colour(Terminal())
 
 
+def test_what_is_no_text_does_not_go_to_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdout", Terminal())
+    with pytest.raises(shell.NotWritten, match="write to a file with -o"):
+        shell.put(b"PK\x03\x04\x00")
+
+
 def test_long_work_is_told_on_a_terminal_and_wiped_away(monkeypatch: pytest.MonkeyPatch) -> None:
     import sys
     import time
