@@ -12,8 +12,6 @@ from compoundkin.base.errors import InvalidInput, Problem
 
 Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study"]
 
-# That of other programs' files besides.
-JSON = ".json"
 # Of each kind its suffixes and the form that each means; the first suffix of a form is told to people.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
     {

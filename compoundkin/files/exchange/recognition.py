@@ -13,8 +13,6 @@ _TABLE = "save a table of its joints as text: link names, type, x, y"
 # What is no mechanism of a program that is read, but often meant for one: what it is, and what helps.
 _STRANGERS: tuple[tuple[Callable[[Content], object], str, str], ...] = (
     (lambda c: not c.raw.strip(), "it is empty", ""),
-    (lambda c: c.raw.startswith(b"\x80"), "it is a pickle, which would run as a program: it is not read",
-     "save it as text from the program it comes from"),
     (lambda c: c.raw.startswith(b"PK\x03\x04"), "it is a zip archive, such as GeoGebra and spreadsheets save", _TABLE),
     (lambda c: not c.is_text, "it is a binary file, which only its own program can read", _TABLE),
     (lambda c: re.match(r'format\s*=\s*\d|\{\s*"format"\s*:\s*\d', c.head), "it is a mechanism file of compoundkin",

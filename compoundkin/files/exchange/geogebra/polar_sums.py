@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.files.exchange.shortest_numbers import shortest
+
 # So many units of its last digit an angle may be off once it has been a direction, or the last digit of a turn.
 _ULPS = 4.0
 _TURN = 360.0
@@ -17,9 +19,7 @@ def number(value: float) -> str:
     >>> number(2.0), number(1e-07), number(-0.1)
     ('2', '1E-07', '-0.1')
     """
-    if float(value).is_integer() and abs(value) < 1e15:
-        return str(int(value))
-    return repr(float(value)).replace("e", "E")
+    return shortest(value).replace("e", "E")
 
 
 def in_degrees(radians: float) -> float:

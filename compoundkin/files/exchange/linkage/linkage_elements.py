@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from xml.sax.saxutils import quoteattr
 
+from compoundkin.files.exchange.shortest_numbers import shortest
+
 # Digits after the point: of numbers that are hundreds, all that a float has.
 _DIGITS = 12
 
@@ -86,8 +88,7 @@ def plain(value: float) -> str:
     >>> plain(0.1), plain(-3.0), plain(1e-7)
     ('0.1', '-3', '0.0000001')
     """
-    text = format(Decimal(repr(float(value))), "f")
-    return text[:-2] if text.endswith(".0") else text
+    return format(Decimal(shortest(value)), "f")
 
 
 def place(value: float) -> str:
@@ -96,7 +97,7 @@ def place(value: float) -> str:
     >>> place(1e-14), place(453.5433070866142)
     ('0', '453.543307086614')
     """
-    return plain(round(float(value), _DIGITS) + 0.0)
+    return plain(round(value, _DIGITS))
 
 
 def _told(value: float) -> float:

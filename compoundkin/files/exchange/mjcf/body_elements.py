@@ -8,21 +8,13 @@ from xml.etree.ElementTree import Element, SubElement
 from compoundkin.files.exchange.mjcf.elementary_joints import ElementaryJoint
 from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.files.exchange.shortest_numbers import shortest
 from compoundkin.model.geometry import FRAME
-
-
-def number(value: float) -> str:
-    """Return a number with all its digits.
-
-    >>> number(-0.0), number(0.1)
-    ('0.0', '0.1')
-    """
-    return repr(float(value) + 0.0)
 
 
 def place(value: complex) -> str:
     """Return a place of the plane."""
-    return f"{number(value.real)} {number(value.imag)} 0"
+    return f"{shortest(value.real)} {shortest(value.imag)} 0"
 
 
 def site_name(plan: ModelPlan, letter: str, link: str) -> str:
@@ -55,8 +47,8 @@ def body_elements(plan: ModelPlan) -> dict[str, Element]:
             body,
             "inertial",
             pos=place(mass.centre),
-            mass=number(mass.mass),
-            diaginertia=" ".join([number(mass.inertia)] * 3),
+            mass=shortest(mass.mass),
+            diaginertia=" ".join([shortest(mass.inertia)] * 3),
         )
         for joint in branch.joints:
             _add_joint(plan, body, joint, link)
@@ -70,7 +62,7 @@ def _pose(plan: ModelPlan, branch: CarriedLink, link: str) -> dict[str, str]:
     local = plan.pose(branch.parent).inverse().compose(plan.pose(link))
     pos = place(complex(local.z.c[0]) * plan.units.length)
     angle = phase(complex(local.u.c[0]))
-    return {"pos": pos, "euler": f"0 0 {number(angle)}"} if angle else {"pos": pos}
+    return {"pos": pos, "euler": f"0 0 {shortest(angle)}"} if angle else {"pos": pos}
 
 
 def _add_joint(plan: ModelPlan, body: Element, joint: ElementaryJoint, link: str) -> None:
@@ -82,7 +74,7 @@ def _add_joint(plan: ModelPlan, body: Element, joint: ElementaryJoint, link: str
     else:
         words |= {"axis": place(complex(back.u.c[0]) * joint.axis)}
     if joint.reach is not None:
-        words["range"] = " ".join(number(end * scale) for end in joint.reach)
+        words["range"] = " ".join(shortest(end * scale) for end in joint.reach)
     SubElement(body, "joint", words)
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.series import Series
-from compoundkin.files.exchange.mjcf.body_elements import number
 from compoundkin.files.exchange.mjcf.elementary_joints import JointChain
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.files.exchange.shortest_numbers import shortest
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.symbols import Wheel
@@ -50,7 +50,7 @@ def _wheels(plan: ModelPlan, pair: Pair) -> Iterator[tuple[str, dict[str, str]]]
         if not radius:
             continue
         height = plan.layer(link) * _LAYER * plan.size
-        size = f"{number(radius * plan.units.length)} {number(0.3 * _HALF_WIDTH * plan.size)}"
+        size = f"{shortest(radius * plan.units.length)} {shortest(0.3 * _HALF_WIDTH * plan.size)}"
         at = _at(complex(first_entry(mark.at)) * plan.units.length, height)
         yield link, {"type": "cylinder", "pos": at, "size": size, "rgba": _RING if mark.is_ring else _DISC}
 
@@ -72,13 +72,13 @@ def _link_shapes(plan: ModelPlan, link: str) -> Iterator[dict[str, str]]:
         at = points[0] if points else 0j
         along = next((joint.axis for joint in plan.tree.carried[link].joints if not joint.is_hinge), 1 + 0j)
         turn = along * complex(plan.pose(link).u.c[0]).conjugate()
-        size = " ".join(number(part * _HALF_WIDTH * plan.size) for part in (3.0, 2.0, 1.0))
-        yield {"type": "box", "pos": _at(at, height), "size": size, "euler": f"0 0 {number(float(np.angle(turn)))}"}
+        size = " ".join(shortest(part * _HALF_WIDTH * plan.size) for part in (3.0, 2.0, 1.0))
+        yield {"type": "box", "pos": _at(at, height), "size": size, "euler": f"0 0 {shortest(float(np.angle(turn)))}"}
 
 
 def _frame_shapes(plan: ModelPlan) -> Iterator[dict[str, str]]:
     for own in plan.shown.points[FRAME].values():
-        radius = number(1.6 * _HALF_WIDTH * plan.size)
+        radius = shortest(1.6 * _HALF_WIDTH * plan.size)
         yield {"type": "sphere", "pos": _at(own * plan.units.length, 0.0), "size": radius}
 
 
@@ -104,8 +104,8 @@ def _guide(plan: ModelPlan, chain: JointChain) -> dict[str, str] | None:
 
 
 def _bar(one: complex, other: complex, height: float, radius: float) -> dict[str, str]:
-    return {"type": "capsule", "fromto": f"{_at(one, height)} {_at(other, height)}", "size": number(radius)}
+    return {"type": "capsule", "fromto": f"{_at(one, height)} {_at(other, height)}", "size": shortest(radius)}
 
 
 def _at(place: complex, height: float) -> str:
-    return f"{number(place.real)} {number(place.imag)} {number(height)}"
+    return f"{shortest(place.real)} {shortest(place.imag)} {shortest(height)}"

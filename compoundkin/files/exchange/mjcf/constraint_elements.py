@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from xml.etree.ElementTree import Element, SubElement
 
-from compoundkin.files.exchange.mjcf.body_elements import number, site_name
+from compoundkin.files.exchange.mjcf.body_elements import site_name
 from compoundkin.files.exchange.mjcf.elementary_joints import JointChain
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.files.exchange.shortest_numbers import shortest
 
 
 def constraint_elements(plan: ModelPlan, tendons: Element) -> Iterator[Element]:
@@ -20,7 +21,7 @@ def constraint_elements(plan: ModelPlan, tendons: Element) -> Iterator[Element]:
         SubElement(held, "connect", _sites(plan, chain))
     for name, (_, link) in plan.halves.items():
         # angles count as much as lengths
-        SubElement(held, "weld", name=name, body1=link, body2=name, torquescale=number(plan.size))
+        SubElement(held, "weld", name=name, body1=link, body2=name, torquescale=shortest(plan.size))
     for name, tie in plan.ties.items():
         _add_tie(plan, name, tie, held, tendons)
     yield from (element for element in (tendons, held) if len(element))
@@ -42,9 +43,9 @@ def _add_tie(plan: ModelPlan, name: str, tie: Mapping[str, float], held: Element
         SubElement(held, "tendon", name=name, tendon1=name)
         fixed = SubElement(tendons, "fixed", name=name)
         for joint, factor in scaled.items():
-            SubElement(fixed, "joint", joint=joint, coef=number(factor))
+            SubElement(fixed, "joint", joint=joint, coef=shortest(factor))
         return
     words = {"name": name, "joint1": last, "polycoef": "0 0 0 0 0"}
     for joint, factor in others:
-        words |= {"joint2": joint, "polycoef": f"0 {number(-factor / whole)} 0 0 0"}
+        words |= {"joint2": joint, "polycoef": f"0 {shortest(-factor / whole)} 0 0 0"}
     SubElement(held, "joint", words)

@@ -10,9 +10,9 @@ import numpy as np
 from compoundkin.base.arrays import TURN, first_entry
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
-from compoundkin.files.exchange.mjcf.body_elements import number
 from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.files.exchange.shortest_numbers import shortest
 
 # The drawn pose in motion: what the keyframe is called.
 KEYFRAME = "drawn"
@@ -30,18 +30,18 @@ def driver_elements(plan: ModelPlan, world: Element, loads: Element, lag: float)
     speeds = dict(_speeds(plan))
     for name, (joint, _) in speeds.items():
         weight = moved_mass(plan, name, joint)
-        words = {"kp": number(weight / lag**2), "kv": number(2.0 * weight / lag)}
+        words = {"kp": shortest(weight / lag**2), "kv": shortest(2.0 * weight / lag)}
         ends = _range(plan, name, joint)
-        words |= {"actrange": " ".join(number(end) for end in ends)} if ends else {}
+        words |= {"actrange": " ".join(shortest(end) for end in ends)} if ends else {}
         SubElement(actuators, "intvelocity", {"name": name, "joint": joint, **words})
     actuators.extend(loads)
     rates, joints = joint_rates(plan), [joint.get("name", "") for joint in world.iter("joint")]
     key.set("qpos", " ".join(["0"] * len(joints)))
-    key.set("qvel", " ".join(number(rates[name] * plan.unit_of(name)) for name in joints))
+    key.set("qvel", " ".join(shortest(rates[name] * plan.unit_of(name)) for name in joints))
     if len(actuators):
         # what a load pulls is in its gear; a place that is ahead of its driver draws it with the right speed
-        key.set("ctrl", " ".join([*(number(speed) for _, speed in speeds.values()), *["1"] * len(loads)]))
-        key.set("act", " ".join(number(2.0 * lag * speed) for _, speed in speeds.values()))
+        key.set("ctrl", " ".join([*(shortest(speed) for _, speed in speeds.values()), *["1"] * len(loads)]))
+        key.set("act", " ".join(shortest(2.0 * lag * speed) for _, speed in speeds.values()))
         yield actuators
     frames = Element("keyframe")
     frames.append(key)

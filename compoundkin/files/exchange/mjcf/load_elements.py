@@ -11,8 +11,9 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from compoundkin.files.exchange.mjcf.body_elements import number, place, site_name
+from compoundkin.files.exchange.mjcf.body_elements import place, site_name
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.files.exchange.shortest_numbers import shortest
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.spring import COMPRESSION, TENSION
 
@@ -54,7 +55,7 @@ class ModelLoads:
         if torque is None:
             return False
         site = self._site(load.link, 0j, load.name)
-        gear = f"0 0 0 0 0 {number(torque.real * self._units.force * self._units.length)}"
+        gear = f"0 0 0 0 0 {shortest(torque.real * self._units.force * self._units.length)}"
         SubElement(self.actuators, "motor", name=load.name, site=site, gear=gear)
         return True
 
@@ -62,7 +63,7 @@ class ModelLoads:
         amount, found = _constant(load.amount), self._plan.coordinate(load.pair)
         if amount is None or found is None or load.only is not None:
             return False
-        gear = number(found.sign * amount.real * self._effort_unit(found.joint))
+        gear = shortest(found.sign * amount.real * self._effort_unit(found.joint))
         SubElement(self.actuators, "motor", name=load.name, joint=found.joint, gear=gear)
         return True
 
@@ -77,16 +78,16 @@ class ModelLoads:
             return load.only is None and self._joint_spring(load, stiffness.real, rest)
         length, far = rest * self._units.length, _FAR * self._plan.size
         ends = {TENSION: (0.0, length), COMPRESSION: (length, far)}.get(load.only, (length, length))
-        pull = number(stiffness.real * self._units.force / self._units.length)
-        return rest >= 0.0 and self._tendon(load, stiffness=pull, springlength=" ".join(number(end) for end in ends))
+        pull = shortest(stiffness.real * self._units.force / self._units.length)
+        return rest >= 0.0 and self._tendon(load, stiffness=pull, springlength=" ".join(shortest(end) for end in ends))
 
     def _joint_spring(self, load: Any, stiffness: float, rest: float) -> bool:
         found = self._plan.coordinate(load.pair)
         if found is None or self._joints[found.joint].get("stiffness"):
             return False
         unit = self._plan.unit_of(found.joint)
-        self._joints[found.joint].set("stiffness", number(stiffness * self._effort_unit(found.joint) / unit))
-        self._joints[found.joint].set("springref", number(found.sign * (rest - found.drawn) * unit))
+        self._joints[found.joint].set("stiffness", shortest(stiffness * self._effort_unit(found.joint) / unit))
+        self._joints[found.joint].set("springref", shortest(found.sign * (rest - found.drawn) * unit))
         return True
 
     def _damper(self, load: Any) -> bool:
@@ -94,12 +95,12 @@ class ModelLoads:
         if rate is None:
             return False
         if not hasattr(load, "pair"):
-            return self._tendon(load, damping=number(rate.real * self._units.force / self._units.length))
+            return self._tendon(load, damping=shortest(rate.real * self._units.force / self._units.length))
         found = self._plan.coordinate(load.pair)
         if found is None or self._joints[found.joint].get("damping"):
             return False
         scale = self._effort_unit(found.joint) / self._plan.unit_of(found.joint)
-        self._joints[found.joint].set("damping", number(rate.real * scale))
+        self._joints[found.joint].set("damping", shortest(rate.real * scale))
         return True
 
     def _tendon(self, load: Any, **words: str) -> bool:

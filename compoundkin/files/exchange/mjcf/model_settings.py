@@ -10,9 +10,10 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, first_entry
 from compoundkin.base.texts import printable
-from compoundkin.files.exchange.mjcf.body_elements import number, place
+from compoundkin.files.exchange.mjcf.body_elements import place
 from compoundkin.files.exchange.mjcf.driver_elements import fastest
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
+from compoundkin.files.exchange.shortest_numbers import shortest
 
 # The longest step (seconds), and how many make a turn of the fastest driver, or a way of six sizes.
 _LONGEST, _STEPS = 2.5e-4, 2000
@@ -37,15 +38,15 @@ def settings(plan: ModelPlan, notes: tuple[str, ...]) -> Iterator[Element]:
     """Yield what stands before the bodies. The notes are in it, as texts."""
     yield Element("compiler", angle="radian", autolimits="true")
     fall, step = complex(first_entry(plan.shown.mechanism.gravity)), step_of(plan)
-    option = Element("option", timestep=number(step), integrator="implicitfast", gravity=place(fall))
+    option = Element("option", timestep=shortest(step), integrator="implicitfast", gravity=place(fall))
     SubElement(option, "flag", contact="disable")
     yield option
     middle, width = _view(plan)
-    yield Element("statistic", center=place(middle), extent=number(width))
+    yield Element("statistic", center=place(middle), extent=shortest(width))
     defaults = Element("default")
-    SubElement(defaults, "equality", solref=f"{number(_OF_CONSTRAINTS * step)} 1", solimp=_HARD)
+    SubElement(defaults, "equality", solref=f"{shortest(_OF_CONSTRAINTS * step)} 1", solimp=_HARD)
     SubElement(defaults, "geom", contype="0", conaffinity="0")
-    SubElement(defaults, "site", size=number(_POINT * plan.size))
+    SubElement(defaults, "site", size=shortest(_POINT * plan.size))
     yield defaults
     yield from _looks()
     custom = Element("custom")
@@ -66,8 +67,8 @@ def camera(plan: ModelPlan) -> Element:
     """Return a camera that looks at the plane, y being up."""
     middle, width = _view(plan)
     height = _ROOM * width / 2.0 / tan(radians(_ANGLE / 2.0))
-    at = f"{number(middle.real)} {number(middle.imag)} {number(height)}"
-    return Element("camera", name="plane", pos=at, xyaxes="1 0 0 0 1 0", fovy=number(_ANGLE))
+    at = f"{shortest(middle.real)} {shortest(middle.imag)} {shortest(height)}"
+    return Element("camera", name="plane", pos=at, xyaxes="1 0 0 0 1 0", fovy=shortest(_ANGLE))
 
 
 def _view(plan: ModelPlan) -> tuple[complex, float]:

@@ -40,12 +40,3 @@ class Notation:
                 name = f"{wanted}_{count}"
             found[link.key] = name
         return found
-
-
-def plain(number: float) -> str:
-    """Return a number with all its digits, the shortest way.
-
-    >>> plain(10.0), plain(-0.0), plain(0.1)
-    ('10', '0', '0.1')
-    """
-    return repr(number + 0.0).removesuffix(".0")

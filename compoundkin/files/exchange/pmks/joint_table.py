@@ -7,18 +7,19 @@ import io
 from dataclasses import replace
 from typing import Any, ClassVar
 
+from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
-from compoundkin.files.exchange.pmks.joint_notation import plain
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, kind_of
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
 from compoundkin.files.exchange.pmks.joint_text import TextReader, is_short
 from compoundkin.files.exchange.pmks.table_rows import heading_of, lines_of, separator_of, table_rows
 from compoundkin.files.exchange.pmks.written_joints import PMKS, drawn_degrees, pmks_joints
 from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.exchange.shortest_numbers import shortest
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 _TABLE = replace(PMKS, program="a table of joints", most_drivers=MOST_JOINTS)
@@ -31,6 +32,7 @@ class JointTable(Readable, Writable):
     name: ClassVar[str] = "joints"
     program: ClassVar[str] = "any program"
     title: ClassVar[str] = "table of joints"
+    suffix: ClassVar[str] = suffix_for("table", "csv")
 
     def recognises(self, content: Content) -> bool:
         """Return whether its first row is a heading, or a joint without commas."""
@@ -60,11 +62,11 @@ class JointTable(Readable, Writable):
         table.writerow(HEADING)
         for record in joints.records:
             names = " ".join(joints.names[key] for key in record.links)
-            angle = plain(drawn_degrees(record)) if record.is_guide else ""
-            place = plain(record.at.real), plain(record.at.imag)
+            angle = shortest(drawn_degrees(record)) if record.is_guide else ""
+            place = shortest(record.at.real), shortest(record.at.imag)
             table.writerow((names, record.kind, *place, angle, "yes" if record.drives else "", record.name))
         speeds = {one.speed for one in joints.drivers if one.speed}
-        keys = [f"s={plain(speed)}" for speed in speeds if len(speeds) == 1]
+        keys = [f"s={shortest(speed)}" for speed in speeds if len(speeds) == 1]
         keys += [f"name={joints.title}"] if joints.title else []
         content = (text.getvalue() + "".join(f"{key}\n" for key in keys)).encode()
         notes = ("the drivers' speeds differ, and are left out",) if len(speeds) > 1 else ()

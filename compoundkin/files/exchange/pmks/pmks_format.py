@@ -10,11 +10,11 @@ from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
-from compoundkin.files.exchange.pmks.joint_notation import plain
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
 from compoundkin.files.exchange.pmks.joint_text import TextReader
 from compoundkin.files.exchange.pmks.written_joints import pmks_joints, pmks_notes, record_lines
 from compoundkin.files.exchange.problems import Problems
+from compoundkin.files.exchange.shortest_numbers import shortest
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # A record at the beginning of a line, perhaps after what may stand in front of it.
@@ -42,7 +42,7 @@ class PmksFormat(Readable, Writable):
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the records, a joint a line."""
         joints = pmks_joints(drawing_of(shown))
-        lines = [*record_lines(joints), *(f"s={plain(d.speed)}" for d in joints.drivers if d.speed)]
+        lines = [*record_lines(joints), *(f"s={shortest(d.speed)}" for d in joints.drivers if d.speed)]
         if joints.title:
             lines.append(f"name={joints.title}")
         return Exported("".join(f"{line}\n" for line in lines).encode(), self.name, pmks_notes(joints))

@@ -10,10 +10,10 @@ from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
-from compoundkin.files.exchange.pmks.joint_notation import plain
 from compoundkin.files.exchange.pmks.joint_record import MOST_CHARACTERS
 from compoundkin.files.exchange.pmks.pmks_format import read_text
 from compoundkin.files.exchange.pmks.written_joints import pmks_joints, pmks_notes, record_lines
+from compoundkin.files.exchange.shortest_numbers import shortest
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 ADDRESS = "http://designengrlab.github.io/PMKS/pmks.html"
@@ -48,7 +48,7 @@ class PmksUrl(Readable, Writable):
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return an address that shows the mechanism where the app still runs."""
         joints = pmks_joints(drawing_of(shown))
-        speed = "".join(f"set=s{plain(d.speed)}&" for d in joints.drivers if d.speed)
+        speed = "".join(f"set=s{shortest(d.speed)}&" for d in joints.drivers if d.speed)
         records = quote("|".join(record_lines(joints)), safe=",|-._")
         return Exported(f"{ADDRESS}?{speed}mech={records}\n".encode(), self.name, pmks_notes(joints))
 

@@ -6,8 +6,9 @@ from math import degrees, radians, remainder
 
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks.drawn_joints import joints_of, turned_back
-from compoundkin.files.exchange.pmks.joint_notation import Notation, plain
+from compoundkin.files.exchange.pmks.joint_notation import Notation
 from compoundkin.files.exchange.pmks.joint_record import JointList, JointRecord, means_ground
+from compoundkin.files.exchange.shortest_numbers import shortest
 
 PMKS = Notation(
     "PMKS",
@@ -40,9 +41,9 @@ def pmks_notes(joints: JointList) -> tuple[str, ...]:
 
 def _line(record: JointRecord, joints: JointList) -> str:
     names = [joints.names[key] for key in record.links]
-    angle = [plain(drawn_degrees(record))] if record.is_guide else []
+    angle = [shortest(drawn_degrees(record))] if record.is_guide else []
     flags = "tfft" if record.drives else "tfff"
-    return ",".join([*names, record.kind, plain(record.at.real), plain(record.at.imag), *angle, flags])
+    return ",".join([*names, record.kind, shortest(record.at.real), shortest(record.at.imag), *angle, flags])
 
 
 def drawn_degrees(record: JointRecord) -> float:

@@ -24,7 +24,7 @@ from compoundkin.model.geometry import FRAME
 _ROUNDING = 1e-9
 
 
-def linkage_drawing(file: PylinkageFile, problems: Problems, title: str) -> Drawing:
+def pylinkage_drawing(file: PylinkageFile, problems: Problems, title: str) -> Drawing:
     """Return the drawing of a file. Raises InvalidInput with all that cannot be meant."""
     places = JointPlaces(file, problems)
     problems.raise_if_any()

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.suffixes import JSON
+from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable, Writable
 from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
@@ -15,9 +15,9 @@ from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.json_text import parsed_json
 from compoundkin.files.exchange.option_values import whole
 from compoundkin.files.exchange.problems import Problems
-from compoundkin.files.exchange.pylinkage.pylinkage_elements import linkage_drawing
-from compoundkin.files.exchange.pylinkage.pylinkage_records import linkage_file
-from compoundkin.files.exchange.pylinkage.pylinkage_writer import linkage_text
+from compoundkin.files.exchange.pylinkage.pylinkage_elements import pylinkage_drawing
+from compoundkin.files.exchange.pylinkage.pylinkage_records import pylinkage_file
+from compoundkin.files.exchange.pylinkage.pylinkage_writer import pylinkage_text
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
 # What stands in their files of mechanisms, and of structures alone: graphs, and graphs of graphs.
@@ -33,7 +33,7 @@ class PylinkageFormat(Readable, Writable):
     name: ClassVar[str] = "pylinkage"
     program: ClassVar[str] = "pylinkage"
     title: ClassVar[str] = "JSON of pylinkage"
-    suffix: ClassVar[str] = JSON
+    suffix: ClassVar[str] = suffix_for("mechanism", "json")
     options: ClassVar[Mapping[str, str]] = {"steps": f"steps in a turn of the fastest crank; {_STEPS} if left out"}
 
     def recognises(self, content: Content) -> bool:
@@ -49,7 +49,7 @@ class PylinkageFormat(Readable, Writable):
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the file. Raises InvalidInput listing what is no pin, and no slot of the frame."""
         steps = whole("steps", options.get("steps", _STEPS), 1, _MOST_STEPS)
-        text, notes = linkage_text(drawing_of(shown), steps)
+        text, notes = pylinkage_text(drawing_of(shown), steps)
         return Exported(text.encode(), self.name, notes)
 
 
@@ -58,9 +58,9 @@ def imported(data: Any, where: str, title: str) -> Imported:
     problems = Problems(where)
     if isinstance(data, dict) and "links" not in data and {"nodes", "instances"} & {*data}:
         raise InvalidInput(Problem(where, "this is topology only: a graph without dimensions", _REMEDY))
-    file = linkage_file(data, problems)
+    file = pylinkage_file(data, problems)
     problems.raise_if_any()
-    return mechanism_of(linkage_drawing(file, problems, title or "Mechanism of pylinkage"), "pylinkage", where)
+    return mechanism_of(pylinkage_drawing(file, problems, title or "Mechanism of pylinkage"), "pylinkage", where)
 
 
 FORMAT = PylinkageFormat()

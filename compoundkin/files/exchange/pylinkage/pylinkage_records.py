@@ -82,7 +82,7 @@ class PylinkageFile:
     unknown: tuple[tuple[str, int], ...]
 
 
-def linkage_file(data: Any, problems: Problems) -> PylinkageFile:
+def pylinkage_file(data: Any, problems: Problems) -> PylinkageFile:
     """Return what a document of pylinkage says; what is wrong is noted."""
     record = JsonRecord(data, "", problems)
     joints = list(record.records("joints", "joint"))

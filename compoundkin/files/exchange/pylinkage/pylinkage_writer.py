@@ -20,7 +20,7 @@ from compoundkin.model.geometry import FRAME
 _SLOWEST = 1e-100
 
 
-def linkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
+def pylinkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
     """Return the file of a drawing, and what has to be said of it. The fastest crank makes a turn in `steps`."""
     layout = PylinkageLayout(drawing)
     order = found_order(layout)

@@ -7,9 +7,10 @@ from math import degrees
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks.drawn_joints import joints_of
-from compoundkin.files.exchange.pmks.joint_notation import Notation, plain
+from compoundkin.files.exchange.pmks.joint_notation import Notation
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointList, JointRecord
 from compoundkin.files.exchange.pyslvs.expression import GROUND
+from compoundkin.files.exchange.shortest_numbers import shortest
 
 PYSLVS = Notation(
     "pyslvs",
@@ -59,8 +60,8 @@ def pyslvs_notes(joints: JointList) -> tuple[str, ...]:
 
 
 def _joint(record: JointRecord, joints: JointList) -> str:
-    angle = f", A[{plain(degrees(record.angle))}]" if record.is_guide else ""
+    angle = f", A[{shortest(degrees(record.angle))}]" if record.is_guide else ""
     colour = "Green" if len(record.links) > 1 else "Blue"
     links = ", ".join(joints.names[key] for key in record.links)
-    at = f"P[{plain(record.at.real)}, {plain(record.at.imag)}]"
+    at = f"P[{shortest(record.at.real)}, {shortest(record.at.imag)}]"
     return f"J[{record.kind}{angle}, color[{colour}], {at}, L[{links}]]"
