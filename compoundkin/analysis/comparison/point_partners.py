@@ -41,7 +41,7 @@ def partners_by_name(one: ComparedSide, other: ComparedSide) -> dict[str, str]:
 
 
 def tracers_by_name(one: ComparedSide, other: ComparedSide, points: Mapping[str, str]) -> dict[str, str]:
-    """Return the tracers left that have one name, on links that stand for each other."""
+    """Return the tracers left that have one name, on links that are partners."""
     links = link_partners(one.mechanism, other.mechanism, points)
     mine, theirs = one.mechanism.carriers, other.mechanism.carriers
     left = set(other.tracers).difference(points.values())
