@@ -13,7 +13,7 @@ from tests.kinematics.exact_motions import CASES, ORDER, special, true_errors
 
 RATES = (1.3, 0.4, -0.7)
 DECADES = range(1, 10)
-SAMPLES = 4
+SAMPLES = 2
 
 
 def near(title: str, distances: np.ndarray) -> ck.results.Motion:

@@ -212,9 +212,9 @@ def table(*rows: tuple[Number, ...]) -> Number:
     >>> table((1.0, 0.0, np.zeros(2), 0.0, 0.0, 0.0)).shape
     (2, 1, 6)
     """
-    shape = np.broadcast_shapes(*[np.shape(entry) for row in rows for entry in row])
-    out = np.empty((*shape, len(rows), len(rows[0])))
-    for i, row in enumerate(rows):
+    shape = np.broadcast_shapes(*{getattr(entry, "shape", ()) for row in rows for entry in row})
+    out = np.empty((*shape, len(rows), len(rows[0]))) if shape else np.array(rows, dtype=float)  # one pose: at once
+    for i, row in enumerate(rows if shape else ()):
         for j, entry in enumerate(row):
             out[..., i, j] = entry
     return out

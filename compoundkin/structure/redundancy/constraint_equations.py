@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -187,19 +187,19 @@ class ConstraintEquations:
             at = f"pin {pair.letters[0]}" if number < len(self.pins) else f"pair {pair.name}"
             ends = places.setdefault(at, pair.generic(rng))
             tables.append((pair, generic_jacobian(pair, ends)[..., : pair.held, :]))
-        return self._scaled(self._filled(iter(tables)), 1.0)[0]
+        return self._scaled(self._filled(tables), 1.0)[0]
 
-    def _filled(self, tables: Iterator[tuple[Pair, Any]]) -> Array:
-        blocks = []
-        for pair, table in tables:
-            table = np.asarray(table, dtype=float).reshape(-1, LINK_FREEDOMS * len(pair.members))
-            block = np.zeros((len(table), self.width))
+    def _filled(self, tables: Iterable[tuple[Pair, Any]]) -> Array:
+        blocks = [(pair, np.asarray(one, float).reshape(-1, LINK_FREEDOMS * len(pair.members))) for pair, one in tables]
+        filled, first = np.zeros((sum(len(block) for _, block in blocks), self.width)), 0
+        for pair, block in blocks:
+            rows = filled[first : first + len(block)]
+            first += len(block)
             for side, name in enumerate(pair.members):
                 if name in self.column:
-                    part = table[:, LINK_FREEDOMS * side : LINK_FREEDOMS * (side + 1)]
-                    block[:, self.column[name] : self.column[name] + LINK_FREEDOMS] += part
-            blocks.append(block)
-        return np.vstack(blocks) if blocks else np.zeros((0, self.width))
+                    part = block[:, LINK_FREEDOMS * side : LINK_FREEDOMS * (side + 1)]
+                    rows[:, self.column[name] : self.column[name] + LINK_FREEDOMS] += part
+        return filled
 
     def _scaled(self, matrix: Array, size: float) -> tuple[Array, Array]:
         matrix = matrix * np.tile([size, size, 1.0], len(self.links))
