@@ -16,7 +16,7 @@ import pytest
 
 import compoundkin as ck
 
-CASES = 120
+CASES = 72
 LIMIT = 1e-6
 
 

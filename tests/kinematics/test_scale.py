@@ -30,8 +30,13 @@ def _solved(mechanism: ck.Mechanism) -> ck.results.Motion | str:
             return type(error).__name__
 
 
-def _assert_same(mechanism: ck.Mechanism, factor: float) -> None:
-    one, other = _solved(scaled(mechanism, 1.0)), _solved(scaled(mechanism, factor))
+def _assert_same(mechanism: ck.Mechanism, *factors: float) -> None:
+    one = _solved(scaled(mechanism, 1.0))
+    for factor in factors:
+        _assert_alike(one, _solved(scaled(mechanism, factor)), factor)
+
+
+def _assert_alike(one: ck.results.Motion | str, other: ck.results.Motion | str, factor: float) -> None:
     if isinstance(one, str) or isinstance(other, str):
         assert one == other
         return
@@ -47,8 +52,7 @@ def _assert_same(mechanism: ck.Mechanism, factor: float) -> None:
 @pytest.mark.parametrize("name", catalog.NAMES)
 def test_motions_of_the_catalog_are_the_same_in_all_units(name: str) -> None:
     number = catalog.NAMES.index(name)
-    _assert_same(catalog.mechanism(name), 1e-9 if number % 2 else 1e9)
-    _assert_same(catalog.mechanism(name), 10.0 ** POWERS[number % len(POWERS)])
+    _assert_same(catalog.mechanism(name), 1e-9 if number % 2 else 1e9, 10.0 ** POWERS[number % len(POWERS)])
 
 
 @pytest.mark.parametrize("name", [name for name in stored() if not name.startswith(BAD)][::SOME])
@@ -59,5 +63,4 @@ def test_motions_of_random_mechanisms_are_the_same_in_all_units(name: str, tmp_p
         mechanism = ck.load(path)
     except ck.errors.CompoundkinError:
         return  # dimensions that do not fit each other
-    _assert_same(mechanism, 1e-9)
-    _assert_same(mechanism, 1e6)
+    _assert_same(mechanism, 1e-9, 1e6)
