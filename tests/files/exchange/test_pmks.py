@@ -240,6 +240,14 @@ def test_tables_keep_names_of_points_and_say_what_is_missing():
     assert (mechanism.drives[0].link, mechanism.drives[0].speed, mechanism.title) == ("slider", 2.0, "press, small")
     again = read(write(mechanism, "joints").text).mechanism
     assert {"hinge", "crank pin", "wrist"} <= set(again.carriers)
+    assert (mechanism.unit, again.unit) == ("", "")
+    # a unit in the headings is kept, there and back; two are a mistake
+    metric = read(f"{text}end,ground slider,P,10,0,yes\n".replace("x,y", "x [mm],y (mm)")).mechanism
+    assert (metric.unit, read(write(metric, "joints").text).mechanism.unit) == ("mm", "mm")
+    with pytest.raises(InvalidInput, match="different units"):
+        read(f"{text}end,ground slider,P,10,0,yes\n".replace("x,y", "x [mm],y [in]"))
+    with pytest.raises(InvalidInput, match="line 5: the driver 'maybe' is neither yes nor no"):
+        read(f"{text}end,ground slider,P,10,0,maybe\n")
     with pytest.raises(InvalidInput, match="line 5: a coordinate is missing"):
         read(f"{text}end,ground slider,P,10,,yes\n")
     with pytest.raises(InvalidInput, match="line 2: the coordinate '' is no finite number"):

@@ -226,6 +226,11 @@ def test_a_link_with_two_parallel_slots_slides() -> None:
     assert [complex(*row[-1]) for row in rows] == pytest.approx(motion.points["P"].position[1:])
 
 
+def test_arcs_that_begin_backwards_are_told() -> None:
+    notes = ck.exchange.write(ck.catalog.load_named("3-rrr"), "pylinkage").notes
+    assert "goes to the end of its arc first in pylinkage, and to its beginning here: crank-3" in notes
+
+
 def test_an_arc_is_a_range_from_the_drawn_pose_and_a_turn_is_told_where_it_starts() -> None:
     four_bar = pl.fourbar(crank=1, coupler=3, rocker=3, ground=4, initial_angle=0.5)
     (crank,) = (link for link in four_bar.links if link.id == "crank")

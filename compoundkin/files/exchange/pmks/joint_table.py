@@ -16,7 +16,7 @@ from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, kind_of
 from compoundkin.files.exchange.pmks.joint_sketch import drawing_of_joints
 from compoundkin.files.exchange.pmks.joint_text import TextReader, is_short
-from compoundkin.files.exchange.pmks.table_rows import heading_of, lines_of, separator_of, table_rows
+from compoundkin.files.exchange.pmks.table_rows import heading_of, lines_of, separator_of, table_rows, unit_of
 from compoundkin.files.exchange.pmks.written_joints import PMKS, drawn_degrees, pmks_joints
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.shortest_numbers import shortest
@@ -52,14 +52,17 @@ class JointTable(Readable, Writable):
             reader.record(row.where, row.words, row.name)
             if reader.count > MOST_JOINTS:
                 break
-        return mechanism_of(drawing_of_joints(reader.joints(), problems, ""), self.name, content.where)
+        unit = unit_of(text, problems)
+        drawing = replace(drawing_of_joints(reader.joints(), problems, ""), unit=unit)
+        return mechanism_of(drawing, self.name, content.where)
 
     def write(self, shown: ShownMechanism, **options: Any) -> Exported:
         """Return the table, with the names of the points."""
-        joints = pmks_joints(drawing_of(shown), _TABLE)
+        drawing = drawing_of(shown)
+        joints = pmks_joints(replace(drawing, unit=""), _TABLE)
         text = io.StringIO()
         table = csv.writer(text, lineterminator="\n")
-        table.writerow(HEADING)
+        table.writerow(f"{word} [{drawing.unit}]" if drawing.unit and word in "xy" else word for word in HEADING)
         for record in joints.records:
             names = " ".join(joints.names[key] for key in record.links)
             angle = shortest(drawn_degrees(record)) if record.is_guide else ""

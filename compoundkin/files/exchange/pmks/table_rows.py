@@ -9,10 +9,13 @@ from dataclasses import dataclass
 
 from compoundkin.files.exchange.pmks.joint_record import kind_of
 from compoundkin.files.exchange.problems import Problems
+from compoundkin.model.units import LENGTHS
 
 _NAMES = re.compile(r"[\s,;&+]+")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:e[+-]?\d+)?", re.IGNORECASE)
 _YES = ("yes", "true", "1", "x", "y", "t", "driver", "driven")
+_NO = ("no", "false", "0", "n", "f", "-", "")
+_UNIT = re.compile(r"[\[(]\s*(.*?)\s*[\])]")
 # What a column may be called, by what it is; all columns whose name has the word link are of links.
 _COLUMNS = {
     "kind": ("type", "kind", "joint type"),
@@ -23,6 +26,8 @@ _COLUMNS = {
     "name": ("name", "joint", "point", "joint name", "point name"),
 }
 _LINK = "link"
+# Of what is told of a cell so much is shown.
+_SHOWN = 40
 _NEEDED = {_LINK, "kind", "x", "y"}
 
 
@@ -63,6 +68,25 @@ def lines_of(text: str) -> Iterator[str]:
     return (line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#"))
 
 
+def unit_of(text: str, problems: Problems) -> str:
+    """Return the unit of length that the headings of the places tell, or nothing.
+
+    >>> unit_of("links,type,x [mm],y (mm)", Problems(""))
+    'mm'
+    """
+    separator = separator_of(next(lines_of(text), ""))
+    for line in lines_of(text):
+        cells = line.split(separator)
+        heading = heading_of([cell.strip(' "') for cell in cells])
+        if heading:
+            places = [cell for kind, cell in zip(heading, cells, strict=True) if kind in ("x", "y")]
+            units = sorted({found[1] if (found := _UNIT.search(cell)) else "" for cell in places})
+            if len(units) > 1:
+                problems.add("the headings", f"x and y have different units: {cells}", "give both one unit")
+            return units[0] if units[0] in LENGTHS else ""
+    return ""
+
+
 def table_rows(text: str, problems: Problems, told: Callable[[str], bool]) -> Iterator[TableRow]:
     """Yield the rows of a table of joints, but comments and lines `told`."""
     separator = separator_of(next(lines_of(text), ""))
@@ -79,19 +103,22 @@ def table_rows(text: str, problems: Problems, told: Callable[[str], bool]) -> It
         if heading is None and (found := heading_of(cells)):
             heading = found
         else:
-            yield _row(cells, heading, separator, f"line {number}")
+            yield _row(cells, heading, separator, f"line {number}", problems)
 
 
-def _row(cells: list[str], heading: list[str] | None, separator: str, where: str) -> TableRow:
+def _row(cells: list[str], heading: list[str] | None, separator: str, where: str, problems: Problems) -> TableRow:
     """Return a row by its columns, or as it stands where it has none or more cells than there are columns."""
     if separator != ",":
         cells = [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in cells]
     by = {} if heading is None or len(cells) > len(heading) else _by_column(cells, heading)
     if not by or kind_of(by["kind"]) is None:
         return TableRow(_as_it_stands(cells), "", where)
+    drives = by.get("drives", "").lower()
+    if drives not in (*_YES, *_NO):
+        problems.add(where, f"the driver {drives[:_SHOWN]!r} is neither yes nor no")
     words = [*_names(by[_LINK]), by["kind"], by["x"], by["y"]]
     if by["x"] and by["y"]:
-        words += [by.get("angle", ""), "ffft" if by.get("drives", "").lower() in _YES else "ffff"]
+        words += [by.get("angle", ""), "ffft" if drives in _YES else "ffff"]
     return TableRow([word for word in words if word], by.get("name", ""), where)
 
 

@@ -112,6 +112,9 @@ def _notes(
     drawing = layout.drawing
     if drawing.drivers:
         yield f"a step of pylinkage is {step:.6g} s: {counted(steps, 'step')} are a turn of the fastest crank"
+    back = [one.link for one in drawing.drivers if one.travel is not None and (one.speed or 0.0) < 0.0]
+    if back:
+        yield f"goes to the end of its arc first in pylinkage, and to its beginning here: {', '.join(back)}"
     blocks = [body for body, own in layout.joints.items() if body in layout.sliding and len(own) < 2]
     if blocks:
         yield f"written as pins in slots, for which no link is needed: {', '.join(blocks)}"
