@@ -45,6 +45,8 @@ def test_formats_are_recognised_by_their_contents_whatever_the_file_is_called(tm
     path = tmp_path / "crank.linkage2"
     path.write_text(contents("pmks")[0])
     assert ck.exchange.read(path).form == "pmks"
+    with pytest.raises(ck.errors.InvalidInput, match="it is a web page"):
+        ck.exchange.read(f"<html><body>{contents('pmks')[0]}")
     with pytest.raises(ck.errors.InvalidInput, match=r"this is no Linkage .* but "):
         ck.exchange.read(path, "linkage")
 

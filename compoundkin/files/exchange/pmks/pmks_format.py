@@ -31,7 +31,8 @@ class PmksFormat(Readable, Writable):
 
     def recognises(self, content: Content) -> bool:
         """Return whether one of the first lines is a record of a joint."""
-        if not content.is_text or "://" in content.head[:64]:
+        # a web page may hold records, and is none
+        if not content.is_text or "://" in content.head[:64] or content.head.startswith("<"):
             return False
         return any(_RECORD.match(line.strip()[:200]) for line in content.head.splitlines()[:_LOOKED_AT])
 
