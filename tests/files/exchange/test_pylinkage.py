@@ -23,7 +23,7 @@ from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkag
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
 from tests.catalog import mechanism as loaded
 from tests.files.exchange.pages import prints_what_it_shows
-from tests.files.exchange.references import entries, letter_at
+from tests.files.exchange.references import entries, entry, letter_at
 
 numba = sys.modules.get("numba")
 sys.modules["numba"] = None  # type: ignore[assignment]  # without it pylinkage computes the same, and is loaded soon
@@ -356,3 +356,12 @@ def test_large_files_answer_soon() -> None:
 
 def test_its_page_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
     prints_what_it_shows("pylinkage.md", capsys)
+
+
+def test_a_tracker_that_is_drawn_elsewhere_than_it_is_told_is_noted() -> None:
+    sample = entry("pylinkage_tracker")["text"]
+    moved = sample.replace("2.562819251291184", "2.862819251291184")
+    assert moved != sample
+    found = ck.exchange.read(moved, "pylinkage")
+    assert any("P (0.3 away)" in note for note in found.notes)
+    assert not any("away" in note for note in ck.exchange.read(sample, "pylinkage").notes)

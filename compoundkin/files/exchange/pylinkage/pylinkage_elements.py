@@ -89,6 +89,12 @@ class _Elements:
         self.at = {key: self.bodies.at(key) for key in file.joints}
         for joint in places.told.values():
             self._add_tracker(joint)
+        away = {joint.name: abs(places.of[joint.key] - joint.at) for joint in places.told.values()}
+        off = [f"{name} ({gap:.4g} away)" for name, gap in away.items() if gap > self.bodies.near]
+        if off:
+            self.notes.append(
+                f"taken where distance and angle tell, as pylinkage does, not where drawn: {', '.join(off)}"
+            )
 
     def _add_tracker(self, joint: PylinkageJoint) -> None:
         """Note the body of a tracker: the one that has both its reference joints."""
