@@ -114,12 +114,12 @@ def _joint(record: JsonRecord) -> PylinkageJoint:
     key, kind = record.text("id"), record.text("type", "revolute")
     if kind not in JOINTS:
         record.wrong(f"{kind!r} is no type of joint", f"known: {', '.join(JOINTS)}")
-    at = 0j
-    if kind != "tracker" or not record.given.get("ref_joint1_id"):
-        if record.given.get(PLACE) == [None, None]:
-            record.wrong("it has no position", "build the mechanism, or step it once, before it is saved")
-        else:
-            at = record.vector(PLACE)
+    # where a tracker is drawn is not needed, and may be left out
+    at, is_told = complex(math.nan), kind == "tracker" and bool(record.given.get("ref_joint1_id"))
+    if record.given.get(PLACE) != [None, None]:
+        at = record.vector(PLACE, at) if is_told else record.vector(PLACE)
+    elif not is_told:
+        record.wrong("it has no position", "build the mechanism, or step it once, before it is saved")
     axis = record.vector("axis", 1 + 0j)
     if not axis:
         record.wrong("its axis has no direction", "give axis as [dx, dy]")
