@@ -53,10 +53,6 @@ class JoinedLinks:
         """Return the bodies that meet at a connector, in the order of the file."""
         return tuple(dict.fromkeys(map(self.body, self._at[connector])))
 
-    def moving_at(self, connector: int) -> tuple[str, ...]:
-        """Return those of them that move."""
-        return tuple(body for body in self.at(connector) if body != FRAME)
-
     @property
     def drawn(self) -> Iterator[DrawnLink]:
         """Yield the moving bodies with their names."""
