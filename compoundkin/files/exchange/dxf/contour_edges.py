@@ -26,6 +26,7 @@ class ContourEdge:
     def bulge(self) -> float:
         """What DXF calls so: the tangent of a quarter of the turn.
 
+        >>> from math import pi
         >>> round(ContourEdge(1 + 0j, -1 + 0j, 0j, pi).bulge, 12)
         1.0
         """
