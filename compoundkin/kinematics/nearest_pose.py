@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,7 +11,7 @@ from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.solution import solve
+from compoundkin.kinematics.quiet_solution import quietly_solved
 
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6
@@ -89,9 +88,7 @@ def _drawn_at(motion: Motion, values: Mapping[str, float]) -> Motion | None:
     """Return the pose at driver values if it is the drawn one."""
     sketch = motion.mechanism.sketch
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = solve(motion.structure, values, order=1)
+        found = quietly_solved(motion.structure, values)
     except (InvalidInput, NotAssembled):
         return None
     off = [abs(complex(np.ravel(found.points[k].position)[0]) - complex(first_entry(p))) for k, p in sketch.items()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,8 +10,9 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
+from compoundkin.kinematics.quiet_solution import quietly_solved
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
@@ -121,18 +121,3 @@ def compared_side(structure: Structure) -> ComparedSide:
 def _values(motion: Motion, pose: int) -> dict[str, float]:
     """Return the drivers' values at a pose of a motion."""
     return {name: float(np.ravel(drive.value)[pose]) for name, drive in motion.drives.items()}
-
-
-def quietly_solved(
-    structure: Structure,
-    values: Mapping[str, Number] | None,
-    order: int,
-    speed: Mapping[str, float] | None = None,
-) -> Motion:
-    """Return a motion without its warnings.
-
-    What is compared says itself what is not assembled.
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return solve(structure, values, speed=speed, order=order)

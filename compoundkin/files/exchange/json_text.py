@@ -47,8 +47,10 @@ def parsed_json(content: Content) -> Any:
     except ValueError as error:
         raise InvalidInput(Problem("", f"a value cannot be read: {error}"), heading=content.where) from None
     if twice:
-        told = [Problem(key, "this key is given twice", "leave one of them out") for key in dict.fromkeys(twice)]
-        raise InvalidInput(told[:30], heading=content.where)
+        problems = Problems(content.where)
+        for key in dict.fromkeys(twice):
+            problems.add(key, "this key is given twice", "leave one of them out")
+        problems.raise_if_any()
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,8 +13,9 @@ from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
+from compoundkin.kinematics.quiet_solution import quietly_solved
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Structure, decompose
@@ -94,7 +94,7 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
     """
     structure = decompose(mechanism)
     try:
-        motion = _solved(structure, at)
+        motion = quietly_solved(structure, at)
     except (InvalidInput, NotAssembled, NotDetermined):
         if at is None and set(mechanism.drawn_poses) >= set(mechanism.links):
             return ShownMechanism(structure, {k: p.entry((0, 0)) for k, p in mechanism.drawn_poses.items()}, {}, {})
@@ -114,12 +114,6 @@ def shown_mechanism(mechanism: Mechanism, at: Mapping[str, float] | None = None)
         {name: _entry(drive.rate, pose) for name, drive in shown.drives.items()},
         motion,
     )
-
-
-def _solved(structure: Structure, at: Mapping[str, float] | None) -> Motion:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return solve(structure, at, order=1)
 
 
 def _entry(values: Number, pose: int) -> float:

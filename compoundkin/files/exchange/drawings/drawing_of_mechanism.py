@@ -26,11 +26,13 @@ from compoundkin.files.exchange.drawings.drawn_elements import (
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.force import Force
 from compoundkin.model.mechanism import Mechanism
 
 # A driver that makes a turn but for so much of it makes a full one.
 _ROUNDING = 1e-9
+
+# The table in which forces are written.
+_FORCES = "forces"
 
 
 def drawing_of(shown: ShownMechanism) -> Drawing:
@@ -174,8 +176,8 @@ def _forces(shown: ShownMechanism) -> tuple[list[DrawnLoad], int]:
     """Return the forces that do not change in time, and how many other loads there are."""
     found = []
     for item in shown.mechanism.loads.values():
-        load: Any = item if isinstance(item, Force) else None
-        if load is None or np.size(load.force) != 1 or not np.iscomplexobj(load.force):
+        load: Any = item
+        if item.table != _FORCES or np.size(load.force) != 1 or not np.iscomplexobj(load.force):
             continue
         turns = load.fixed_in == load.link
         if turns or load.fixed_in == FRAME:

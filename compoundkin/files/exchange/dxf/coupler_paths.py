@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -12,8 +11,9 @@ from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined
 from compoundkin.base.series import Number
 from compoundkin.files.exchange.short_chords import short_chords
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
-from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes.motion_between import between
+from compoundkin.kinematics.quiet_solution import quietly_solved
 from compoundkin.model.geometry import FRAME
 
 # A path whose ends are nearer to each other than this part of the size is closed, one that is shorter is none.
@@ -39,9 +39,7 @@ def whole_motion(shown: ShownMechanism) -> Motion | None:
     if shown.motion is not None and shown.motion.inputs.poses > 1:
         return shown.motion
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            motion = solve(shown.structure, order=1)
+        motion = quietly_solved(shown.structure)
     except (InvalidInput, NotAssembled, NotDetermined):
         return None
     return motion if motion.inputs.poses > 1 else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -21,8 +20,9 @@ from compoundkin.files.exchange.geogebra.point_dimensions import link_points
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, in_degrees
 from compoundkin.files.exchange.geogebra.slider_values import slider_values
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
-from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics import Motion
 from compoundkin.kinematics.groups import GroupSolver, as_dyad
+from compoundkin.kinematics.quiet_solution import quietly_solved
 
 _TABLE = "write a table of its positions instead: `compoundkin solve NAME -o positions.csv`"
 
@@ -50,9 +50,7 @@ def ranged_motion(shown: ShownMechanism) -> Motion:
     if motion is not None and motion.inputs.poses > 1:
         return motion
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = solve(shown.structure, order=1)
+        found = quietly_solved(shown.structure)
     except (InvalidInput, NotAssembled, NotDetermined) as error:
         what = f"it cannot be solved: {error.problems[0].what}"
         raise InvalidInput(Problem(shown.mechanism.title, what, "drive it where it can be assembled")) from None
