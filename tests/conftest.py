@@ -51,8 +51,20 @@ SLOW = {
 }
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Deal slow files out to the workers; xdist gives each an equal part of the list, and the rest can be stolen."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Say what the marker means: `@pytest.mark.full` is for what takes long and needs to be known once a change."""
+    config.addinivalue_line("markers", "full: only with COMPOUNDKIN_TESTS=all, as .ci/run sets it")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what only `.ci/run` runs; deal slow files out to the workers.
+
+    xdist gives each worker an equal part of the list, and the rest can be stolen.
+    """
+    if os.environ.get("COMPOUNDKIN_TESTS") != "all":
+        left_out = [item for item in items if item.get_closest_marker("full")]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if not item.get_closest_marker("full")]
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
     files: dict[str, list[pytest.Item]] = {name: [] for name in SLOW}
     rest = []
