@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.gaps import gaps
     from compoundkin.kinematics.quantities import quantity
-    from compoundkin.programs.compilation import compile
+    from compoundkin.programs.compiled_path import compile
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
     from compoundkin.studies.optimisation.better_dimensions import optimise
@@ -146,7 +146,7 @@ _LATE = {
     "around": "studies.variations.around",
     "characteristics": "analysis.characteristics.characteristics_of_motion",
     "circuits": "configurations.circuit_search",
-    "compile": "programs.compilation",
+    "compile": "programs.compiled_path",
     "configurations": "configurations.enumeration",
     "decompose": "structure",
     "draw": "view.sketch",

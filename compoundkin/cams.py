@@ -8,6 +8,6 @@
 from __future__ import annotations
 
 from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
-from compoundkin.model.cam_mechanisms import cam_mechanism
+from compoundkin.model.cam_mechanism import cam_mechanism
 
 __all__ = ["CamAnalysis", "cam_analysis", "cam_mechanism", "cam_pairs"]

@@ -27,7 +27,7 @@ from compoundkin.model.laws import (
     synchronised,
     time_table,
 )
-from compoundkin.model.leads import place_table
+from compoundkin.model.prescribed_motion import place_table
 from compoundkin.synthesis.found_laws import driven_forward, found_law
 
 __all__ = [

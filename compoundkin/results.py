@@ -51,9 +51,8 @@ from compoundkin.kinematics.jacobian import Jacobian
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table
 from compoundkin.programs.compiled_path import CompiledPath
-from compoundkin.programs.derivatives.path_objective import PathObjective
+from compoundkin.programs.derivatives.path_objective import ObjectivePose, PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
-from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.jax_path import JaxPath
 from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure

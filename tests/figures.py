@@ -14,13 +14,12 @@ import numpy as np
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.view.sketch.label_places import placed
-from compoundkin.view.sketch.picture import fitted
+from compoundkin.view.sketch.kinematic_sketch import ghost_shapes, layered, window_on
+from compoundkin.view.sketch.labels import label_shapes, placed, point_letters
+from compoundkin.view.sketch.painter import Painter
+from compoundkin.view.sketch.picture import fitted_window
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import Polygon, Polyline
-from compoundkin.view.sketch.shown_pose import scene_of
-from compoundkin.view.sketch.sketch_labels import label_shapes, letters
-from compoundkin.view.sketch.sketches import ghost, layered, window_on
-from compoundkin.view.sketch.slide_shapes import Painter
 
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"
 FIRST = Path(__file__).parents[1] / "docs" / "index.md"
@@ -75,10 +74,10 @@ def workspace() -> ck.results.Picture:
     outlines = [ck.performance.workspace(robot, "P", modes=modes, cells=160).outer[0] for modes in (None, "all")]
     scene = scene_of(motion, None, None, 0)
     window = window_on(scene)
-    window = fitted(window, np.concatenate([window.at(outline) for outline in outlines]))
+    window = fitted_window(window, np.concatenate([window.at(outline) for outline in outlines]))
     painter = Painter(scene, window)
     sketch = layered(painter)
-    names = label_shapes(scene, placed(letters(painter), sketch, window.width, window.height))
+    names = label_shapes(scene, placed(point_letters(painter), sketch, window.width, window.height))
     wide, high = complex(window.width), complex(0.0, window.height)
     region, lens = (tuple(complex(z) for z in window.line(outline)) for outline in outlines)
     shapes = Polygon((0j, wide, wide + high, high), "paper"), Polyline(lens, "ray"), Polyline(region, "path")
@@ -91,10 +90,10 @@ def with_ghosts(motion: ck.results.Motion, *others: ck.results.Motion) -> ck.res
     window = window_on(shown, ghosts)
     painter = Painter(shown, window)
     sketch = layered(painter)
-    names = label_shapes(shown, placed(letters(painter), sketch, window.width, window.height))
+    names = label_shapes(shown, placed(point_letters(painter), sketch, window.width, window.height))
     wide, high = complex(window.width), complex(0.0, window.height)
     paper = Polygon((0j, wide, wide + high, high), "paper")
-    shapes = (paper, *(ghost(scene, window) for scene in ghosts), *sketch, *names)
+    shapes = (paper, *(ghost_shapes(scene, window) for scene in ghosts), *sketch, *names)
     return ck.results.Picture(shapes, window.width, window.height, motion.mechanism.title, window=window)
 
 

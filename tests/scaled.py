@@ -8,13 +8,19 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.model.elements import Drawn, Drive, Expectation, Friction, Gravity, Lead, Link, Load, Mass, Pretension
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.laws.time_tables import TimeTable
-from compoundkin.model.leads import CurvePath
-from compoundkin.model.profiles.given_profiles import DiscProfile, FormulaProfile, PointsProfile
+from compoundkin.model.laws.table_laws import TimeTable
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.loads.gravity import Gravity
+from compoundkin.model.loads.mass import Mass
+from compoundkin.model.loads.pretension import Pretension
+from compoundkin.model.prescribed_motion import PrescribedMotion
+from compoundkin.model.prescribed_paths import CurvePath
+from compoundkin.model.profiles.profile import DiscProfile, FormulaProfile, PointsProfile
 from compoundkin.model.profiles.synthesised import Synthesised
 
 # Lengths by the kind of their field; a number of teeth is declared as a length, for it may vary over designs too.
@@ -39,7 +45,7 @@ def scaled(mechanism: ck.Mechanism, factor: float) -> ck.Mechanism:
 def _item(item: Any, factor: float, is_length: bool) -> Any:
     if isinstance(item, Link | Drawn):
         return replace(item, points={k: None if p is None else p * factor for k, p in item.points.items()})
-    if isinstance(item, Lead) and item.point:
+    if isinstance(item, PrescribedMotion) and item.point:
         laws = {"x": _law(item.x, factor), "y": _law(item.y, factor)}
         return replace(item, **laws, along=None if item.along is None else _path(item.along, factor))
     if isinstance(item, Drive):

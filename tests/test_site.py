@@ -23,6 +23,7 @@ import compoundkin as ck
 from tests.figures import FIGURES, FOLDER
 from tests.view.test_notebooks import NOTEBOOKS, assert_it_ran
 
+pytestmark = pytest.mark.full
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = sorted(path.relative_to(DOCS) for path in (*DOCS.glob("*.md"), *DOCS.glob("notebooks/*.ipynb")))

@@ -9,13 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import dot
-from compoundkin.base.display import Shows
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, dot
+from compoundkin.base.display import DisplaysHtml
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.cam_follower import direction_of, pressure_angle, velocity_at
-from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 from compoundkin.model.profiles import Synthesised
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
@@ -26,7 +25,7 @@ LEFT = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class CamAnalysis(Shows):
+class CamAnalysis(DisplaysHtml):
     """A cam pair over a motion. Arrays are of the motion's shape, not a number where it is not assembled.
 
     Angles in radians. `pressure_angle` is from the direction in which the follower can move (the velocity of its
@@ -38,7 +37,7 @@ class CamAnalysis(Shows):
     """
 
     motion: Motion
-    pair: Profiled
+    pair: ProfileContact
     follower: str
     oscillates: bool | None  # None where the follower is not guided by a single pin or slide
     contact: Number
@@ -181,28 +180,30 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
 @checked
 def cam_pairs(motion: Motion) -> tuple[str, ...]:
     """Return the names of the pairs that can be analysed, in order."""
-    return tuple(pair.name for pair in motion.mechanism.written_pairs if as_profiled(pair))
+    return tuple(pair.name for pair in motion.mechanism.written_pairs if as_profile_contact(pair))
 
 
-def _pair_of(motion: Motion, name: str) -> Profiled:
+def _pair_of(motion: Motion, name: str) -> ProfileContact:
     known = {pair.name: pair for pair in motion.structure.pairs}
     if name not in known:
-        raise UnknownName(Problem(str(name), "there is no such pair", nearest(str(name), list(cam_pairs(motion)))))
-    pair = as_profiled(known[name])
+        raise UnknownName(Problem(str(name), "there is no such pair", suggestion(str(name), list(cam_pairs(motion)))))
+    pair = as_profile_contact(known[name])
     if pair is None:
-        raise InvalidInput(Problem(name, f"a {known[name].title} has no profile", nearest("", list(cam_pairs(motion)))))
+        raise InvalidInput(
+            Problem(name, f"a {known[name].title} has no profile", suggestion("", list(cam_pairs(motion))))
+        )
     if motion.order < 1:
         raise InvalidInput(Problem(name, "the motion has no velocities", "solve(..., order=1) or more"))
     return pair
 
 
-def _radius(pair: Profiled, s: Number) -> Number:
+def _radius(pair: ProfileContact, s: Number) -> Number:
     """Return the radius of curvature, positive where the profile is convex toward the follower."""
     with np.errstate(divide="ignore"):
         return 1.0 / (pair.outward * pair.curve.curvature(s))
 
 
-def _sliding(motion: Motion, pair: Profiled, place: Number, normal: Number) -> Number:
+def _sliding(motion: Motion, pair: ProfileContact, place: Number, normal: Number) -> Number:
     first, second = (velocity_at(motion.poses[name], place) for name in pair.members)
     return dot(second - first, 1j * normal)
 

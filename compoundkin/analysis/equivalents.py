@@ -22,7 +22,7 @@ from compoundkin.model.attributes import RATES
 from compoundkin.model.elements import Drive, Item, Link, drawn, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, slide
-from compoundkin.model.pairs.optional_answers import Osculation, osculation
+from compoundkin.model.pairs.contract import Osculation, osculation
 
 # A centre of curvature farther away than this many times the mechanism's size belongs to a straight profile.
 STRAIGHT = 1e8

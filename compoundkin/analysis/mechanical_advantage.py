@@ -10,8 +10,8 @@ import numpy as np
 from compoundkin.analysis.coupler.relative_motion import moving, relative_link, relative_point
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, dot
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import (
     Advantage,
@@ -22,7 +22,7 @@ from compoundkin.kinematics.derived.velocity_ratio import (
     rate_of,
     rate_of_link,
 )
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class TorquePort:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ForcePort(PrintsShort):
+class ForcePort(ShortRepr):
     """A force at a point of `link` in a direction (radians), against `on`.
 
     The direction is in the frame of `on`, a number or an array.
@@ -98,7 +98,7 @@ def _named(motion: Motion, name: str, where: str) -> PortRate:
     if tables:
         return rate_of(motion, tables[0], name)
     known = [known for known in dict.fromkeys((*motion.links, *motion.pairs, *motion.drives)) if known != FRAME]
-    raise UnknownName(Problem(where, f"there is no moving link, pair or driver {name!r}", nearest(name, known)))
+    raise UnknownName(Problem(where, f"there is no moving link, pair or driver {name!r}", suggestion(name, known)))
 
 
 def _angle(motion: Motion, angle: Any, where: str) -> Number:

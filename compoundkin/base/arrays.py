@@ -22,10 +22,10 @@ LONGEST, SHORTEST = 1e50, 1e-50
 # --- plane vectors ---
 
 
-def joined(x: Number, y: Number) -> Number:
+def complex_of(x: Number, y: Number) -> Number:
     """Join two parts to a complex number or array. This is twice as fast as ``x + 1j * y``, which converts both.
 
-    >>> joined(1.0, 2.0)
+    >>> complex_of(1.0, 2.0)
     (1+2j)
     """
     if not (isinstance(x, np.ndarray) or isinstance(y, np.ndarray)):
@@ -81,22 +81,24 @@ def real_product(a: Number, b: Number) -> Number:
     return (a * b).real
 
 
-def convolved(a: Sequence[Number], b: Sequence[Number], product: Callable[[Number, Number], Number]) -> Number:
+def convolution(a: Sequence[Number], b: Sequence[Number], product: Callable[[Number, Number], Number]) -> Number:
     """Return the sum of the products of a[0] b[-1], a[1] b[-2] ... a[-1] b[0]."""
     # products are not given names, so that NumPy may add to a large one in place
     if len(a) == 1:
         return product(a[0], b[0])
-    return product(a[0], b[-1]) + convolved(a[1:], b[:-1], product)
+    return product(a[0], b[-1]) + convolution(a[1:], b[:-1], product)
 
 
-def folded(a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]) -> Number:
+def symmetric_convolution(
+    a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]
+) -> Number:
     """Return the k-th coefficient of a product where a[i] b[j] equals a[j] b[i]."""
     half = (k + 1) // 2
     if k == 0:
         return product(a[0], b[0])
     if k % 2:
-        return convolved(a[:half], b[half : k + 1], product) * 2.0
-    return convolved(a[:half], b[half + 1 : k + 1], product) * 2.0 + product(a[half], b[half])
+        return convolution(a[:half], b[half : k + 1], product) * 2.0
+    return convolution(a[:half], b[half + 1 : k + 1], product) * 2.0 + product(a[half], b[half])
 
 
 # --- angles ---

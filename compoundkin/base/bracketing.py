@@ -11,14 +11,14 @@ from compoundkin.base.arrays import Number
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
-def bisected(
+def bisect_brackets(
     holds: Callable[[Number], Number], inside: Number, outside: Number, halvings: int, enough: float = 0.0
 ) -> tuple[Number, Number]:
     """Halve brackets so often, keeping something that `holds` at their first ends only.
 
     They end sooner where all are narrower than the part `enough` of their first end.
 
-    >>> inside, outside = bisected(lambda x: x * x < 2.0, np.array([0.0, 1.0]), np.array([3.0, 2.0]), 40)
+    >>> inside, outside = bisect_brackets(lambda x: x * x < 2.0, np.array([0.0, 1.0]), np.array([3.0, 2.0]), 40)
     >>> inside.round(9).tolist()
     [1.414213562, 1.414213562]
     """
@@ -59,7 +59,7 @@ def false_position(
     return place
 
 
-def least(
+def golden_section_minimum(
     f: Callable[[Number, Number], Number],
     low: Number,
     high: Number,
@@ -71,7 +71,7 @@ def least(
     `f(s, which)` gives the values of the functions `which` (a mask) at places; `going(values, widths)` says which
     brackets are worth more steps. The others stand still.
 
-    >>> where, value = least(lambda s, _: (s - 1.0) ** 2, np.zeros(1), np.full(1, 3.0), 60, lambda v, w: w > 1e-6)
+    >>> where, value = golden_section_minimum(lambda s, _: (s - 1.0) ** 2, np.zeros(1), np.full(1, 3.0), 60, lambda v, w: w > 1e-6)
     >>> where.round(6)
     array([1.])
     """
@@ -94,7 +94,7 @@ def least(
     return np.where(fa < fb, a, b), np.minimum(fa, fb)
 
 
-def greatest(
+def newton_maximum(
     rise: Callable[[Number, Number], tuple[Number, Number]],
     bounds: tuple[Number, Number, Number],
     last_step: float,
@@ -107,7 +107,7 @@ def greatest(
     bound is always reached. After one below the part `last_step` of the bounds, what is left is rounding.
     Source: W. H. Press et al., Numerical Recipes, 3rd ed., section 9.4, `rtsafe`.
 
-    >>> greatest(lambda s, _: (np.cos(s), -np.sin(s)), (np.zeros(1), np.ones(1), np.full(1, 2.0)), 1e-8, 60).round(9)
+    >>> newton_maximum(lambda s, _: (np.cos(s), -np.sin(s)), (np.zeros(1), np.ones(1), np.full(1, 2.0)), 1e-8, 60).round(9)
     array([1.57079633])
     """
     a: Number = bounds[0]

@@ -28,7 +28,7 @@ class StepLengths(NamedTuple):
     most: int
 
 
-class Taken(NamedTuple):
+class StepResult(NamedTuple):
     """The steps of some paths. Their lengths, whether they are good, and whether their paths have arrived."""
 
     length: Number
@@ -36,10 +36,10 @@ class Taken(NamedTuple):
     arrived: Number
 
 
-Step: TypeAlias = Callable[[Number, Number], Taken]
+StepFunction: TypeAlias = Callable[[Number, Number], StepResult]
 
 
-def follow(step: Step, alive: Number, lengths: StepLengths) -> Number:
+def trace_paths(step: StepFunction, alive: Number, lengths: StepLengths) -> Number:
     """Step along the paths that are `alive` until they arrive or fail. Return which arrived.
 
     `step(i, h)` tries one step of the paths `i` (indices), of the lengths `h` or less, and keeps the good ones.
@@ -48,8 +48,8 @@ def follow(step: Step, alive: Number, lengths: StepLengths) -> Number:
     >>> def step(i, h):
     ...     good = (t[i] + h < 0.5) | (i == 0)  # the second path ends half way
     ...     t[i] += np.where(good, h, 0.0)
-    ...     return Taken(h, good, t[i] >= 1.0)
-    >>> follow(step, np.ones(2, dtype=bool), StepLengths(0.125, 0.25, 1e-6, 1, 99)).tolist(), t.round(4).tolist()
+    ...     return StepResult(h, good, t[i] >= 1.0)
+    >>> trace_paths(step, np.ones(2, dtype=bool), StepLengths(0.125, 0.25, 1e-6, 1, 99)).tolist(), t.round(4).tolist()
     ([True, False], [1.125, 0.5])
     """
     alive, arrived = np.array(alive), np.zeros(len(alive), dtype=bool)
@@ -83,7 +83,7 @@ def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number,
     return x + step / 6 * (one + 2 * two + 2 * three + four)
 
 
-def corrected_across(system: System, guess: Number, across: Number, converged: float, steps: int) -> NewtonResult:
+def correct_in_hyperplane(system: System, guess: Number, across: Number, converged: float, steps: int) -> NewtonResult:
     """Solve d - 1 equations for d unknowns, in hyperplanes across a direction.
 
     The hyperplanes go through the guesses.

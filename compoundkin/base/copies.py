@@ -1,15 +1,17 @@
-"""Copies and pickles: of what an object was made, not of what was found since; functions that cannot be pickled."""
+"""Copies, pickles and comparison: dataclasses by their fields without caches, functions, nested values."""
 
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any, ClassVar, Self, TypeVar
 
+import numpy as np
+
 from compoundkin.base.errors import InvalidInput, Problem
 
-Made = TypeVar("Made")
+Copied = TypeVar("Copied")
 
 
 class CopiesFields:
@@ -20,7 +22,7 @@ class CopiesFields:
         return {field.name: getattr(self, field.name) for field in fields(own)}
 
 
-class HoldsFunction(CopiesFields):
+class CopiesFunction(CopiesFields):
     """A frozen dataclass with a Python function, which perhaps cannot be pickled."""
 
     held: ClassVar[str]  # the field with the function
@@ -42,7 +44,7 @@ class HoldsFunction(CopiesFields):
         return self
 
 
-def unchecked(item: Made, **changes: Any) -> Made:
+def unchecked(item: Copied, **changes: Any) -> Copied:
     """Return a copy of a frozen dataclass with other fields, unchecked.
 
     What was found of it since is found again.
@@ -51,3 +53,14 @@ def unchecked(item: Made, **changes: Any) -> Made:
     copied = object.__new__(type(item))
     copied.__dict__.update({field.name: getattr(item, field.name) for field in fields(own)}, **changes)
     return copied
+
+
+def nested_equal(a: Any, b: Any) -> bool:
+    """Return whether two nested values are equal, arrays element by element."""
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        return np.shape(a) == np.shape(b) and bool(np.array_equal(a, b))
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return list(a) == list(b) and all(nested_equal(a[k], b[k]) for k in a)
+    if isinstance(a, tuple | list) and isinstance(b, tuple | list):
+        return len(a) == len(b) and all(nested_equal(x, y) for x, y in zip(a, b, strict=True))
+    return bool(a == b)

@@ -1,7 +1,8 @@
-"""Objects that show themselves: a registry of ways, filled by what comes after them, and who asks it."""
+"""How objects are shown: display functions for notebooks, short texts, texts without hidden characters."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cached_property
@@ -12,55 +13,55 @@ from typing import Any
 import numpy as np
 
 # What can be asked for, and the function that answers, as "module:function": loaded when it is asked for.
-_WAYS: dict[str, str] = {}
+_DISPLAYS: dict[str, str] = {}
 
 
 def register(**ways: str) -> None:
     """Enter functions that show objects, each as ``module:function``."""
-    _WAYS.update(ways)
+    _DISPLAYS.update(ways)
 
 
-def way(name: str) -> Callable[..., Any]:
+def display_function(name: str) -> Callable[..., Any]:
     """Return a registered function; its module is loaded now."""
-    return loaded(_WAYS[name])
+    return import_function(_DISPLAYS[name])
 
 
-def loaded(function: str) -> Callable[..., Any]:
+def import_function(function: str) -> Callable[..., Any]:
     """Return the function that is written as ``module:function``; its module is loaded now."""
     module, _, name = function.partition(":")
     found: Callable[..., Any] = getattr(import_module(module), name)
     return found
 
 
-def counted(number: int, one: str, many: str = "") -> str:
+def count_phrase(number: int, one: str, many: str = "") -> str:
     """Say how many there are, in the singular where it is one.
 
-    >>> counted(1, "driver"), counted(2, "branch", "branches")
+    >>> count_phrase(1, "driver"), count_phrase(2, "branch", "branches")
     ('1 driver', '2 branches')
     """
     return f"{number} {one if number == 1 else many or one + 's'}"
 
 
-def few(texts: Sequence[str], most: int = 8) -> str:
+def abbreviated_list(texts: Sequence[str], most: int = 8) -> str:
     """Say some texts, and how many more there are.
 
-    >>> few(["A", "B"]), few(["A", "B", "C", "D"], 2)
+    >>> abbreviated_list(["A", "B"]), abbreviated_list(["A", "B", "C", "D"], 2)
     ('A, B', 'A, B and 2 more')
     """
     more = f" and {len(texts) - most} more" if len(texts) > most else ""
     return ", ".join(texts[:most]) + more
 
 
-class Shows:
+class DisplaysHtml:
     """What a notebook shows of an object: tables and pictures as HTML."""
 
     def _repr_html_(self) -> str | None:
         """As HTML; None where the text says it better, or where it would take long."""
-        made: str | None = way("html")(self)
+        made: str | None = display_function("html")(self)
         return made
 
 
-class ShowsPicture(Shows):
+class DisplaysPicture(DisplaysHtml):
     """An object that has a picture too, drawn once."""
 
     def _repr_svg_(self) -> str | None:
@@ -69,7 +70,7 @@ class ShowsPicture(Shows):
 
     @cached_property
     def _picture(self) -> str | None:
-        made: str | None = way("svg")(self)
+        made: str | None = display_function("svg")(self)
         return made
 
 
@@ -77,7 +78,7 @@ class ShowsPicture(Shows):
 _PRINTED, _OF_PARTS, _OF_ALL = 4, 80, 400
 
 
-class PrintsShort:
+class ShortRepr:
     """A dataclass that prints in short.
 
     It prints its arrays as their shapes, what is long as its length or its class.
@@ -88,7 +89,7 @@ class PrintsShort:
     def __repr__(self) -> str:
         told = ""
         for name in _parts(self):
-            part = f"{', ' if told else ''}{name}={short(getattr(self, name))}"
+            part = f"{', ' if told else ''}{name}={short_repr(getattr(self, name))}"
             if len(told) + len(part) > _OF_ALL:
                 return f"{type(self).__name__}({told}, ...)"
             told += part
@@ -102,21 +103,63 @@ def _parts(thing: Any) -> list[str]:
     return [name for name in getattr(thing, "__slots__", None) or vars(thing) if not name.startswith("_")]
 
 
-def short(value: Any) -> str:
+def short_repr(value: Any) -> str:
     """Print a value in a few words.
 
-    >>> short(np.zeros((2, 360))), short((1, 2)), short(range(9)), short(tuple(range(9)))
+    >>> short_repr(np.zeros((2, 360))), short_repr((1, 2)), short_repr(range(9)), short_repr(tuple(range(9)))
     ('array (2, 360)', '(1, 2)', 'range(0, 9)', '9 values')
-    >>> short(["word"] * 30), short(short)
+    >>> short_repr(["word"] * 30), short_repr(short_repr)
     ('list(...)', 'function(...)')
     """
     if isinstance(value, np.ndarray):
         return f"array {value.shape}"
     if isinstance(value, Mapping):
-        inside = ", ".join(f"{key}: {short(one)}" for key, one in islice(value.items(), _PRINTED + 1))
+        inside = ", ".join(f"{key}: {short_repr(one)}" for key, one in islice(value.items(), _PRINTED + 1))
         return f"{{{inside}}}" if len(value) <= _PRINTED and len(inside) < _OF_PARTS else f"{len(value)} entries"
     if type(value) is tuple:
-        inside = ", ".join(map(short, value[: _PRINTED + 1])) + ("," if len(value) == 1 else "")
+        inside = ", ".join(map(short_repr, value[: _PRINTED + 1])) + ("," if len(value) == 1 else "")
         return f"({inside})" if len(value) <= _PRINTED and len(inside) < _OF_PARTS else f"{len(value)} values"
     text = repr(value)
     return text if len(text) <= _OF_PARTS and " at 0x" not in text else f"{type(value).__name__}(...)"
+
+
+# Control characters but the ends of lines and tabulators, what reorders the text around it, halves of surrogate pairs.
+_HIDDEN = re.compile(
+    r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f"  # control characters
+    r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # bidirectional ones, as Unicode lists them
+    r"\ud800-\udfff]"  # surrogates
+)
+
+
+def hidden_character_problem(text: str) -> str:
+    r"""Return what is wrong with the characters of a text, or nothing.
+
+    >>> hidden_character_problem("crank"), hidden_character_problem("a\x1b[2Jb")
+    ('', 'it holds the control character U+001B')
+    """
+    found = None if text.isascii() and text.isprintable() else _HIDDEN.search(text)
+    if found is None:
+        return ""
+    code = ord(found[0])
+    kind = "half a surrogate pair," if 0xD800 <= code <= 0xDFFF else "the control character"
+    return f"it holds {kind} U+{code:04X}"
+
+
+def escaped_text(text: str) -> str:
+    r"""Return a text that shows all its characters.
+
+    >>> escaped_text("a\x1b[2Jb"), escaped_text("\u202egnp.exe")
+    ('a\\x1b[2Jb', '\\u202egnp.exe')
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return _HIDDEN.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
+
+
+def printable(text: str) -> str:
+    r"""Return a text with blanks for what does not print, ends of lines too.
+
+    >>> printable("four\x00bar\n")
+    'four bar '
+    """
+    return "".join(c if c.isprintable() else " " for c in text)

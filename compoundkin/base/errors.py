@@ -1,12 +1,15 @@
-"""What can go wrong, as one small tree of exceptions that say where, what and how to mend it."""
+"""Errors and warnings: one small tree of exceptions that say where a problem is and how to mend it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from threading import Lock
 from typing import Any
 
-from compoundkin.base.texts import written_out
+from compoundkin.base.display import escaped_text
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,7 @@ class Problem:
 
     def __str__(self) -> str:
         text = f"{self.where}: {self.what}" if self.where else self.what
-        return written_out(f"{text}; {self.remedy}" if self.remedy else text)
+        return escaped_text(f"{text}; {self.remedy}" if self.remedy else text)
 
 
 class CompoundkinError(Exception):
@@ -122,12 +125,12 @@ def warn(text: str, category: type[Warning]) -> None:
     warnings.warn(text, category, stacklevel=depth)
 
 
-def nearest(name: object, known: Sequence[str]) -> str:
+def suggestion(name: object, known: Sequence[str]) -> str:
     """Return the remedy for an unknown name. It is the closest known one, or the list of what there is.
 
-    >>> nearest("crnk", ["crank", "rod"])
+    >>> suggestion("crnk", ["crank", "rod"])
     "did you mean 'crank'?"
-    >>> nearest("x", ["crank", "rod"])
+    >>> suggestion("x", ["crank", "rod"])
     'known: crank, rod'
     """
     import difflib
@@ -136,3 +139,32 @@ def nearest(name: object, known: Sequence[str]) -> str:
     if close:
         return f"did you mean {close[0]!r}?"
     return f"known: {', '.join(known[:12])}{' ...' if len(known) > 12 else ''}" if known else "there is none"
+
+
+_lock = Lock()
+
+
+# Filters of warnings belong to the whole process: who comes first puts them up, who goes last takes them away.
+_inside: list[ExitStack] = []
+
+
+_count = [0]
+
+
+@contextmanager
+def suppress_pose_warnings() -> Iterator[None]:
+    """Keep warnings of unassembled poses and few digits still. Threads may do so side by side."""
+    with _lock:
+        _count[0] += 1
+        if _count[0] == 1:
+            _inside.append(ExitStack())
+            _inside[0].enter_context(warnings.catch_warnings())
+            for told in (UnassembledPoses, FewDigits):
+                warnings.simplefilter("ignore", told)
+    try:
+        yield
+    finally:
+        with _lock:
+            _count[0] -= 1
+            if not _count[0]:
+                _inside.pop().close()

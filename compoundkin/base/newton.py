@@ -27,7 +27,7 @@ class NewtonResult(NamedTuple):
     longest: Number
 
 
-def largest(step: Number, x: Number) -> Number:
+def largest_change(step: Number, x: Number) -> Number:
     """Return the largest change of any unknown."""
     return np.abs(step).max(axis=-1)
 
@@ -37,7 +37,7 @@ def newton(
     start: Number,
     converged: float,
     steps: int,
-    size: Callable[[Number, Number], Number] = largest,
+    size: Callable[[Number, Number], Number] = largest_change,
     limited: Callable[[Number], Number] | None = None,
 ) -> NewtonResult:
     """Solve square systems from many starts at once. It goes on until no step is larger than `converged`.
@@ -111,7 +111,7 @@ def chord_newton(
         if inverse is None or np.any(last > stop.chord) or np.any(~rested & (last > SLOW * before)):
             inverse = invert()
         step = inverse.times(residual)
-        before, last = last, largest_of([c * w for c, w in zip(step, weights, strict=True)])
+        before, last = last, elementwise_largest([c * w for c, w in zip(step, weights, strict=True)])
         if stop.longest < np.inf:
             share = np.minimum(1.0, stop.longest / last)
             step = [c * share for c in step]
@@ -120,19 +120,19 @@ def chord_newton(
         exact = (last**2 <= EXACT * before) | (last >= before)
         rested = rested | ((last <= stop.converged) & exact)
         # a residual that was small enough has become smaller by such a step
-        if rested.all() and np.all(largest_of(residual) <= stop.closed):
+        if rested.all() and np.all(elementwise_largest(residual) <= stop.closed):
             return found, rested
         residual, invert = system(found)
-        closed = rested & (largest_of(residual) <= stop.closed) if rested.any() else rested
+        closed = rested & (elementwise_largest(residual) <= stop.closed) if rested.any() else rested
         if not np.any(~closed & np.isfinite(last)):
             break
-    return found, (rested | (last <= NOISE)) & (largest_of(residual) <= stop.closed)
+    return found, (rested | (last <= NOISE)) & (elementwise_largest(residual) <= stop.closed)
 
 
-def largest_of(values: list[Number]) -> Number:
+def elementwise_largest(values: list[Number]) -> Number:
     """Return the largest size of any of some arrays, entry by entry.
 
-    >>> largest_of([np.array([1.0, -3.0]), -2.0]).tolist()
+    >>> elementwise_largest([np.array([1.0, -3.0]), -2.0]).tolist()
     [2.0, 3.0]
     """
     found = np.abs(values[0])
@@ -141,7 +141,7 @@ def largest_of(values: list[Number]) -> Number:
     return found
 
 
-class Rest(NamedTuple):
+class StoppingRule(NamedTuple):
     """When least-squares steps come to rest; all sizes are of the largest entry.
 
     `exact`: a residual or step that is rounding, so that none could be less. `rounding`: where a step gains nothing
@@ -156,7 +156,7 @@ class Rest(NamedTuple):
     gain: float
 
 
-class Fitted(NamedTuple):
+class LeastSquaresResult(NamedTuple):
     """The best that least-squares steps led to. It has its largest residual, and how many steps it took."""
 
     x: Number
@@ -165,20 +165,20 @@ class Fitted(NamedTuple):
 
 
 def gauss_newton(
-    system: System, step_of: Callable[[Number, Number], Number], start: Number, steps: int, rest: Rest
-) -> Fitted:
+    system: System, step_of: Callable[[Number, Number], Number], start: Number, steps: int, rest: StoppingRule
+) -> LeastSquaresResult:
     """Reduce the residual of one system, of any rank, by Gauss's and Newton's steps. Keep the best.
 
     `step_of(matrix, right)` is the least solution of the linear system, as far as it has one. A start whose residual is
     rounding already is taken as it is, with no step.
 
     >>> circle = lambda x: (np.array([x @ x - 1.0]), 2.0 * x[None])
-    >>> rest = Rest(1e-15, 1e-12, 0.5, 10, 0.9)
+    >>> rest = StoppingRule(1e-15, 1e-12, 0.5, 10, 0.9)
     >>> found = gauss_newton(circle, lambda m, r: np.linalg.lstsq(m, r)[0], np.array([3.0, 4.0]), 20, rest)
     >>> found.x.round(12).tolist()
     [0.6, 0.8]
     """
-    x, best, before = start, Fitted(start, np.inf, 0), list[float]()
+    x, best, before = start, LeastSquaresResult(start, np.inf, 0), list[float]()
     for k in range(steps):
         residual, matrix = system(x)
         worst = float(np.max(np.abs(residual), initial=0.0))
@@ -187,7 +187,7 @@ def gauss_newton(
             break
         stalls = worst > best.residual / 2.0
         if worst < best.residual:
-            best = Fitted(x, worst, k)
+            best = LeastSquaresResult(x, worst, k)
         if worst <= rest.exact or (worst <= rest.rounding and (stalls or not k)):
             break
         step = step_of(matrix, -residual)

@@ -7,7 +7,7 @@ from math import factorial
 from typing import NamedTuple
 
 from compoundkin.base.arrays import Number, entry, whole_turns
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import Series, constant
 
 
@@ -32,7 +32,7 @@ class End(NamedTuple):
         return self.direction if isinstance(self.direction, Series) else constant(self.direction)
 
 
-class Pose(PrintsShort):
+class Pose(ShortRepr):
     """A link's pose: origin `z` and orientation `u`, a unit vector. A point p of the link is at ``z + u p``.
 
     `theta` is the angle of `u` where full turns are counted, None where only the orientation is known.

@@ -6,28 +6,29 @@ constant of any order; this is what keeps link lengths and the frame free of cos
 that meet have the same length. Adding the number 0 or multiplying by the number 1 gives the same object back;
 it costs nothing, and two links of one orientation are known to share it.
 
-Source: A. Griewank and A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, section 13.2.
+Source: A. Griewank and A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, sections 13.2 and 13.3.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import factorial
 from operator import mul
 
 import numpy as np
 
 from compoundkin.base.arrays import (
+    PLAIN,
     Number,
-    convolved,
+    complex_of,
+    convolution,
     cross,
     dot,
-    folded,
     is_number,
-    joined,
     negative,
     real_product,
     reciprocal,
+    symmetric_convolution,
 )
 
 __all__ = ["Number", "Series", "as_series", "constant"]
@@ -86,7 +87,7 @@ class Series:
         if len(self.c) == 1:
             return Series(b)._scaled(self.c[0])
         if other is self:
-            return Series(tuple([folded(b, b, k, mul) for k in range(len(b))]))
+            return Series(tuple([symmetric_convolution(b, b, k, mul) for k in range(len(b))]))
         return self._bilinear(other, mul)
 
     __rmul__ = __mul__
@@ -98,7 +99,7 @@ class Series:
             return self._scaled(inverse)
         q = [a[0] * inverse]
         for k in range(1, len(b)):
-            carried = convolved(b[1 : k + 1], q, mul)
+            carried = convolution(b[1 : k + 1], q, mul)
             q.append((a[k] - carried) * inverse if k < len(a) else carried * -inverse)
         return Series(tuple(q))
 
@@ -107,7 +108,7 @@ class Series:
         q = [reciprocal(b[0])]
         minus = negative(q[0])
         for k in range(1, len(b)):
-            q.append(convolved(b[1 : k + 1], q, mul) * minus)
+            q.append(convolution(b[1 : k + 1], q, mul) * minus)
         return Series(tuple(q))._scaled(other)
 
     def conj(self) -> Series:
@@ -135,7 +136,7 @@ class Series:
     def abs2(self) -> Series:
         """Return the squared length of a planar vector."""
         back = [x.conjugate() for x in self.c[: (len(self.c) + 1) // 2]]
-        return Series(tuple([folded(back, self.c, k, real_product) for k in range(len(self.c))]))
+        return Series(tuple([symmetric_convolution(back, self.c, k, real_product) for k in range(len(self.c))]))
 
     def sqrt(self) -> Series:
         """Return the positive square root; NaN where the leading coefficient is negative."""
@@ -144,7 +145,7 @@ class Series:
         if len(a) > 1:
             half = 0.5 / root[0]
             for k in range(1, len(a)):
-                root.append((a[k] - convolved(root[1:], root[1:], mul) if k > 1 else a[k]) * half)
+                root.append((a[k] - convolution(root[1:], root[1:], mul) if k > 1 else a[k]) * half)
         return Series(tuple(root))
 
     def unit(self) -> Series:
@@ -157,7 +158,7 @@ class Series:
         >>> Series((0.0, 2.0, 0.0)).turn().c
         ((1+0j), 2j, (-2+0j))
         """
-        out = [joined(np.cos(self.c[0]), np.sin(self.c[0]))]
+        out = [complex_of(np.cos(self.c[0]), np.sin(self.c[0]))]
         rates = self.c
         for k in range(1, len(rates)):
             terms = [(1j * j / k * rates[j]) * out[k - j] for j in range(1, k + 1) if not is_number(rates[j], 0)]
@@ -196,7 +197,7 @@ class Series:
             return Series(tuple([product(x, b[0]) for x in a]))
         if len(a) == 1:
             return Series(tuple([product(a[0], y) for y in b]))
-        return Series(tuple([convolved(a[: k + 1], b[: k + 1], product) for k in range(len(a))]))
+        return Series(tuple([convolution(a[: k + 1], b[: k + 1], product) for k in range(len(a))]))
 
     def __repr__(self) -> str:
         return f"Series({self.c!r})"
@@ -214,3 +215,54 @@ def as_series(value: Series | Number) -> Series:
 
 def _coefficients(value: Series | Number) -> tuple[Number, ...]:
     return value.c if isinstance(value, Series) else (value,)
+
+
+def compose_series(coefficients: Sequence[Number], s: Series) -> Series:
+    """Return the series C(s(t)) by Horner's rule.
+
+    `coefficients` are those of C at the leading coefficient of s; as many as `s` has are used.
+
+    >>> compose_series((4.0, 4.0, 1.0), Series((2.0, 1.0, 0.0))).c  # the square of 2 + t
+    (4.0, 4.0, 1.0)
+    """
+    order = s.order
+    result: tuple[Number, ...] = (coefficients[order],)
+    for k in range(order - 1, -1, -1):
+        # s - s(0) is t times a series, so that every step inwards needs one order less
+        result = (coefficients[k], *(Series(s.c[1 : order - k + 1]) * Series(result)).c)
+    return Series(result)
+
+
+def implicit_series(start: Number, order: int, slope: Number, residual: Callable[[Series], Series]) -> Series:
+    """Return the series with this leading coefficient that makes `residual` zero, order by order.
+
+    `slope` is the derivative of the residual by s at `start`; the coefficients are not finite where it is zero.
+
+    >>> implicit_series(2.0, 2, 4.0, lambda s: s * s - Series((4.0, 4.0, 2.0)[: s.order + 1])).c  # root of 4 + 4 t + 2 t^2
+    (2.0, 1.0, 0.25)
+    """
+    found = [start]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for k in range(1, order + 1):
+            found.append(residual(Series((*found, 0.0))).c[k] * -np.divide(1.0, slope))
+    return Series(tuple([float(x) if isinstance(x, PLAIN) else x for x in found]))
+
+
+def derivative_coefficients(coefficients: tuple[Number, ...]) -> tuple[Number, ...]:
+    """Return the Taylor coefficients of the derivative.
+
+    >>> derivative_coefficients((4.0, 4.0, 1.0))
+    (4.0, 2.0)
+    """
+    return tuple([c * k for k, c in enumerate(coefficients)])[1:]
+
+
+def planar_series(x: Series, y: Series) -> Series:
+    """Return the planar vector with the (real) components x and y.
+
+    >>> planar_series(Series((1.0, 2.0)), Series((3.0, 4.0))).c
+    ((1+3j), (2+4j))
+    """
+    if len(x.c) == len(y.c):
+        return Series(tuple([complex_of(a, b) for a, b in zip(x.c, y.c, strict=True)]))
+    return x + y * 1j

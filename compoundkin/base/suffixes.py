@@ -39,12 +39,12 @@ _OF_FILES: tuple[Kind, ...] = ("mechanism", "study")
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 
 
-def form_of(kind: Kind, path: str | os.PathLike[str]) -> str:
+def file_format(kind: Kind, path: str | os.PathLike[str]) -> str:
     """Return the form that a file's suffix tells. Raises InvalidInput where such a thing is not saved so.
 
-    >>> form_of("animation", "six-bar.GIF"), form_of("page", "six-bar")
+    >>> file_format("animation", "six-bar.GIF"), file_format("page", "six-bar")
     ('gif', 'html')
-    >>> form_of("plot", "a.gif")
+    >>> file_format("plot", "a.gif")
     Traceback (most recent call last):
     compoundkin.base.errors.InvalidInput: a.gif: a plot is not saved as '.gif', \
 an animation is; plots end in .png, .svg, .pdf
@@ -52,14 +52,18 @@ an animation is; plots end in .png, .svg, .pdf
     suffix = suffix_of(path)
     form = SUFFIXES[kind].get(suffix) if suffix else WITHOUT.get(kind)
     if form is None:
-        what = f"{_one(kind)} is not saved as {suffix!r}{_others(suffix)}" if suffix else "the file has no suffix"
-        raise InvalidInput(Problem(str(path), what, _ends(kind)))
+        what = (
+            f"{_with_article(kind)} is not saved as {suffix!r}{_other_kinds(suffix)}"
+            if suffix
+            else "the file has no suffix"
+        )
+        raise InvalidInput(Problem(str(path), what, _suffix_phrase(kind)))
     return form
 
 
-def everything() -> str:
+def all_suffixes() -> str:
     """Return what can be saved as what, in words."""
-    return "; ".join(map(_ends, SUFFIXES))
+    return "; ".join(map(_suffix_phrase, SUFFIXES))
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:
@@ -82,27 +86,27 @@ def alternatives(kind: Kind) -> str:
     >>> alternatives("animation")
     '.gif, .mp4 or .svg'
     """
-    *most, last = _told(kind)
+    *most, last = _preferred_suffixes(kind)
     return f"{', '.join(most)} or {last}"
 
 
-def _told(kind: Kind) -> list[str]:
+def _preferred_suffixes(kind: Kind) -> list[str]:
     """The first suffix of each form."""
     return [suffix_for(kind, form) for form in dict.fromkeys(SUFFIXES[kind].values())]
 
 
-def _ends(kind: Kind) -> str:
+def _suffix_phrase(kind: Kind) -> str:
     plural = f"{kind} files" if kind in _OF_FILES else f"{kind}s"
-    return f"{plural} end in {', '.join(_told(kind))}"
+    return f"{plural} end in {', '.join(_preferred_suffixes(kind))}"
 
 
-def _others(suffix: str) -> str:
+def _other_kinds(suffix: str) -> str:
     """What else is saved with a suffix."""
-    *most, last = [_one(kind) for kind in SUFFIXES if suffix in SUFFIXES[kind]] or [""]
+    *most, last = [_with_article(kind) for kind in SUFFIXES if suffix in SUFFIXES[kind]] or [""]
     if most:
         return f", {', '.join(most)} and {last} are"
     return f", {last} is" if last else ""
 
 
-def _one(kind: Kind) -> str:
+def _with_article(kind: Kind) -> str:
     return f"{'an' if kind.startswith('a') else 'a'} {kind}"

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from compoundkin.base.arrays import Number, cross, dot, is_number
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import Pose
 
 
-class Wrench(PrintsShort):
+class Wrench(ShortRepr):
     """A force (complex) and its moment about the world's origin.
 
     Both are numbers or arrays over designs and poses.

@@ -43,7 +43,7 @@ VERBS = {
 # Verbs whose file has another name: that of a word of Python, or of a file in the room of what they ask for.
 _FILES = {
     **{"compare": "comparison_command", "forces": "mechanism_forces", "import": "import_command"},
-    **{"study": "study_command", "tolerance": "tolerance_command"},
+    **{"open": "report", "study": "study_command", "tolerance": "tolerance_command"},
 }
 
 EPILOG = """\b
@@ -74,7 +74,8 @@ class Verbs(click.Group):
         """Return the command of a verb."""
         if cmd_name not in VERBS:
             return None
-        command: click.Command = import_module(f"compoundkin.cli.{_FILES.get(cmd_name, cmd_name)}").command
+        file = import_module(f"compoundkin.cli.{_FILES.get(cmd_name, cmd_name)}")
+        command: click.Command = file.open_command if cmd_name == "open" else file.command
         return command
 
     def resolve_command(
@@ -82,9 +83,9 @@ class Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the command that the arguments name; an unknown one is told the nearest."""
         if args and args[0] not in VERBS and not args[0].startswith("-"):
-            from compoundkin.base.errors import nearest
+            from compoundkin.base.errors import suggestion
 
-            raise click.UsageError(f"there is no command {args[0]!r}; {nearest(args[0], list(VERBS))}", ctx)
+            raise click.UsageError(f"there is no command {args[0]!r}; {suggestion(args[0], list(VERBS))}", ctx)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

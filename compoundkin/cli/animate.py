@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives
-from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, solved_at
-from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
-from compoundkin.cli.progress import counting
-from compoundkin.cli.shell import put, say
-from compoundkin.cli.solve import explained
+from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, solve_motion_at
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
+from compoundkin.cli.shell import counting, put, say
+from compoundkin.cli.solve import explain_gaps
 
 if TYPE_CHECKING:
-    from compoundkin.base.series import Number
+    from compoundkin.base.arrays import Number
     from compoundkin.structure import Structure
 
 # What says where drivers go; without any of these they go through their own range.
@@ -60,9 +59,9 @@ def command(file: str, path: str | None, **asked: Any) -> int:
 
     if path is not None:
         ready_for(path)
-    structure = decompose(loaded(file))
+    structure = decompose(load_mechanism(file))
     order = 2 if asked["order"] is None else asked["order"]
-    motion = solved_at(structure, _driven(structure, asked), {**asked, "order": order})
+    motion = solve_motion_at(structure, _driver_values(structure, asked), {**asked, "order": order})
     animation = animate(motion, **{key: asked[key] for key in PASSED_ON})
     if path is None:
         put(animation.svg)
@@ -70,16 +69,16 @@ def command(file: str, path: str | None, **asked: Any) -> int:
         with counting("drawing", "frames") as progress:
             animation.save(path, progress)
         say(f"Wrote {path}.")
-    return 0 if motion.assembled.all() else explained(motion)
+    return 0 if motion.assembled.all() else explain_gaps(motion)
 
 
-def _driven(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
+def _driver_values(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
     """The values of the drivers that are asked for, else the mechanism's own range, finely enough to be shown."""
     from compoundkin.cli import typed_values
     from compoundkin.view.animation.animation import finer_values
-    from compoundkin.view.sketch.shown_pose import solved_over
+    from compoundkin.view.sketch.picture_options import solved_over
 
     if any(asked[key] not in (None, ()) for key in DRIVEN_BY):
-        return typed_values.of_drivers(structure, asked)
+        return typed_values.read_driver_values(structure, asked)
     own = solved_over(structure)
     return (finer_values(own) if own is not None else None) or {}

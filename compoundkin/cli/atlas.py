@@ -29,7 +29,7 @@ def command(
 
     Each has its number, name, links by their numbers of pairs, symmetries, inversions, graph6 and pairs.
     """
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.view.report.atlas_sections import atlas_report
 
     with working("listing chains"):

@@ -23,13 +23,13 @@ Examples:
 @click.pass_context
 def command(ctx: click.Context) -> int:
     """List, show or copy the shipped mechanisms; their names work wherever a file does."""
-    return 0 if ctx.invoked_subcommand else listed()
+    return 0 if ctx.invoked_subcommand else print_catalog()
 
 
 @command.command("list")
 def list_() -> int:
     """List the names and titles (as `catalog` alone does)."""
-    return listed()
+    return print_catalog()
 
 
 @command.command()
@@ -51,7 +51,7 @@ def copy(name: str, destination: str | None, force: bool) -> int:
 
     A name that ends in .json becomes a JSON file, without the comments.
     """
-    from compoundkin.base.suffixes import form_of
+    from compoundkin.base.suffixes import file_format
     from compoundkin.cli.file_options import write_new
     from compoundkin.files.mechanism_files import encoded, load
     from compoundkin.files.shipped_mechanisms import path
@@ -59,14 +59,14 @@ def copy(name: str, destination: str | None, force: bool) -> int:
     source = path(name)
     target = Path(destination or ".")
     target = target / source.name if target.is_dir() else target
-    form = form_of("mechanism", target)
-    content = source.read_bytes() if form == form_of("mechanism", source) else encoded(load(source), form, target)
+    form = file_format("mechanism", target)
+    content = source.read_bytes() if form == file_format("mechanism", source) else encoded(load(source), form, target)
     write_new(target, content, force)
     say(f"Wrote {target}; see it with: compoundkin report {target}")
     return 0
 
 
-def listed() -> int:
+def print_catalog() -> int:
     """Print the names and titles."""
     from compoundkin.files.shipped_mechanisms import names, path
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.drive_options import AT, pose_options, solved_at
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.drive_options import AT, pose_options, solve_motion_at
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
-from compoundkin.cli.structure import unsolvable
+from compoundkin.cli.structure import report_unsolvable
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -47,22 +47,22 @@ def command(
     from compoundkin.view.report.motion_report import centres_report
     from compoundkin.view.report.report_data import NOT_SOLVED
 
-    structure = decompose(loaded(file))
+    structure = decompose(load_mechanism(file))
     if structure.faults:
         put_report(report(structure), form, path)
-        return unsolvable(len(structure.faults))
+        return report_unsolvable(len(structure.faults))
     made = Report(structure.mechanism.title, (), NOT_SOLVED, structure)
     if at or not derivation:
-        made = centres_report(solved_at_pose(structure, at, asked), design)
+        made = centres_report(solve_pose(structure, at, asked), design)
     if derivation:
         made = replace(made, sections=(derivation_section(structure), *made.sections))
     put_report(made, form, path)
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
 
 
-def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
+def solve_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
     """Return the motion at one pose, with velocities. Raises InvalidInput for values that do not fit the drivers."""
     from compoundkin.cli import typed_values
 
-    driven = typed_values.of_pose(structure, at, option)
-    return solved_at(structure, driven, {"accelerations": (), "outputs": (), "order": 1, **asked})
+    driven = typed_values.read_pose(structure, at, option)
+    return solve_motion_at(structure, driven, {"accelerations": (), "outputs": (), "order": 1, **asked})

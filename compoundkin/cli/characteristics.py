@@ -6,10 +6,10 @@ from typing import Any
 
 import click
 
-from compoundkin.cli.drive_options import DESIGN, drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.drive_options import DESIGN, drive_options, solve_motion
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
-from compoundkin.cli.structure import unsolvable
+from compoundkin.cli.structure import report_unsolvable
 
 
 @click.command(
@@ -44,16 +44,16 @@ def command(
     between the poses too. Outputs are those of --output, or of the file. Exit code 3: some poses cannot be assembled;
     the figures are then of those that can.
     """
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
-    from compoundkin.view.report.performance_report import characteristics_report
+    from compoundkin.view.report.performance_section import characteristics_report
 
-    structure = decompose(loaded(file))
+    structure = decompose(load_mechanism(file))
     if structure.faults:
         put_report(report(structure), form, path)
-        return unsolvable(len(structure.faults))
-    motion = solved(structure, asked)
+        return report_unsolvable(len(structure.faults))
+    motion = solve_motion(structure, asked)
     with working("finding extremes"):
         made = characteristics_report(motion, asked["outputs"], design, dwell, straight)
     put_report(made, form, path)

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.drive_options import drive_options, solve_motion
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
-from compoundkin.cli.structure import unsolvable
+from compoundkin.cli.structure import report_unsolvable
 
 if TYPE_CHECKING:
     from compoundkin.view.report import Report
@@ -32,16 +32,16 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     Outlines of links are compared too. Exit code 3: some poses cannot be assembled; 4: a check failed, or links touch
     by their outlines, and the pair or link, its group and the pose where it is worst are named.
     """
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
     from compoundkin.view.report.motion_report import check_report
 
-    structure = decompose(loaded(file))
+    structure = decompose(load_mechanism(file))
     if structure.faults:
         put_report(report(structure), form, path)
-        return unsolvable(len(structure.faults))
-    motion = solved(structure, asked)
+        return report_unsolvable(len(structure.faults))
+    motion = solve_motion(structure, asked)
     with working("checking"):
         made = check_report(motion)
     put_report(made, form, path)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -48,15 +48,15 @@ def command(
     On a circuit the mechanism gets from any configuration to any other without being taken apart. Limit positions are
     told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.
     """
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.kinematics.solution import solving_order_of
     from compoundkin.view.report.configurations_section import circuits_report
 
-    structure = solving_order_of(loaded(file)).structure
+    structure = solving_order_of(load_mechanism(file)).structure
     fixed = _fixed(structure, at)
     with working("following all circuits"):
-        made = circuits_report(circuits(structure, driver, fixed, between=range_of(structure, driver, start, stop)))
+        made = circuits_report(circuits(structure, driver, fixed, between=driver_range(structure, driver, start, stop)))
     put_report(made, form, path)
     return 0
 
@@ -66,10 +66,10 @@ def _fixed(structure: Structure, at: Sequence[str]) -> dict[str, float]:
     from compoundkin.cli import typed_values
 
     named = {text.rpartition("=")[0] for text in at}
-    return {name: value for name, value in typed_values.of_pose(structure, at).items() if name in named} if at else {}
+    return {name: value for name, value in typed_values.read_pose(structure, at).items() if name in named} if at else {}
 
 
-def range_of(
+def driver_range(
     structure: Structure, driver: str | None, start: float | None, stop: float | None
 ) -> tuple[float, float] | None:
     """Return the range of the driver, in radians or lengths."""

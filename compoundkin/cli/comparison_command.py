@@ -7,7 +7,7 @@ from math import isnan
 import click
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.cli.file_options import complete_mechanism, loaded, put_report, report_options
+from compoundkin.cli.file_options import complete_mechanism, load_mechanism, put_report, report_options
 from compoundkin.cli.shell import FAILED, say
 
 
@@ -33,11 +33,11 @@ def command(one: str, other: str, tolerance: float | None, form: str | None, pat
     """
     from compoundkin.analysis.comparison.comparison_findings import TOLERANCE
     from compoundkin.analysis.comparison.comparison_of_mechanisms import compare
-    from compoundkin.view.report.comparison_report import comparison_report
+    from compoundkin.view.report.study_reports import comparison_report
 
     if tolerance is not None and isnan(tolerance):
         raise InvalidInput(Problem("--tolerance", "nan is no number", "give a part of the size, such as 1e-4"))
-    found = compare(loaded(one), loaded(other))
+    found = compare(load_mechanism(one), load_mechanism(other))
     put_report(comparison_report(found), form, path)
     allowed = TOLERANCE if tolerance is None else tolerance
     if found.within(allowed):

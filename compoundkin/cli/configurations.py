@@ -7,7 +7,7 @@ import warnings
 import click
 
 from compoundkin.cli.drive_options import AT
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
 
 
 @click.command(
@@ -30,14 +30,14 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
 
     from compoundkin.base.errors import UnassembledPoses
     from compoundkin.cli import typed_values
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.solution import solving_order_of
     from compoundkin.view.report.configurations_section import configurations_report
 
-    structure = solving_order_of(loaded(file)).structure
-    driven = typed_values.of_pose(structure, at)
+    structure = solving_order_of(load_mechanism(file)).structure
+    driven = typed_values.read_pose(structure, at)
     with working("finding all configurations"):
         made = configurations_report(configurations(structure, driven))
     with warnings.catch_warnings():

@@ -7,10 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.drive_options import ARROWS, LABELS, PATHS, VECTORS, pose_options, solved_at
-from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
-from compoundkin.cli.force_options import FORCE_PICTURES, force_options, picture_of_forces, wanted_of_forces
+from compoundkin.base.suffixes import alternatives, file_format
+from compoundkin.cli.drive_options import (
+    ARROWS,
+    FORCE_PICTURES,
+    LABELS,
+    PATHS,
+    VECTORS,
+    force_options,
+    force_picture,
+    has_force_picture,
+    pose_options,
+    solve_motion_at,
+)
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
 from compoundkin.cli.shell import put, say
 
 if TYPE_CHECKING:
@@ -92,8 +102,8 @@ def command(file: str, path: str | None, **asked: Any) -> None:
     from compoundkin.structure import decompose
 
     if path is not None:
-        form_of("picture", path)
-    picture = _picture(decompose(loaded(file)), asked)
+        file_format("picture", path)
+    picture = _picture(decompose(load_mechanism(file)), asked)
     if path is None:
         put(picture.svg)
     else:
@@ -105,23 +115,25 @@ def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
     """The picture asked for; raises InvalidInput for options that do not go together."""
     from compoundkin.view.sketch import draw
 
-    _fitting(asked)
+    _check_options(asked)
     if asked["view"]:
         return draw(structure, kind=asked["view"], size=asked["size"])
     for kind in (kind for kind in ASSEMBLED if asked[kind]):
-        return draw(structure, _values(structure, asked["at"], kind), kind=kind, **_words(asked, "labels", "size"))
+        return draw(
+            structure, _values(structure, asked["at"], kind), kind=kind, **_chosen_options(asked, "labels", "size")
+        )
     shown, at = _motion(structure, asked)
-    words = _words(asked, "design", "size")
-    if wanted_of_forces(asked):
-        return picture_of_forces(shown, at, asked, words)
+    words = _chosen_options(asked, "design", "size")
+    if has_force_picture(asked):
+        return force_picture(shown, at, asked, words)
     if asked["polygon"]:
         return draw(shown, at, kind="polygon", vectors=asked["polygon"], **words)
     if asked["construction"] is not None:
         return draw(shown, at, kind="construction", link=asked["construction"], **words)
-    return draw(shown, at, **words, **_words(asked, *OF_SKETCH))
+    return draw(shown, at, **words, **_chosen_options(asked, *OF_SKETCH))
 
 
-def _words(asked: Mapping[str, Any], *names: str) -> dict[str, Any]:
+def _chosen_options(asked: Mapping[str, Any], *names: str) -> dict[str, Any]:
     return {name: asked[name] for name in names}
 
 
@@ -131,12 +143,12 @@ def _values(structure: Structure, given: Sequence[str], kind: str) -> dict[str, 
 
     if not given:
         return None
-    found = typed_values.of_pose(structure, given)
+    found = typed_values.read_pose(structure, given)
     named = {text.rpartition("=")[0] for text in given}
     return found if kind == "configurations" else {name: value for name, value in found.items() if name in named}
 
 
-def _fitting(asked: Mapping[str, Any]) -> None:
+def _check_options(asked: Mapping[str, Any]) -> None:
     from compoundkin.base.errors import InvalidInput, Problem
 
     instead = [option for option, name in INSTEAD.items() if asked[name] not in (None, False)]
@@ -156,10 +168,10 @@ def _fitting(asked: Mapping[str, Any]) -> None:
 def _motion(structure: Structure, asked: Mapping[str, Any]) -> tuple[Motion | Structure, dict[str, float] | None]:
     """The motion over the drivers' own ranges, and the pose in it; the structure where it cannot be solved."""
     from compoundkin.cli import typed_values
-    from compoundkin.view.sketch.shown_pose import solved_over
+    from compoundkin.view.sketch.picture_options import solved_over
 
-    at = typed_values.of_pose(structure, asked["at"]) if asked["at"] else None
+    at = typed_values.read_pose(structure, asked["at"]) if asked["at"] else None
     own = solved_over(structure.mechanism)
     if own is None or not (asked["speeds"] or asked["modes"]):
         return (structure if own is None else own), at
-    return solved_at(own.structure, {}, {"accelerations": (), "outputs": (), "order": 2, **asked}), at
+    return solve_motion_at(own.structure, {}, {"accelerations": (), "outputs": (), "order": 2, **asked}), at

@@ -1,4 +1,4 @@
-"""The options that drive a mechanism and those of its sketch, the motion they ask for, and estimates of a pose."""
+"""Options that drive a mechanism, show its sketch and its forces; the motion and the forces that they define."""
 
 from __future__ import annotations
 
@@ -12,24 +12,39 @@ from compoundkin.cli.shell import say
 from compoundkin.model.attributes import ACCELERATION, VELOCITY
 
 if TYPE_CHECKING:
+    from compoundkin.dynamics.forces import Forces
     from compoundkin.kinematics import Motion
     from compoundkin.structure import Structure
+    from compoundkin.view.sketch import Picture
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+
 SPEED = click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
                      help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).")  # fmt: skip
+
+
 SECOND_RATE = click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
                            help="Its second rate in rad/s^2 or length/s^2.")  # fmt: skip
+
+
 MODE = click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
                     help="Assembly mode, +1 or -1, of the group with this link.")  # fmt: skip
+
+
 DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
                       help="Which one, where dimensions are arrays.")  # fmt: skip
+
+
 AT = click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
                   help="The pose: a driver's value, degrees or length; the first of its range "
                   "if left out.")  # fmt: skip
+
+
 ORDER = click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
                      "otherwise what the outputs need, at least 2.")  # fmt: skip
+
+
 # How the options are called on the command line, by the names of their values.
 OPTIONS: tuple[Any, ...] = (
     click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
@@ -44,11 +59,17 @@ OPTIONS: tuple[Any, ...] = (
     SPEED,
     SECOND_RATE,
     MODE,
-    click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: names(given),
+    click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: split_names(given),
                  help="Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
 )  # fmt: skip
+
+
 VECTORS = (VELOCITY, ACCELERATION)
+
+
 ARROWS = click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
+
+
 LABELS = click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
 
 
@@ -71,49 +92,49 @@ def pose_options(command: F) -> F:
     return command
 
 
-def names(given: Sequence[str]) -> tuple[str, ...]:
+def split_names(given: Sequence[str]) -> tuple[str, ...]:
     """Return names given one by one or with commas between them.
 
-    >>> names(["G.x,G.y", "bar"])
+    >>> split_names(["G.x,G.y", "bar"])
     ('G.x', 'G.y', 'bar')
     """
     return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
 
 
-def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
+def solve_motion(structure: Structure, asked: Mapping[str, Any]) -> Motion:
     """Return the motion that the options ask for. What cannot be assembled is said on stderr.
 
     Raises InvalidInput for options that do not fit the mechanism, and whatever `solve` raises.
     """
     from compoundkin.cli import typed_values
 
-    return solved_at(structure, typed_values.of_drivers(structure, asked), asked)
+    return solve_motion_at(structure, typed_values.read_driver_values(structure, asked), asked)
 
 
-def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
-    """Solve as `solved`, at these values of the drivers."""
+def solve_motion_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
+    """Solve as `solve_motion`, at these values of the drivers."""
     from compoundkin.base.errors import ChangePointWarning, FewDigits, UnassembledPoses
     from compoundkin.cli import typed_values
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.kinematics import solve
     from compoundkin.model.attributes import RATES
 
-    rates = {what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]}
-    modes = assembly_modes(structure, asked["modes"])
-    time = typed_values.of_times(asked.get("time"))
+    rates = {what: typed_values.read_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]}
+    modes = read_assembly_modes(structure, asked["modes"])
+    time = typed_values.read_times(asked.get("time"))
     with working("solving"), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UnassembledPoses)
         warnings.simplefilter("always", ChangePointWarning)
         warnings.simplefilter("always", FewDigits)
         motion = solve(structure, driven, time=time, **rates, order=_order(structure, asked), modes=modes)
     for warning in caught:
-        _pass_on(warning, motion)
+        _repeat_warning(warning, motion)
     return motion
 
 
-def assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
+def read_assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
     """Return assembly modes by link. Raises InvalidInput for links that are not there and for other signs."""
-    from compoundkin.base.errors import InvalidInput, Problem, nearest
+    from compoundkin.base.errors import InvalidInput, Problem, suggestion
 
     signs = {"+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
     found = {}
@@ -121,7 +142,7 @@ def assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]
         link, _, sign = text.rpartition("=")
         where, name = f"--mode {text}", link or text
         if name not in structure.mechanism.links:
-            remedy = nearest(name, list(structure.mechanism.links))
+            remedy = suggestion(name, list(structure.mechanism.links))
             raise InvalidInput(Problem(where, f"there is no link {name!r}", remedy))
         if sign not in signs:
             raise InvalidInput(Problem(where, f"{sign!r} is not an assembly mode", f"write {name}=+1 or {name}=-1"))
@@ -132,19 +153,19 @@ def assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]
 def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
     """The order asked for, or the highest that an output needs; raises InvalidInput where they disagree."""
     from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.model.attributes import order_of
+    from compoundkin.model.attributes import derivative_order
 
     order = asked["order"]
     if order is None:
-        return max([2, *(order_of(name) for name in asked["outputs"] or structure.mechanism.outputs)])
+        return max([2, *(derivative_order(name) for name in asked["outputs"] or structure.mechanism.outputs)])
     for name in asked["outputs"]:
-        if order_of(name) > order:
-            remedy = f"leave --order out, or give --order {order_of(name)}"
+        if derivative_order(name) > order:
+            remedy = f"leave --order out, or give --order {derivative_order(name)}"
             raise InvalidInput(Problem(f"--order {order}", f"{name} needs a higher order", remedy))
     return int(order)
 
 
-def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
+def _repeat_warning(warning: warnings.WarningMessage, motion: Motion) -> None:
     """The sentence on poses that cannot be assembled; any other warning as it is."""
     from compoundkin.base.errors import ChangePointWarning, DrawnBeyondEnd, FewDigits, UnassembledPoses
 
@@ -157,29 +178,93 @@ def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
         warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
-PATHS = click.option("--path", "paths", multiple=True, metavar="POINT", callback=lambda _c, _p, given: names(given),
+PATHS = click.option("--path", "paths", multiple=True, metavar="POINT", callback=lambda _c, _p, given: split_names(given),
                      help="Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip
 
 
-def of_unknowns(unknowns: Mapping[str, bool], given: Sequence[str]) -> dict[str, float]:
+def read_estimates(unknowns: Mapping[str, bool], given: Sequence[str]) -> dict[str, float]:
     """Return estimates of unknowns, radians or lengths. It is told of each whether it is an angle.
 
-    >>> of_unknowns({"rod": True, "s(stroke)": False}, ["s(stroke)=0.2"])
+    >>> read_estimates({"rod": True, "s(stroke)": False}, ["s(stroke)=0.2"])
     {'s(stroke)': 0.2}
     """
     from math import radians
 
-    from compoundkin.base.errors import InvalidInput, Problem, nearest
-    from compoundkin.cli.typed_values import number
+    from compoundkin.base.errors import InvalidInput, Problem, suggestion
+    from compoundkin.cli.typed_values import read_number
 
     found = {}
     for text in given:
         where, (name, _, value) = f"--estimate {text}", text.rpartition("=")
         if name not in unknowns:
             what = f"there is no unknown {name!r}" if name else "it is not said of what"
-            raise InvalidInput(Problem(where, what, nearest(name, list(unknowns)) if name else "write NAME=VALUE"))
+            raise InvalidInput(Problem(where, what, suggestion(name, list(unknowns)) if name else "write NAME=VALUE"))
         if name in found:
             raise InvalidInput(Problem(where, "the unknown is estimated twice", "leave one of them out"))
-        estimate = number(value, where, "write one number, degrees or a length")
+        estimate = read_number(value, where, "write one number, degrees or a length")
         found[name] = radians(estimate) if unknowns[name] else estimate
     return found
+
+
+STATICS = click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
+
+
+HOLDING = click.option("--holding", default="", metavar="PAIR",
+                       help="A pair, pin or driver that holds in the drivers' place.")  # fmt: skip
+
+
+# What is drawn with forces: options, and the names of their values.
+FORCE_PICTURES = {
+    "forces": "forces",
+    "free-bodies": "free_bodies",
+    "free-body": "free_body",
+    "force-polygons": "force_polygons",
+    "force-polygon": "force_polygon",
+}
+
+
+_OPTIONS = (
+    click.option("--forces", is_flag=True, help="Draw the forces in pairs, of drivers, loads and inertia."),
+    click.option("--free-bodies", is_flag=True, help="Draw every link on its own with all that acts on it."),
+    click.option("--free-body", metavar="LINK", help="The same of one link."),
+    click.option("--force-polygons", is_flag=True, help="Draw the forces on every link head to tail."),
+    click.option("--force-polygon", metavar="LINK", help="The same of one link."),
+    STATICS,
+    HOLDING,
+)
+
+
+def force_options(command: F) -> F:
+    """Add the options of pictures with forces."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def has_force_picture(asked: Mapping[str, Any]) -> bool:
+    """Tell whether a picture with forces is asked for."""
+    return any(asked[name] for name in FORCE_PICTURES.values())
+
+
+def force_picture(
+    shown: Motion | Structure, at: Mapping[str, float] | None, asked: Mapping[str, Any], words: Mapping[str, Any]
+) -> Picture:
+    """Return the picture with forces that is asked for, at a pose."""
+    from compoundkin.view.sketch import draw
+
+    forces = find_forces(shown, asked["statics"], asked["holding"])
+    if asked["forces"]:
+        return draw(forces, at, labels=asked["labels"], **words)
+    kind = "free-bodies" if asked["free_bodies"] or asked["free_body"] else "force-polygon"
+    return draw(forces, at, kind=kind, link=asked["free_body"] or asked["force_polygon"], **words)
+
+
+def find_forces(what: Motion | Structure, statics: bool, holding: str = "") -> Forces:
+    """Return the forces of a motion, or of a structure over its range."""
+    from compoundkin.cli.shell import working
+    from compoundkin.dynamics.force_analysis import force_analysis
+    from compoundkin.kinematics import Motion, solve
+
+    motion = what if isinstance(what, Motion) else solve(what)
+    with working("finding forces"):
+        return force_analysis(motion, inertia=not statics, holding=holding)

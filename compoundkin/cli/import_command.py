@@ -6,9 +6,8 @@ from pathlib import Path
 
 import click
 
-from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.file_options import to_file, write_new
-from compoundkin.cli.foreign_import import imported
+from compoundkin.base.suffixes import alternatives, file_format
+from compoundkin.cli.file_options import import_with_notes, to_file, write_new
 from compoundkin.cli.shell import put, say
 
 
@@ -46,8 +45,8 @@ def command(source: str, form: str, path: str | None, force: bool) -> int:
     """
     from compoundkin.files.mechanism_files import encoded
 
-    syntax = "toml" if path is None else form_of("mechanism", path)
-    found = imported(source, form)
+    syntax = "toml" if path is None else file_format("mechanism", path)
+    found = import_with_notes(source, form)
     content = encoded(found.mechanism, syntax, path or source)
     if path is None:
         put(content)

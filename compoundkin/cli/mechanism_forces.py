@@ -6,13 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import SUFFIXES, form_of, suffix_of
-from compoundkin.cli.drive_options import DESIGN, drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, put_table, report_or_table_options
-from compoundkin.cli.force_options import HOLDING, STATICS, forces_of
+from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_of
+from compoundkin.cli.drive_options import DESIGN, HOLDING, STATICS, drive_options, find_forces, solve_motion
+from compoundkin.cli.file_options import (
+    load_mechanism,
+    mechanism_argument,
+    put_report,
+    put_table,
+    report_or_table_options,
+)
 from compoundkin.cli.shell import NOT_ASSEMBLED
-from compoundkin.cli.solve import explained
-from compoundkin.cli.structure import unsolvable
+from compoundkin.cli.solve import explain_gaps
+from compoundkin.cli.structure import report_unsolvable
 
 if TYPE_CHECKING:
     from compoundkin.dynamics.forces import Forces
@@ -50,21 +55,21 @@ def command(
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
-    tabulated = is_table(form, path, on, asked["outputs"])
-    structure = decompose(loaded(file))
+    tabulated = is_force_table(form, path, on, asked["outputs"])
+    structure = decompose(load_mechanism(file))
     if structure.faults:
         put_report(report(structure), form, path if not tabulated else None)
-        return unsolvable(len(structure.faults))
+        return report_unsolvable(len(structure.faults))
     if on:
         structure.mechanism.link(on)
-    forces = forces_of(solved(structure, asked), statics, holding)
+    forces = find_forces(solve_motion(structure, asked), statics, holding)
     if not tabulated:
-        return _reported(forces, design, on, form, path)
+        return _put_forces_report(forces, design, on, form, path)
     put_table(forces.table(*asked["outputs"]), path)
-    return 0 if forces.motion.assembled.all() else explained(forces.motion)
+    return 0 if forces.motion.assembled.all() else explain_gaps(forces.motion)
 
 
-def is_table(form: str | None, path: str | None, on: str, outputs: tuple[str, ...]) -> bool:
+def is_force_table(form: str | None, path: str | None, on: str, outputs: tuple[str, ...]) -> bool:
     """Tell whether a table is asked for. Raises InvalidInput for options that exclude each other, and suffixes."""
     from compoundkin.base.errors import InvalidInput, Problem
 
@@ -74,21 +79,21 @@ def is_table(form: str | None, path: str | None, on: str, outputs: tuple[str, ..
     if tabulated and other:
         raise InvalidInput(Problem(other, "it does not go with --output, which is a table", "leave one of them out"))
     if path is not None and (tabulated or form is None):
-        form_of("table" if tabulated else "report", path)
+        file_format("table" if tabulated else "report", path)
     return tabulated
 
 
-def _reported(forces: Forces, design: int, on: str, form: str | None, path: str | None) -> int:
+def _put_forces_report(forces: Forces, design: int, on: str, form: str | None, path: str | None) -> int:
     """Print or write the report, and return the exit code."""
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.view.report.forces_section import forces_report
 
     with working("finding extremes"):
         made = forces_report(forces, design, on)
     put_report(made, form, path)
-    return _missing(made)
+    return _exit_code(made)
 
 
-def _missing(made: Report) -> int:
+def _exit_code(made: Report) -> int:
     """Return the exit code where some poses cannot be assembled."""
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
+from compoundkin.base.suffixes import alternatives, file_format
+from compoundkin.cli.drive_options import drive_options, solve_motion
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
 from compoundkin.cli.shell import put, say
-from compoundkin.cli.solve import explained
+from compoundkin.cli.solve import explain_gaps
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -101,24 +101,24 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
     from compoundkin.view.plot.plot_style import require_matplotlib
 
     if path is not None:
-        form_of("plot", path)
+        file_format("plot", path)
     require_matplotlib()
-    _fitting(asked)
+    _check_options(asked)
     if "timing_chart" in asked["kinds"]:
-        _put(_timing(loaded(file), (*quantities, *asked["outputs"]), asked), path)
+        _write_plot(_timing_plot(load_mechanism(file), (*quantities, *asked["outputs"]), asked), path)
         return 0
-    structures = [decompose(loaded(one)) for one in (file, *asked["others"])]
+    structures = [decompose(load_mechanism(one)) for one in (file, *asked["others"])]
     names = (*quantities, *asked["outputs"])
     if "circuits" in asked["kinds"]:
-        _put(_of_circuits(structures[0], names, asked), path)
+        _write_plot(_circuits_plot(structures[0], names, asked), path)
         return 0
     order = _order(asked, names or structures[0].mechanism.outputs)
-    motions = [solved(structure, {**asked, "outputs": (), "order": order}) for structure in structures]
-    _put(_drawn(motions, names, {**asked, "files": (file, *asked["others"])}), path)
-    return next((explained(motion) for motion in motions if not motion.assembled.all()), 0)
+    motions = [solve_motion(structure, {**asked, "outputs": (), "order": order}) for structure in structures]
+    _write_plot(_plot_of_motions(motions, names, {**asked, "files": (file, *asked["others"])}), path)
+    return next((explain_gaps(motion) for motion in motions if not motion.assembled.all()), 0)
 
 
-def _put(picture: Plot, path: str | None) -> None:
+def _write_plot(picture: Plot, path: str | None) -> None:
     if path is None:
         put(picture.content("svg"))
     else:
@@ -126,7 +126,7 @@ def _put(picture: Plot, path: str | None) -> None:
         say(f"Wrote {path}.")
 
 
-def _fitting(asked: Mapping[str, Any]) -> None:
+def _check_options(asked: Mapping[str, Any]) -> None:
     """Raise InvalidInput for options that do not go together."""
     from compoundkin.base.errors import InvalidInput, Problem
 
@@ -148,16 +148,16 @@ def _fitting(asked: Mapping[str, Any]) -> None:
 
 def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
     """The order asked for, or what the quantities need: one more for the rates of phase plots, 2 at least."""
-    from compoundkin.model.attributes import HIGHEST_ORDER, order_of
+    from compoundkin.model.attributes import HIGHEST_ORDER, derivative_order
 
     if asked["order"] is not None:
         return int(asked["order"])
     against = () if asked["against"] is None else (asked["against"],)
-    highest = max((order_of(name) for name in (*names, *against)), default=0)
+    highest = max((derivative_order(name) for name in (*names, *against)), default=0)
     return min(max(2, highest + ("phase" in asked["kinds"])), HIGHEST_ORDER)
 
 
-def _drawn(motions: list[Motion], names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+def _plot_of_motions(motions: list[Motion], names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.view import plot
 
@@ -183,7 +183,7 @@ def _drawn(motions: list[Motion], names: tuple[str, ...], asked: Mapping[str, An
     return picture
 
 
-def _timing(mechanism: Mechanism, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+def _timing_plot(mechanism: Mechanism, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.view import plot
 
@@ -195,11 +195,11 @@ def _timing(mechanism: Mechanism, names: tuple[str, ...], asked: Mapping[str, An
     return plot.timing_chart(mechanism, title=asked["title"])
 
 
-def _of_circuits(structure: Structure, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+def _circuits_plot(structure: Structure, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.cli import typed_values
-    from compoundkin.cli.circuits import range_of
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.circuits import driver_range
+    from compoundkin.cli.shell import working
     from compoundkin.view import plot
 
     given = {text.rpartition("=")[0] for text in asked["drives"]}
@@ -207,8 +207,8 @@ def _of_circuits(structure: Structure, names: tuple[str, ...], asked: Mapping[st
     if given & {"", asked["driver"] or "", *(drivers if len(drivers) == 1 else [])}:
         told = "the driver that moves takes all its values"
         raise InvalidInput(Problem("--drive", told, "for a part of them: --from and --to"))
-    fixed = {k: v for k, v in typed_values.of_pose(structure, asked["drives"], "--drive").items() if k in given}
-    between = range_of(structure, asked["driver"], asked["start"], asked["stop"])
+    fixed = {k: v for k, v in typed_values.read_pose(structure, asked["drives"], "--drive").items() if k in given}
+    between = driver_range(structure, asked["driver"], asked["start"], asked["stop"])
     with working("following all circuits"):
         return plot.circuits(
             structure, *names, driver=asked["driver"], values=fixed, between=between, title=asked["title"]

@@ -1,16 +1,17 @@
-"""`compoundkin report`: everything there is to say about a mechanism."""
+"""`compoundkin report` and `compoundkin open`: everything about a mechanism, in the terminal, a file or the browser."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.drive_options import drive_options, solve_motion
+from compoundkin.cli.file_options import draw_page, load_mechanism, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
-from compoundkin.cli.structure import unsolvable
+from compoundkin.cli.structure import report_unsolvable
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def asking_options(command: F) -> F:
+def reporting_options(command: F) -> F:
     """Add the options that say what is reported of a mechanism."""
     centres = click.option(
         "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
@@ -27,6 +28,45 @@ def asking_options(command: F) -> F:
     text = "Which one, where dimensions are arrays."
     design = click.option("--design", default=0, show_default=True, metavar="INDEX", help=text)
     return drive_options(design(centres(command)))
+
+
+def mechanism_report(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
+    """Return the report of a mechanism, and whether every asked pose is assembled."""
+    from dataclasses import replace
+
+    from compoundkin.cli.shell import working
+    from compoundkin.structure import decompose
+    from compoundkin.view.report import report
+
+    structure, design = decompose(load_mechanism(file)), asked["design"]
+    if structure.faults or structure.mechanism.unplaced:
+        return report(structure), True
+    motion = solve_motion(structure, asked)
+    with working("checking and reporting"):
+        parts = [report(motion, asked["outputs"], design)]
+        if asked["centres"] is not None:
+            parts.append(_of_centres(structure, asked["centres"].split(","), design, asked))
+    closed = all(part.outcome.assembled == part.outcome.poses for part in parts)
+    return replace(parts[0], sections=tuple(section for part in parts for section in part.sections)), closed
+
+
+def exit_code(made: Report, closed: bool) -> int:
+    """Return the exit code of a report; what failed is said on stderr too."""
+    if (faults := made.section("faults")) is not None:
+        return report_unsolvable(len(faults.blocks) - 1)
+    if not made.outcome.passed and (made.outcome.assembled or not made.outcome.poses):
+        say("A check or a published number FAILED, or links touch; the report says which.")
+        return FAILED
+    return 0 if closed else NOT_ASSEMBLED
+
+
+def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:
+    """The instant centres at a pose, with the rates and modes of the motion."""
+    from compoundkin.cli.centres import solve_pose
+    from compoundkin.view.report.motion_report import centres_report
+
+    rates = {key: asked[key] for key in ("speeds", "modes")}
+    return centres_report(solve_pose(structure, at, rates, "--centres"), design)
 
 
 @click.command(
@@ -40,7 +80,7 @@ Examples:
 """
 )
 @mechanism_argument
-@asking_options
+@reporting_options
 @report_options
 def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     """Report a mechanism. It covers its structure, motion over the cycle, the checks, and published numbers.
@@ -48,45 +88,35 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     Angles are in degrees and lengths in the unit of the file. An .html file is a page with the moving sketch and plots.
     Exit code 3: some poses cannot be assembled; 4: a check failed or a published number was not reproduced.
     """
-    made, closed = reported(file, asked)
+    made, closed = mechanism_report(file, asked)
     put_report(made, form, path)
-    return verdict(made, closed)
+    return exit_code(made, closed)
 
 
-def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
-    """Return the report of a mechanism, and whether every asked pose is assembled."""
-    from dataclasses import replace
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin open six-bar
+  compoundkin open linkage.toml --output G.velocity,bar.angle
+  compoundkin open six-bar -o six-bar.html
+"""
+)
+@mechanism_argument
+@reporting_options
+@click.option("-o", "--to-file", "path", metavar="PATH", help="Write the page here; else to a temporary file.")
+def open_command(file: str, path: str | None, **asked: Any) -> int:
+    """Show the report of a mechanism in the browser. It is one page with the moving sketch, plots and tables.
 
-    from compoundkin.cli.progress import working
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import report
+    The page is a file that needs no network and no server. Exit codes are those of `report`.
+    """
+    from compoundkin.view.page.report_page import open_in_browser, temporary_page
 
-    structure, design = decompose(loaded(file)), asked["design"]
-    if structure.faults or structure.mechanism.unplaced:
-        return report(structure), True
-    motion = solved(structure, asked)
-    with working("checking and reporting"):
-        parts = [report(motion, asked["outputs"], design)]
-        if asked["centres"] is not None:
-            parts.append(_of_centres(structure, asked["centres"].split(","), design, asked))
-    closed = all(part.outcome.assembled == part.outcome.poses for part in parts)
-    return replace(parts[0], sections=tuple(section for part in parts for section in part.sections)), closed
-
-
-def verdict(made: Report, closed: bool) -> int:
-    """Return the exit code of a report; what failed is said on stderr too."""
-    if (faults := made.section("faults")) is not None:
-        return unsolvable(len(faults.blocks) - 1)
-    if not made.outcome.passed and (made.outcome.assembled or not made.outcome.poses):
-        say("A check or a published number FAILED, or links touch; the report says which.")
-        return FAILED
-    return 0 if closed else NOT_ASSEMBLED
-
-
-def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:
-    """The instant centres at a pose, with the rates and modes of the motion."""
-    from compoundkin.cli.centres import solved_at_pose
-    from compoundkin.view.report.motion_report import centres_report
-
-    rates = {key: asked[key] for key in ("speeds", "modes")}
-    return centres_report(solved_at_pose(structure, at, rates, "--centres"), design)
+    made, closed = mechanism_report(file, asked)
+    page = draw_page(made)
+    target = Path(path) if path else temporary_page()
+    page.save(target)
+    if open_in_browser(target):
+        say(f"Opened {target}.")
+    else:
+        say(f"No browser can be opened here; the page is in {target}.")
+    return exit_code(made, closed)

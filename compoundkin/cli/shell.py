@@ -1,4 +1,4 @@
-"""Between the program and the shell: results to stdout, all else to stderr, exit codes, no tracebacks."""
+"""Between the program and the shell: results to stdout, messages and progress to stderr, exit codes, no tracebacks."""
 
 from __future__ import annotations
 
@@ -7,17 +7,23 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from time import monotonic
 from typing import Any, NoReturn
 
 import click
 
+from compoundkin.base.display import escaped_text
 from compoundkin.base.errors import CompoundkinError, Problem
-from compoundkin.base.texts import written_out
 
 BAD_INPUT, NOT_ASSEMBLED, FAILED = 2, 3, 4
+
+
 # As if ended by the signal: what shells expect of a filter whose reader has gone, and of Ctrl-C.
 READER_GONE, INTERRUPTED = 141, 130
+
+
 # Reports are made for 80 columns; a wider terminal is used up to where lines become hard to read.
 WIDTH, WIDEST, NARROWEST = 80, 100, 60
 
@@ -35,16 +41,18 @@ def guarded(run: Callable[[], Any]) -> NoReturn:
             warnings.showwarning = _warned
             code = run()
     except click.ClickException as error:
-        _tell(error.show)
+        _write_to_stderr(error.show)
         code = BAD_INPUT
     except CompoundkinError as error:
-        show(error)
+        show_error(error)
         code = error.exit_code
     except (click.Abort, KeyboardInterrupt):
         say("Interrupted.")
         code = INTERRUPTED
     except MemoryError:
-        show(CompoundkinError(Problem("", "there is not enough memory for this", "ask for fewer poses at a time")))
+        show_error(
+            CompoundkinError(Problem("", "there is not enough memory for this", "ask for fewer poses at a time"))
+        )
         code = BAD_INPUT
     sys.exit(code or 0)
 
@@ -74,28 +82,28 @@ def put(text: str | bytes) -> None:
             rest = rest[sys.stdout.buffer.write(rest) :]
         sys.stdout.flush()
     except BrokenPipeError:
-        _forget(sys.stdout)
+        _discard_stream(sys.stdout)
         raise click.exceptions.Exit(READER_GONE) from None
     except OSError as error:
-        _forget(sys.stdout)
+        _discard_stream(sys.stdout)
         raise NotWritten(Problem("", f"the results cannot be written: {error.strerror or error}")) from None
 
 
 def say(text: str) -> None:
     """Write a diagnostic line to stderr, if it takes one."""
-    _tell(lambda: click.echo(text, err=True))
+    _write_to_stderr(lambda: click.echo(text, err=True))
 
 
-def _tell(write: Callable[[], None]) -> None:
+def _write_to_stderr(write: Callable[[], None]) -> None:
     """Write to stderr. Where it is closed or takes no more, the results and the exit code are what is left."""
     if sys.stderr is not None:
         try:
             write()
         except OSError:
-            _forget(sys.stderr)
+            _discard_stream(sys.stderr)
 
 
-def show(error: CompoundkinError) -> None:
+def show_error(error: CompoundkinError) -> None:
     """Tell an error on stderr: what, where, and how to mend it."""
     several = len(error.problems) > 1 or error.heading
     if several:
@@ -103,10 +111,10 @@ def show(error: CompoundkinError) -> None:
     for problem in error.problems:
         head = "  - " if several else f"{_red('Error:')} "
         indent = "    " if several else "  "
-        say(f"{head}{written_out(problem.what)}")
+        say(f"{head}{escaped_text(problem.what)}")
         for term, text in (("where", problem.where), ("remedy", problem.remedy)):
             if text:
-                say(f"{indent}{term + ':':8}{written_out(text)}")
+                say(f"{indent}{term + ':':8}{escaped_text(text)}")
 
 
 def has_colour(stream: Any) -> bool:
@@ -124,7 +132,7 @@ def has_colour(stream: Any) -> bool:
     )
 
 
-def width() -> int:
+def report_width() -> int:
     """Return the width of a report. It is the terminal's within bounds, 80 where there is none."""
     if sys.stdout is None or not sys.stdout.isatty():
         return WIDTH
@@ -137,6 +145,84 @@ def _red(text: str) -> str:
     return click.style(text, fg="red", bold=True) if has_colour(sys.stderr) else text
 
 
-def _forget(stream: Any) -> None:
+def _discard_stream(stream: Any) -> None:
     """Keep the interpreter from complaining about a stream once more when it ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+# Work done before this many seconds needs no comment.
+PATIENCE = 2.0
+
+
+REFRESH = 0.5
+
+
+@contextmanager
+def working(what: str, patience: float = PATIENCE) -> Iterator[None]:
+    """Say what is being done and for how long, on stderr. It says so once it takes long and if that is a terminal.
+
+    >>> with working("counting"):
+    ...     sum(range(3))
+    3
+    """
+    if not _is_terminal():
+        yield
+        return
+    done = threading.Event()
+    ticker = threading.Thread(target=_show_elapsed, args=(what, patience, done), daemon=True)
+    ticker.start()
+    try:
+        yield
+    finally:
+        done.set()
+        ticker.join()
+
+
+def _is_terminal() -> bool:
+    """Tell whether somebody sees stderr: it is a terminal, and not closed."""
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _show_elapsed(what: str, patience: float, done: threading.Event) -> None:
+    start = monotonic()
+    if done.wait(patience):
+        return
+    while True:
+        line = f"{what} ... {monotonic() - start:.0f} s"
+        sys.stderr.write(f"\r{line}")
+        sys.stderr.flush()
+        if done.wait(REFRESH):
+            sys.stderr.write(f"\r{' ' * len(line)}\r")
+            sys.stderr.flush()
+            return
+
+
+@contextmanager
+def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function to be told how much is done, of how much. It shows a bar on stderr as `working` shows a line.
+
+    >>> with counting("drawing", "frames") as progress:
+    ...     progress(1, 2)
+    """
+    start, shown = monotonic(), ExitStack()
+    update: list[Callable[[int, int], None]] = []
+
+    def told(done: int, total: int) -> None:
+        if not update and monotonic() - start >= patience and _is_terminal():
+            update.append(shown.enter_context(_progress_bar(what, things)))
+        for tell in update:
+            tell(done, total)
+
+    with shown:
+        yield told
+
+
+@contextmanager
+def _progress_bar(what: str, things: str) -> Iterator[Callable[[int, int], None]]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn(things), TimeRemainingColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

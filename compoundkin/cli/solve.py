@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.drive_options import drive_options, names, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_table, to_file
+from compoundkin.base.suffixes import alternatives, file_format
+from compoundkin.cli.drive_options import drive_options, solve_motion, split_names
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_table, to_file
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ Examples:
     "forward",
     multiple=True,
     metavar="LINK",
-    callback=lambda _c, _p, given: names(given),
+    callback=lambda _c, _p, given: split_names(given),
     help="Write the mechanism driven at these links by the laws found, LINK/ON against another than the frame. "
     "Repeat it, or write commas.",
 )
@@ -47,19 +47,20 @@ def command(file: str, path: str | None, forward: tuple[str, ...], **asked: Any)
     from compoundkin.structure import decompose
 
     if path is not None:
-        form_of("mechanism" if forward else "table", path)
-    structure = decompose(loaded(file))
-    motion = solved(structure, asked)
+        file_format("mechanism" if forward else "table", path)
+    structure = decompose(load_mechanism(file))
+    motion = solve_motion(structure, asked)
     if forward:
-        return _driven(motion, forward, path)
+        return _write_driven(motion, forward, path)
     put_table(motion.table(*asked["outputs"]), path)
-    return 0 if motion.assembled.all() else explained(motion)
+    return 0 if motion.assembled.all() else explain_gaps(motion)
 
 
-def _driven(motion: Motion, links: tuple[str, ...], path: str | None) -> int:
+def _write_driven(motion: Motion, links: tuple[str, ...], path: str | None) -> int:
     """Write the mechanism driven at some links by the laws found for a motion, or print it as TOML."""
     from compoundkin.files import dumps, save
-    from compoundkin.model.elements import FRAME, Drive
+    from compoundkin.model.elements import Drive
+    from compoundkin.model.geometry import FRAME
     from compoundkin.synthesis.found_laws import driven_forward
 
     ends = [(link, on or FRAME) for link, _, on in (name.partition("/") for name in links)]
@@ -72,11 +73,11 @@ def _driven(motion: Motion, links: tuple[str, ...], path: str | None) -> int:
     return 0
 
 
-def explained(motion: Motion) -> int:
+def explain_gaps(motion: Motion) -> int:
     """Say which poses cannot be assembled, and why; the exit code for that."""
     from compoundkin.kinematics.gaps import gaps
-    from compoundkin.view.report.gaps_section import MOST_GAPS, gap_sentence
-    from compoundkin.view.report.shown_poses import Sample
+    from compoundkin.view.report.pose_sample import Sample
+    from compoundkin.view.report.verification_sections import MOST_GAPS, gap_sentence
 
     found = gaps(motion)
     sample = Sample(motion)

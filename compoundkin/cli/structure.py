@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.cli.drive_options import AT, SECOND_RATE, pose_options
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED, say
 
 if TYPE_CHECKING:
@@ -59,13 +59,13 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
     """
     from dataclasses import replace
 
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
-    _hold_together(equations, asked)
+    _check_options(equations, asked)
     with working("taking the mechanism apart"):
-        structure = decompose(loaded(file))
+        structure = decompose(load_mechanism(file))
         made = report(structure)
     code = 0
     if equations:
@@ -76,10 +76,10 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
 
         made = replace(made, sections=(*made.sections, alternatives_section(structure)))
     put_report(made, form, path)
-    return unsolvable(len(structure.faults)) if structure.faults else code
+    return report_unsolvable(len(structure.faults)) if structure.faults else code
 
 
-def _hold_together(equations: bool, asked: dict[str, Any]) -> None:
+def _check_options(equations: bool, asked: dict[str, Any]) -> None:
     """Raise InvalidInput for options that need others."""
     from compoundkin.base.errors import InvalidInput, Problem
 
@@ -97,14 +97,13 @@ def _hold_together(equations: bool, asked: dict[str, Any]) -> None:
 def _equations(structure: Structure, asked: dict[str, Any]) -> tuple[list[Section], int]:
     """The sections of the equations, and the exit code."""
     from compoundkin.analysis.equations.loop_equations import loop_equations
-    from compoundkin.view.report.equations_section import equations_section
-    from compoundkin.view.report.rate_sections import constants_section, rates_section
+    from compoundkin.view.report.equations_sections import constants_section, equations_section, rates_section
 
     found = loop_equations(structure, asked["order"])
     sections = [equations_section(found), constants_section(found), rates_section(found) if found.rates else None]
     code = 0
     if any(asked[name] for name in OF_EQUATIONS if name != "order") and not structure.faults:
-        from compoundkin.view.report.pose_numbers_section import pose_section
+        from compoundkin.view.report.equations_sections import pose_section
 
         driven, motion = _solved(structure, asked)
         sections.append(pose_section(found, motion, asked["design"]))
@@ -117,11 +116,11 @@ def _equations(structure: Structure, asked: dict[str, Any]) -> tuple[list[Sectio
 def _solved(structure: Structure, asked: dict[str, Any]) -> tuple[dict[str, float], Motion]:
     """The values of the drivers at the pose, and the motion there."""
     from compoundkin.cli import typed_values
-    from compoundkin.cli.drive_options import solved_at
+    from compoundkin.cli.drive_options import solve_motion_at
 
-    driven = typed_values.of_pose(structure, asked["at"])
+    driven = typed_values.read_pose(structure, asked["at"])
     rest = {name: asked[name] for name in ("speeds", "accelerations", "modes")}
-    return driven, solved_at(structure, driven, {**rest, "outputs": (), "order": max(asked["order"], 1)})
+    return driven, solve_motion_at(structure, driven, {**rest, "outputs": (), "order": max(asked["order"], 1)})
 
 
 def _newton(structure: Structure, driven: dict[str, float], motion: Motion, estimates: tuple[str, ...]) -> Section:
@@ -131,11 +130,11 @@ def _newton(structure: Structure, driven: dict[str, float], motion: Motion, esti
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.analysis.equations.newton_iterations import newton_iterations
     from compoundkin.analysis.equations.pose_values import pose_values
-    from compoundkin.cli.drive_options import of_unknowns
-    from compoundkin.view.report.pose_numbers_section import newton_section
+    from compoundkin.cli.drive_options import read_estimates
+    from compoundkin.view.report.equations_sections import newton_section
 
     unknowns = loop_equations(structure).system.unknowns
-    start = of_unknowns({own.key: own.is_angle for own in unknowns}, estimates)
+    start = read_estimates({own.key: own.is_angle for own in unknowns}, estimates)
     values = {**{name: float(np.ravel(one.value)[0]) for name, one in motion.drives.items()}, **driven}
     solved = {key: float(np.ravel(value)[0]) for key, value in pose_values(motion).items()}
     found = newton_iterations(structure, values, start)
@@ -143,7 +142,7 @@ def _newton(structure: Structure, driven: dict[str, float], motion: Motion, esti
     return newton_section(found, mechanism.unit, mechanism.geometry.size, solved if motion.assembled.all() else None)
 
 
-def unsolvable(faults: int) -> int:
+def report_unsolvable(faults: int) -> int:
     """Say on stderr that a structure cannot be solved; the exit code for that."""
     from compoundkin.base.errors import NotDetermined
     from compoundkin.view.report.wording import counted

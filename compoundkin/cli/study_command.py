@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.drive_options import names
+from compoundkin.cli.drive_options import split_names
 from compoundkin.cli.file_options import FORMATS, put_report
 from compoundkin.cli.shell import NOT_ASSEMBLED, say
 
@@ -30,9 +30,9 @@ Examples:
               "are there already, the others are computed.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), metavar="NUMBER", help="Processes instead of threads of one.")
 @click.option("--chunk", type=click.IntRange(1), metavar="ROWS", help="How many designs a worker computes at a time.")
-@click.option("--least", multiple=True, metavar="NAME", callback=lambda _c, _p, given: names(given),
+@click.option("--least", multiple=True, metavar="NAME", callback=lambda _c, _p, given: split_names(given),
               help="List the designs with the least of a figure. Repeat it, or write commas.")  # fmt: skip
-@click.option("--greatest", multiple=True, metavar="NAME", callback=lambda _c, _p, given: names(given),
+@click.option("--greatest", multiple=True, metavar="NAME", callback=lambda _c, _p, given: split_names(given),
               help="The same with the greatest.")  # fmt: skip
 @click.option("--best", type=click.IntRange(1), default=1, show_default=True, metavar="NUMBER", help="So many of each.")
 @click.option("--format", "form", type=click.Choice(FORMATS), help="Of the summary.")
@@ -51,28 +51,28 @@ def command(
     Exit code 3: no design assembles.
     """
     from compoundkin.studies.loaded_study import load_study
-    from compoundkin.view.report.study_report import study_report
+    from compoundkin.view.report.study_reports import study_report
 
     studied = load_study(file)
-    hold_figures(studied, (*least, *greatest))
-    found = computed(studied, folder, **how)
+    check_figures(studied, (*least, *greatest))
+    found = run_with_progress(studied, folder, **how)
     put_report(study_report(found, least, greatest, best), form, None)
     if folder is not None:
         say(f"{len(found):,} rows are in {folder}.")
     return 0 if found.assembled.any() else NOT_ASSEMBLED
 
 
-def hold_figures(studied: Study, asked: tuple[str, ...]) -> None:
+def check_figures(studied: Study, asked: tuple[str, ...]) -> None:
     """Raise UnknownName where the best are asked of what is no figure."""
-    from compoundkin.base.errors import Problem, UnknownName, nearest
+    from compoundkin.base.errors import Problem, UnknownName, suggestion
 
     known = [one.name for one in studied.columns if one.is_figure]
     for name in asked:
         if name not in known:
-            raise UnknownName(Problem(name, "it is no figure or dimension of the study", nearest(name, known)))
+            raise UnknownName(Problem(name, "it is no figure or dimension of the study", suggestion(name, known)))
 
 
-def computed(studied: Study, folder: str | None, workers: int | None, chunk: int | None) -> StudyResult:
+def run_with_progress(studied: Study, folder: str | None, workers: int | None, chunk: int | None) -> StudyResult:
     """Run a study with a line of progress.
 
     On Ctrl-C it is said what stays.
@@ -81,7 +81,7 @@ def computed(studied: Study, folder: str | None, workers: int | None, chunk: int
     from multiprocessing import get_context
     from signal import SIG_IGN, SIGINT, signal
 
-    from compoundkin.cli.progress import counting
+    from compoundkin.cli.shell import counting
 
     where: dict[str, Any] = {} if folder is None else {"folder": folder}
     with ExitStack() as stack:

@@ -7,11 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import SUFFIXES, form_of, suffix_of
+from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_of
 from compoundkin.cli.drive_options import motion_options
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, put_table, report_or_table_options
-from compoundkin.cli.solve import explained
-from compoundkin.cli.structure import unsolvable
+from compoundkin.cli.file_options import (
+    load_mechanism,
+    mechanism_argument,
+    put_report,
+    put_table,
+    report_or_table_options,
+)
+from compoundkin.cli.solve import explain_gaps
+from compoundkin.cli.structure import report_unsolvable
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.table import Table
@@ -50,22 +56,22 @@ def command(file: str, bands: bool, form: str | None, path: str | None, **asked:
     """
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
-    from compoundkin.view.report.tolerance_report import tolerance_report
+    from compoundkin.view.report.study_reports import tolerance_report
 
-    tabulated = is_table(bands, form, path)
-    structure = decompose(loaded(file))
+    tabulated = is_tolerance_table(bands, form, path)
+    structure = decompose(load_mechanism(file))
     if structure.faults:
         put_report(report(structure), form, path if not tabulated else None)
-        return unsolvable(len(structure.faults))
-    found = analysed(structure, asked)
+        return report_unsolvable(len(structure.faults))
+    found = analyse(structure, asked)
     if tabulated:
-        put_table(banded(found) if bands else found.table(), path)
+        put_table(bands_table(found) if bands else found.table(), path)
     else:
         put_report(tolerance_report(found), form, path)
-    return 0 if found.motion.assembled.all() else explained(found.motion)
+    return 0 if found.motion.assembled.all() else explain_gaps(found.motion)
 
 
-def is_table(bands: bool, form: str | None, path: str | None) -> bool:
+def is_tolerance_table(bands: bool, form: str | None, path: str | None) -> bool:
     """Tell whether a table is asked for. Raises InvalidInput for suffixes that do not fit."""
     from compoundkin.base.errors import InvalidInput, Problem
 
@@ -74,11 +80,11 @@ def is_table(bands: bool, form: str | None, path: str | None) -> bool:
     only_table = path is not None and suffix_of(path) in SUFFIXES["table"].keys() - SUFFIXES["report"].keys()
     tabulated = bands or (only_table and form is None)
     if path is not None and form is None:
-        form_of("table" if tabulated else "report", path)
+        file_format("table" if tabulated else "report", path)
     return tabulated
 
 
-def banded(found: ToleranceAnalysis) -> Table:
+def bands_table(found: ToleranceAnalysis) -> Table:
     """Return the bands of all outputs that have some."""
     from compoundkin.base.errors import InvalidInput, Problem
 
@@ -88,43 +94,43 @@ def banded(found: ToleranceAnalysis) -> Table:
     return found.bands()
 
 
-def analysed(structure: Structure, asked: dict[str, Any]) -> ToleranceAnalysis:
+def analyse(structure: Structure, asked: dict[str, Any]) -> ToleranceAnalysis:
     """Return the analysis that the options ask for."""
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.cli import typed_values
-    from compoundkin.cli.drive_options import assembly_modes
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.drive_options import read_assembly_modes
+    from compoundkin.cli.shell import working
     from compoundkin.model.attributes import RATES
     from compoundkin.studies.tolerances.tolerance import tolerance
 
     outputs = asked["outputs"] or structure.mechanism.outputs
     if not outputs:
         raise InvalidInput(Problem("--output", "no output is named", "such as --output G.x.stroke"))
-    given = dict(errors_of(structure, "--tolerance", asked["tolerances"]))
+    given = dict(read_errors(structure, "--tolerance", asked["tolerances"]))
     rates: dict[str, Any] = {
-        what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]
+        what: typed_values.read_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]
     }
     with working("finding what tolerances do"):
         return tolerance(
             structure.mechanism, given, outputs,
-            clearance=dict(errors_of(structure, "--clearance", asked["clearances"])),
-            values=typed_values.of_drivers(structure, asked) or None, time=typed_values.of_times(asked["time"]),
-            modes=assembly_modes(structure, asked["modes"]) or None, **rates,
+            clearance=dict(read_errors(structure, "--clearance", asked["clearances"])),
+            values=typed_values.read_driver_values(structure, asked) or None, time=typed_values.read_times(asked["time"]),
+            modes=read_assembly_modes(structure, asked["modes"]) or None, **rates,
             **{word: asked[word] for word in ("count", "seed", "sigmas")},
         )  # fmt: skip
 
 
-def errors_of(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, Any]]:
+def read_errors(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, Any]]:
     """Yield names with their errors, radians or lengths: one number, or two. Raises InvalidInput."""
     from math import radians
 
     from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.cli.drive_options import names
-    from compoundkin.cli.typed_values import number
+    from compoundkin.cli.drive_options import split_names
+    from compoundkin.cli.typed_values import read_number
     from compoundkin.studies.study_files.dimension_units import is_angle_dimension
 
     told = set()
-    for text in names(given):
+    for text in split_names(given):
         name, _, value = text.rpartition("=")
         where, parts = f"{option} {text}", value.split(":")
         if not name or len(parts) > 2:
@@ -133,6 +139,6 @@ def errors_of(structure: Structure, option: str, given: Sequence[str]) -> Iterat
             raise InvalidInput(Problem(where, f"{name} is given twice", "leave one of them out"))
         told.add(name)
         is_angle = is_angle_dimension(structure.mechanism, structure.driven_angles, name)
-        numbers = [number(part, where, HOW) for part in parts]
+        numbers = [read_number(part, where, HOW) for part in parts]
         numbers = [radians(one) if is_angle else one for one in numbers]
         yield name, numbers[0] if len(numbers) == 1 else tuple(numbers)

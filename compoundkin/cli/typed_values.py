@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import degrees, first_entry
-from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, degrees, first_entry
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.files.worded_numbers import warn_of_radians, worded_rate, written_end
 from compoundkin.files.written_quantities import MOST_VALUES, rate, spaced
 from compoundkin.kinematics.driver_values import FULL_TURN
@@ -29,22 +28,22 @@ HOW_RATES = {
 }
 
 
-def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
+def read_driver_values(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
     """Return the values asked for, by driver, as `solve` takes them: radians or lengths.
 
     Raises InvalidInput for what cannot be read, for drivers that do not exist, and for ranges of different lengths.
     """
     texts: dict[str, str] = {}
-    for name, text in _named(structure, "--drive", asked["drives"]):
+    for name, text in _by_driver(structure, "--drive", asked["drives"]):
         if name in texts:
-            raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
+            raise _invalid(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
         texts[name] = text
-    shown = {name: numbers(text, f"--drive {name}") for name, text in texts.items()}
+    shown = {name: read_numbers(text, f"--drive {name}") for name, text in texts.items()}
     span = {key: asked[key] for key in ("at", "start", "stop", "step") if asked[key] is not None}
     if span:
-        name = _only(structure, "--at" if "at" in span else "--from, --to, --step")
+        name = _only_driver(structure, "--at" if "at" in span else "--from, --to, --step")
         if name in shown:
-            raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
+            raise _invalid(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
         shown[name] = _spanned(structure, name, span)
     angles = structure.driven_angles
     for name, v in ((name, v) for name, v in shown.items() if angles[name]):
@@ -55,25 +54,25 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
     return {name: float(v[0]) if len(v) == 1 else v for name, v in values.items()}
 
 
-def of_times(text: str | None) -> Number | None:
+def read_times(text: str | None) -> Number | None:
     """Return the times asked for, in seconds; None where none are.
 
-    >>> of_times("0:1:0.5").tolist()
+    >>> read_times("0:1:0.5").tolist()
     [0.0, 0.5, 1.0]
     """
-    return None if text is None else numbers(text, "--time", TIMES)
+    return None if text is None else read_numbers(text, "--time", TIMES)
 
 
-def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
+def read_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
     """Return one value of every driver, radians or lengths. It is the one given, else the first of its own range."""
     names = [drive.name for drive in structure.mechanism.drives]
     if len(names) > 1 and any("=" not in text for text in given):
-        raise _wrong(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
+        raise _invalid(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
     found, angles = _first(structure), structure.driven_angles
-    shown = list(_named(structure, option, given))
+    shown = list(_by_driver(structure, option, given))
     for name, text in shown:
         if sum(other == name for other, _ in shown) > 1:
-            raise _wrong(f"{option} {name}", "the driver's value is given twice", "leave one of them out")
+            raise _invalid(f"{option} {name}", "the driver's value is given twice", "leave one of them out")
         found[name] = _single(text, f"{option} {text}", angles[name])
     return found
 
@@ -95,55 +94,55 @@ def _values_of(structure: Structure, drive: Drive) -> Number | None:
 
 def _single(text: str, where: str, is_angle: bool) -> float:
     try:
-        value = number(text, where)
+        value = read_number(text, where)
     except InvalidInput:
-        raise _wrong(where, "this is not one number", "give the value of a single pose") from None
+        raise _invalid(where, "this is not one number", "give the value of a single pose") from None
     return float(np.deg2rad(value)) if is_angle else value
 
 
-def numbers(text: str, where: str, how: str = HOW) -> Number:
+def read_numbers(text: str, where: str, how: str = HOW) -> Number:
     """Return numbers written one by one, or as from:to:step.
 
-    >>> numbers("0:10:5", "--at").tolist()
+    >>> read_numbers("0:10:5", "--at").tolist()
     [0.0, 5.0, 10.0]
     """
     parts = text.split(":")
     if len(parts) == 1:
-        return np.array([number(part, where, how) for part in text.split(",")])
+        return np.array([read_number(part, where, how) for part in text.split(",")])
     if len(parts) != 3:
-        raise _wrong(where, f"{text!r} is not a range", how)
-    start, stop, step = (number(part, where, how) for part in parts)
-    return stepped(start, stop, step, where)
+        raise _invalid(where, f"{text!r} is not a range", how)
+    start, stop, step = (read_number(part, where, how) for part in parts)
+    return stepped_values(start, stop, step, where)
 
 
-def number(text: str, where: str, how: str = HOW) -> float:
+def read_number(text: str, where: str, how: str = HOW) -> float:
     """Return one finite number."""
     try:
         value = float(text)
     except ValueError:
-        raise _wrong(where, f"{text!r} is not a number", how) from None
+        raise _invalid(where, f"{text!r} is not a number", how) from None
     if not isfinite(value):
-        raise _wrong(where, f"{text!r} is not finite", how)
+        raise _invalid(where, f"{text!r} is not finite", how)
     return value
 
 
-def stepped(start: float, stop: float, step: float, where: str) -> Number:
+def stepped_values(start: float, stop: float, step: float, where: str) -> Number:
     """Return the values from start to stop in steps.
 
     Raises InvalidInput where the step leads elsewhere or is too small.
     """
     if not all(map(isfinite, (start, stop, step))) or step == 0 or (stop - start) * step < 0:
-        raise _wrong(where, f"steps of {step:g} do not lead from {start:g} to {stop:g}")
+        raise _invalid(where, f"steps of {step:g} do not lead from {start:g} to {stop:g}")
     found = spaced(start, stop, step)
     if found is None:
-        raise _wrong(where, f"these are more than {MOST_VALUES:,} values", "take a greater step")
+        raise _invalid(where, f"these are more than {MOST_VALUES:,} values", "take a greater step")
     return found
 
 
-def of_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[str, float] | None:
+def read_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[str, float] | None:
     """Return rates by driver; None where none is given."""
     angles = structure.driven_angles
-    named = _named(structure, option, given)
+    named = _by_driver(structure, option, given)
     return {name: _rate(text, option, name, angles[name]) for name, text in named} or None
 
 
@@ -151,49 +150,49 @@ def _rate(text: str, option: str, name: str, is_angle: bool) -> float:
     where, how = f"{option} {name}", HOW_RATES[option, is_angle]
     said = worded_rate(text)
     if said is text:
-        return number(text, where, how)
+        return read_number(text, where, how)
     if not is_angle:
-        raise _wrong(where, f"{text!r} is no rate of a length", "write lengths a second")
+        raise _invalid(where, f"{text!r} is no rate of a length", "write lengths a second")
     return float(rate(said, where, True))
 
 
-def _named(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:
+def _by_driver(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Pairs of a driver and what is given for it; the only driver need not be named."""
     drivers = [drive.name for drive in structure.mechanism.drives]
     for text in given:
         name, equals, value = text.rpartition("=")
-        name = name if equals else _only(structure, f"{option} {text}", "write NAME=VALUE, NAME one of ")
+        name = name if equals else _only_driver(structure, f"{option} {text}", "write NAME=VALUE, NAME one of ")
         if name not in drivers:
-            raise _wrong(f"{option} {text}", f"there is no driver {name!r}", nearest(name, drivers))
+            raise _invalid(f"{option} {text}", f"there is no driver {name!r}", suggestion(name, drivers))
         yield name, value
 
 
-def _only(structure: Structure, where: str, how: str = "name one with --drive: ") -> str:
+def _only_driver(structure: Structure, where: str, how: str = "name one with --drive: ") -> str:
     """The only driver; else it is said how to name one of several."""
     drivers = [drive.name for drive in structure.mechanism.drives]
     if len(drivers) == 1:
         return drivers[0]
     if not drivers:
-        raise _wrong(where, "the mechanism has no driver")
-    raise _wrong(where, f"there are {len(drivers)} drivers", f"{how}{', '.join(drivers)}")
+        raise _invalid(where, "the mechanism has no driver")
+    raise _invalid(where, f"there are {len(drivers)} drivers", f"{how}{', '.join(drivers)}")
 
 
 def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number:
     """The values of --at, or those of --from, --to and --step; what is left out is the driver's own."""
     if "at" in span:
         if len(span) > 1:
-            raise _wrong("--at", "it does not go with --from, --to and --step", "leave one of them out")
-        return numbers(span["at"], "--at")
-    own = _own(structure, name)
+            raise _invalid("--at", "it does not go with --from, --to and --step", "leave one of them out")
+        return read_numbers(span["at"], "--at")
+    own = _own_range(structure, name)
     if own is None and not {"start", "stop", "step"} <= set(span):
-        raise _wrong("--from, --to, --step", f"the driver {name!r} has no range of its own", "give all three")
+        raise _invalid("--from, --to, --step", f"the driver {name!r} has no range of its own", "give all three")
     start, stop, step = own if own is not None else (0.0, 0.0, 0.0)
     start, stop, step = span.get("start", start), span.get("stop", stop), span.get("step", abs(step))
     # "--from 90 --to 0 --step 5" can only mean to go back
-    return stepped(start, stop, step if stop >= start or step < 0 else -step, "--from, --to, --step")
+    return stepped_values(start, stop, step if stop >= start or step < 0 else -step, "--from, --to, --step")
 
 
-def _own(structure: Structure, name: str) -> tuple[float, float, float] | None:
+def _own_range(structure: Structure, name: str) -> tuple[float, float, float] | None:
     """First value, last value and step of a driver as the mechanism has it; the first design's of several."""
     drive = next(drive for drive in structure.mechanism.drives if drive.name == name)
     is_angle = structure.driven_angles[name]
@@ -213,8 +212,8 @@ def _of_one_length(structure: Structure, values: Mapping[str, Number]) -> None:
     if len({length for length in lengths.values() if length > 1}) > 1:
         told = ", ".join(f"{name} has {length}" for name, length in lengths.items())
         what = f"the drivers have different numbers of values: {told}"
-        raise _wrong("--drive", what, "give every driver as many values, or a single one")
+        raise _invalid("--drive", what, "give every driver as many values, or a single one")
 
 
-def _wrong(where: str, what: str, remedy: str = "") -> InvalidInput:
+def _invalid(where: str, what: str, remedy: str = "") -> InvalidInput:
     return InvalidInput(Problem(where, what, remedy))

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.drive_options import MODE, assembly_modes
-from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
+from compoundkin.base.suffixes import alternatives, file_format
+from compoundkin.cli.drive_options import MODE, read_assembly_modes
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
 from compoundkin.cli.shell import put, say
 
 if TYPE_CHECKING:
@@ -47,21 +47,21 @@ def command(
     from math import radians
 
     from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
     from compoundkin.configurations.reached_region import EVERY_MODE, workspace
     from compoundkin.kinematics.solution import solving_order_of
 
     if path is not None:
-        form_of("plot", path)
+        file_format("plot", path)
     if asked["every_mode"] and modes:
         raise InvalidInput(Problem("--every-mode", "--mode says which one", "leave one of them out"))
-    structure = solving_order_of(loaded(file)).structure
-    chosen = EVERY_MODE if asked["every_mode"] else assembly_modes(structure, modes)
+    structure = solving_order_of(load_mechanism(file)).structure
+    chosen = EVERY_MODE if asked["every_mode"] else read_assembly_modes(structure, modes)
     turned = None if asked["orientation"] is None else radians(asked["orientation"])
-    ranges = ranges_of(structure, drives)
+    ranges = driver_ranges(structure, drives)
     with working("looking for the workspace"):
         found = workspace(structure, point, ranges, orientation=turned, modes=chosen, cells=asked["cells"])
-    put("\n".join(told(found)) + "\n")
+    put("\n".join(workspace_lines(found)) + "\n")
     if path is not None:
         with working("drawing"):
             found.plot(colour="condition" if asked["condition"] else None, title=asked["title"]).save(path)
@@ -69,7 +69,7 @@ def command(
     return 0
 
 
-def ranges_of(structure: Structure, given: Sequence[str]) -> dict[str, tuple[float, float]]:
+def driver_ranges(structure: Structure, given: Sequence[str]) -> dict[str, tuple[float, float]]:
     """Return the ranges of drivers, radians or lengths, from texts NAME=LOW:HIGH."""
     from math import radians
 
@@ -82,13 +82,13 @@ def ranges_of(structure: Structure, given: Sequence[str]) -> dict[str, tuple[flo
         parts = span.split(":")
         if not name or len(parts) != 2:
             raise InvalidInput(Problem(f"--drive {text}", "this is no range", "write NAME=LOW:HIGH, such as left=0:90"))
-        low, high = (typed_values.number(part, f"--drive {text}") for part in parts)
+        low, high = (typed_values.read_number(part, f"--drive {text}") for part in parts)
         is_angle = structure.driven_angles.get(name, False)
         found[name] = (radians(low), radians(high)) if is_angle else (low, high)
     return found
 
 
-def told(found: Workspace) -> list[str]:
+def workspace_lines(found: Workspace) -> list[str]:
     """Return what is told of a workspace, line by line."""
     from math import degrees
 

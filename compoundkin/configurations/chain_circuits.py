@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, wrapped
-from compoundkin.base.bracketing import bisected
+from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.configurations.circuit import Branch, ChangePoint, Circuit, Limit, Toggle
 from compoundkin.configurations.segment_poses import SegmentPoses
 from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, RANGE, SegmentChain, Segments, Visit
@@ -174,7 +174,7 @@ def _of_link(
     kept = moving[at]
     at, low, high = at[kept], phi[cell[kept]], phi[cell[kept] + 1]
     rising = _rate(placing, pair, at, high[:, None])[:, 0] > 0 if len(at) else np.zeros(0, dtype=bool)
-    low, _ = bisected(
+    low, _ = bisect_brackets(
         lambda middle: (_rate(placing, pair, at, middle[:, None])[:, 0] > 0) != rising, low, high, HALVINGS
     )
     values = segments.at(at, low[:, None])[:, 0] if len(at) else np.zeros(0)

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import TURN
-from compoundkin.base.display import Shows, counted
-from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.display import DisplaysHtml, count_phrase
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
 from compoundkin.configurations import closed_form_segments, general_segments
 from compoundkin.configurations.chain_circuits import built, toggles_of
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit, Toggle
@@ -43,7 +42,7 @@ FINENESS = (1, 3, 9)
 
 
 @dataclass(frozen=True, eq=False)
-class Circuits(Shows):
+class Circuits(DisplaysHtml):
     """All circuits of a mechanism, moved by one driver while the others stand still.
 
     `fixed` are the values of the others. The real configurations were counted at `checked` fresh driver values, and
@@ -101,8 +100,8 @@ class Circuits(Shows):
         return self.at(self.branches[what - 1].configuration)
 
     def __repr__(self) -> str:
-        branches = counted(len(self.branches), "branch", "branches")
-        return f"Circuits({counted(len(self.circuits), 'circuit')}, {branches} of the driver {self.driver!r})"
+        branches = count_phrase(len(self.branches), "branch", "branches")
+        return f"Circuits({count_phrase(len(self.circuits), 'circuit')}, {branches} of the driver {self.driver!r})"
 
 
 @checked
@@ -166,7 +165,7 @@ def _driver(solving_order: SolvingOrder, driver: str | None) -> str:
     if driver is None:
         raise InvalidInput(Problem("driver", f"there are {len(names)} drivers", f"name one: {', '.join(names)}"))
     if driver not in names:
-        raise InvalidInput(Problem(f"driver {driver}", f"there is no driver {driver!r}", nearest(driver, names)))
+        raise InvalidInput(Problem(f"driver {driver}", f"there is no driver {driver!r}", suggestion(driver, names)))
     return driver
 
 

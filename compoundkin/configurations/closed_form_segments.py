@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.bracketing import bisected, least
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.bracketing import bisect_brackets, golden_section_minimum
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import BLOCK, Block
@@ -109,7 +109,7 @@ def events_of(margins: Margins) -> list[list[Event]]:
     brackets = [(rows, phi[cell], phi[cell + 1])]
     rows, at = _dips(m, good)
     sense = np.where(good[rows, at], 1.0, -1.0)
-    place, lowest = least(
+    place, lowest = golden_section_minimum(
         lambda s, which: sense[which] * margins(rows[which], s),
         phi[at - 1],
         phi[at + 1],
@@ -152,7 +152,7 @@ def _zeros(margins: Margins, rows: Number, low: Number, high: Number) -> Number:
     if not len(rows):
         return np.zeros(0)
     rising = margins(rows, high) >= 0
-    low, high = bisected(lambda middle: (margins(rows, middle) >= 0) != rising, low, high, HALVINGS)
+    low, high = bisect_brackets(lambda middle: (margins(rows, middle) >= 0) != rising, low, high, HALVINGS)
     return np.where(rising, high, low)
 
 

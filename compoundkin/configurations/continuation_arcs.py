@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.bracketing import false_position
-from compoundkin.base.continuation import StepLengths, Taken, corrected_across, follow, tangent
+from compoundkin.base.continuation import StepLengths, StepResult, correct_in_hyperplane, tangent, trace_paths
 from compoundkin.base.newton import NewtonResult
-from compoundkin.base.series import Number
 from compoundkin.configurations.segment_closure import SegmentClosure
 
 # Newton has converged when its correction is below this; it is quadratic, so that the next would be rounding.
@@ -63,11 +63,11 @@ class ContinuationPaths:
     def go(self, longest: float = LONGEST) -> list[ContinuationArc]:
         """Follow all of them to the next slice."""
         lengths = StepLengths(longest, longest, SHORTEST, easy=1, most=MOST_STEPS)
-        follow(self._step, np.isfinite(self.tangent).all(axis=1), lengths)
+        trace_paths(self._step, np.isfinite(self.tangent).all(axis=1), lengths)
         self._find_turnings()
         return self.arcs
 
-    def _step(self, i: Number, longest: Number) -> Taken:
+    def _step(self, i: Number, longest: Number) -> StepResult:
         """Try one step of the paths `i`: to the next slice, or as long as may be."""
         y, t = self.y[i], self.tangent[i]
         goal = self.low[i] + (t[:, -1] > 0)
@@ -88,10 +88,10 @@ class ContinuationPaths:
         good &= inside | arriving
         self._note_turnings(i, good, h, new, along)
         self._take(i, good, new, along, side, np.where(arriving, goal, -1))
-        return Taken(h, good, good & arriving)
+        return StepResult(h, good, good & arriving)
 
     def _corrected(self, rows: Number, guess: Number, across: Number) -> NewtonResult:
-        return corrected_across(lambda y: self.closure.at(rows, y), guess, across, CONVERGED, CORRECTIONS)
+        return correct_in_hyperplane(lambda y: self.closure.at(rows, y), guess, across, CONVERGED, CORRECTIONS)
 
     def _note_turnings(self, i: Number, good: Number, h: Number, new: Number, along: Number) -> None:
         turned = good & (along[:, -1] * self.tangent[i, -1] < 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.configurations.closed_form_segments import CELLS, Margins, cuts_between, events_of, glued
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import END, Segments

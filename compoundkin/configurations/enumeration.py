@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number, degrees, first_entry
-from compoundkin.base.bracketing import bisected
+from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.configurations.driver_range import reach_of
@@ -209,7 +209,9 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, name: str) -> tuple[flo
     order = np.argsort(np.abs(offsets), kind="stable")
     best = int(order[good[order]][0])
     far = offsets[[best]] - np.sign(offsets[[best]]) * 2.0 * span / (TRIED - 1)
-    near, _ = bisected(lambda offset: _any(solving_order, first, name, here + offset), offsets[[best]], far, HALVINGS)
+    near, _ = bisect_brackets(
+        lambda offset: _any(solving_order, first, name, here + offset), offsets[[best]], far, HALVINGS
+    )
     return abs(near[0]) / (1.0 if is_angle else solving_order.size), here + near[0]
 
 

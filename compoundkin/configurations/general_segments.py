@@ -7,8 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.configurations.roadmap import STRIPS, Port, Roadmap
 from compoundkin.configurations.segment_closure import SegmentClosure
 from compoundkin.configurations.segment_poses import Sweep

@@ -18,10 +18,13 @@ from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import Drive, Expectation, Item, Lead, LinkOutline, LoadWord, Mode, drive
+from compoundkin.model.elements import Drive, Expectation, Item, Mode, drive
 from compoundkin.model.laws import constant_speed
-from compoundkin.model.laws.path_parts import PARTS
+from compoundkin.model.laws.path_coordinate import PARTS
+from compoundkin.model.loads import LoadElement
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines import LinkOutline
+from compoundkin.model.prescribed_motion import PrescribedMotion
 
 # What leads the point, and the drivers of it: its coordinates, and the angle of the first link that carries it. No link
 # or point is called so.
@@ -101,9 +104,9 @@ class LedPoint:
 
 def _led(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
     """Return the mechanism with some drivers let go and a point carried about in their place."""
-    parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation | LoadWord | LinkOutline)]
+    parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation | LoadElement | LinkOutline)]
     kept = [item for item in parts if not (isinstance(item, Drive) and item.name in free)]
-    leader = Lead(LEADER, point, x=constant_speed(0.0), y=constant_speed(0.0))
+    leader = PrescribedMotion(LEADER, point, x=constant_speed(0.0), y=constant_speed(0.0))
     turned: tuple[Item, ...] = ()
     if len(free) == 3:
         turned = (drive(mechanism.carriers[point][0], on=leader.links[-1], pair=point, name=TURN_OF),)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, wrapped
-from compoundkin.base.bracketing import bisected, false_position
+from compoundkin.base.bracketing import bisect_brackets, false_position
 from compoundkin.configurations.enumeration import AllModes, closed_redundant
 from compoundkin.configurations.led_point import LedPoint, LiveSigns
 from compoundkin.configurations.own_modes import ROUNDING, OwnModes
@@ -97,7 +97,7 @@ class Reach:
 
         zero, one = np.zeros(len(way)), np.ones(len(way))
         if self.led.led.numbered:
-            part, _ = bisected(lambda part: margin(part) >= 0.0, zero, one, HALVINGS)
+            part, _ = bisect_brackets(lambda part: margin(part) >= 0.0, zero, one, HALVINGS)
             return inside + part * way
         exact = (FLAT_BY_ANGLES, TRIALS_BY_ANGLES) if self.seeks_angle else (FLAT, TRIALS)
         part = false_position(margin, one, np.fmax(margin(zero), 0.0) + ROUNDING**2, margin(one), *exact)

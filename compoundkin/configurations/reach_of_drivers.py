@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, first_entry
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.configurations.enumeration import AllModes
 from compoundkin.configurations.led_point import LedPoint
-from compoundkin.model.pairs.guide_ends import as_ended
+from compoundkin.model.pairs.travel_limits import as_travel_limited
 from compoundkin.structure.kinematic_structure import Structure
 
 # So many values of each driver are tried to see about where the point gets, with two drivers and with three.
@@ -25,7 +25,7 @@ ENOUGH = 3000
 def given_ranges(structure: Structure, ranges: Mapping[str, Any] | None) -> dict[str, tuple[float, float]]:
     """Return the ranges of the drivers that have one. By a call, or by the ends of guides."""
     problems = [
-        Problem(f"ranges.{name}", f"there is no driver {name!r}", nearest(name, list(structure.driven)))
+        Problem(f"ranges.{name}", f"there is no driver {name!r}", suggestion(name, list(structure.driven)))
         for name in ranges or {}
         if name not in structure.driven
     ]
@@ -33,7 +33,7 @@ def given_ranges(structure: Structure, ranges: Mapping[str, Any] | None) -> dict
         raise InvalidInput(problems)
     found = {}
     for name, step in structure.driven.items():
-        own = as_ended(step.pair)
+        own = as_travel_limited(step.pair)
         if ranges and name in ranges:
             found[name] = _range(name, ranges[name])
         elif own is not None and np.all(
@@ -71,7 +71,7 @@ def free_drivers(structure: Structure, point: str, orientation: float | None) ->
     """Return the drivers that move a point, two or three. Raises UnknownName, and InvalidInput for another number."""
     carriers = structure.mechanism.carriers
     if point not in carriers:
-        raise UnknownName(Problem(point, "there is no such point", nearest(point, list(carriers))))
+        raise UnknownName(Problem(point, "there is no such point", suggestion(point, list(carriers))))
     moving = set(_drivers_of(structure, carriers[point][0]))
     free = tuple(name for name in structure.driven if name in moving)
     if len(free) in TRIED:

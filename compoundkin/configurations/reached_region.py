@@ -16,7 +16,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
-from compoundkin.base.display import way
+from compoundkin.base.display import display_function
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.configurations.driver_range import starting_values
 from compoundkin.configurations.led_point import LedPoint
@@ -125,7 +125,7 @@ class Workspace(CopiesFields):
 
     def plot(self, **options: Any) -> Any:
         """Draw the region with its boundary, and the mechanism in one pose. `compoundkin.plots.workspace` of it."""
-        return way("workspace")(self, **options)
+        return display_function("workspace")(self, **options)
 
     def __repr__(self) -> str:
         holes = f", {len(self.inner)} of them holes" if self.inner else ""

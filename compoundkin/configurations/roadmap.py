@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.configurations.continuation_arcs import LONGEST, ContinuationArc, ContinuationPaths
 from compoundkin.configurations.segment_closure import SegmentClosure
 from compoundkin.kinematics.configuration_arrays import state_distance

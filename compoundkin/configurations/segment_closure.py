@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import constant
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import NONE, Segments
 from compoundkin.kinematics.block import Block

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arrays import Number, column
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import Series, constant
 from compoundkin.configurations.segments import NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import Block
@@ -22,7 +22,7 @@ from compoundkin.model.pairs.contract import Ends
 
 
 @dataclass(frozen=True, repr=False)
-class Sweep(PrintsShort):
+class Sweep(ShortRepr):
     """A solving order with one design and all driver values but one. The design gives the dimensions."""
 
     solving_order: SolvingOrder
@@ -88,7 +88,7 @@ def drawn_angle(solving_order: SolvingOrder, link: str) -> Number:
 
 
 @dataclass(frozen=True, repr=False)
-class SegmentPoses(PrintsShort):
+class SegmentPoses(ShortRepr):
     """All segments of a mechanism, and what makes poses of them."""
 
     sweep: Sweep

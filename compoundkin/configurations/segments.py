@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # What the end of a segment is: a limit position of a group; a change point of a group, where its modes meet and the
 # motion goes on; the seam where a full turn begins again; the end of the range that was asked for; a place where a

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from compoundkin.base.display import Shows
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.display import DisplaysHtml
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.friction.efficiency import Efficiency
 from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Forces(Shows, FoundForces):
+class Forces(DisplaysHtml, FoundForces):
     """The forces of a motion, in the mechanism's units.
 
     Arrays have the motion's shape, and are NaN where poses are not assembled.
@@ -135,7 +135,7 @@ class Forces(Shows, FoundForces):
         """
         known = self.mechanism.links
         if link not in known:
-            raise UnknownName(Problem(str(link), "there is no such link", nearest(str(link), list(known))))
+            raise UnknownName(Problem(str(link), "there is no such link", suggestion(str(link), list(known))))
         if link not in self._on:
             self._on[link] = link_forces(self, link)
         return self._on[link]

@@ -7,19 +7,21 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem, UnknownName
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block, blocks
 from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.inputs import fit, mapped
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.number_parts import rectangle
-from compoundkin.model.elements import Load, Mass
+from compoundkin.model.definition import matching_pairs, pair_by_name
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.mass import Mass
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pin_pairs import meant_pair, pairs_like
 from compoundkin.model.units import Units
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -86,11 +88,11 @@ class LoadedBlock:
 
     def _meant(self, name: str) -> tuple[Pair, int]:
         """Return the pair of a name, as the motion has it where it does, and the sign of the coordinate."""
-        meant = meant_pair(self.motion.mechanism, name)
+        meant = pair_by_name(self.motion.mechanism, name)
         if meant is None:
             raise UnknownName(Problem(name, "there is no such pair, pin or driver"))
         pair, sign = meant
-        for own in pairs_like(self.motion.solving_order.pairs, pair):
+        for own in matching_pairs(self.motion.solving_order.pairs, pair):
             return own, sign * (1 if own.members == pair.members else -1)
         return pair, sign
 

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from compoundkin.model.attributes import IMBALANCE, TIME_RATIO, course_figure, is_angle_word
+from compoundkin.model.attributes import IMBALANCE, TIME_RATIO, is_angle_word, motion_figure
+from compoundkin.model.definition import CYLINDERS, DRIVES
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key, Kind
-from compoundkin.model.laws.program_segments import LIMITS, NAMES, ProgramSegment
+from compoundkin.model.laws.motion_programs import LIMITS, NAMES, ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.outlines.link_outline import OUTLINES, LinkOutline
+from compoundkin.model.outlines import OUTLINES, LinkOutline
 from compoundkin.model.pairs import KINDS, WRITTEN
 from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.written import CYLINDERS, DRIVES
 
 FORMATS = (1,)
 
@@ -126,7 +126,7 @@ def quantity_is_angle(quantity: object) -> bool:
     """
     if not isinstance(quantity, str):
         return False
-    of, figure = course_figure(quantity)
+    of, figure = motion_figure(quantity)
     if figure in (TIME_RATIO, IMBALANCE):
         return figure == IMBALANCE
     return "." in of and is_angle_word(of.rpartition(".")[2])

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.files.written_quantities import RPM, spaced
 from compoundkin.model.geometry import polar
 

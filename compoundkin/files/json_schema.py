@@ -11,17 +11,17 @@ from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.document import KIND, PROGRAM, SEGMENT
-from compoundkin.model.elements import FRAME
+from compoundkin.model.definition import DRIVES
 from compoundkin.model.fields import Key, Kind
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import WRITTEN as LAWS
-from compoundkin.model.laws.program_segments import ProgramSegment
-from compoundkin.model.leads import WRITTEN as PATHS
-from compoundkin.model.leads import Lead
+from compoundkin.model.laws.motion_programs import ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
-from compoundkin.model.loads.load_table import LoadTable
+from compoundkin.model.loads.amounts import LoadTable
+from compoundkin.model.prescribed_motion import WRITTEN as PATHS
+from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.model.profiles import WRITTEN as PROFILES
 from compoundkin.model.units import KNOWN as UNITS
-from compoundkin.model.written import DRIVES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -70,8 +70,8 @@ def _tables(table: doc.TableForm) -> dict[str, Any]:
     if len(kinds := LOADS.get(table.name, ())) > 1:
         one = {"anyOf": [closed_table(kind.keys) for kind in kinds]}
     if table.name == DRIVES:
-        ways = [{"required": [key.name]} for key in Lead.keys if key.kind in ("law", "path")]
-        one = {"anyOf": [one, {**closed_table(Lead.keys), "anyOf": ways}]}
+        ways = [{"required": [key.name]} for key in PrescribedMotion.keys if key.kind in ("law", "path")]
+        one = {"anyOf": [one, {**closed_table(PrescribedMotion.keys), "anyOf": ways}]}
     if table.form == "array":
         return {"type": "array", "items": one, "description": table.doc}
     return {"type": "object", "additionalProperties": one, "required": [FRAME], "description": table.doc}

@@ -14,12 +14,11 @@ from compoundkin.files import exact_numbers
 from compoundkin.files.recovery import JOINED, Recovery
 from compoundkin.files.single_values import wrong
 from compoundkin.model.attributes import TIME
-from compoundkin.model.elements import Gravity, Item
+from compoundkin.model.elements import Item
 from compoundkin.model.loads import WRITTEN as LOADS
-from compoundkin.model.loads.along_pair import COORDINATE
-from compoundkin.model.loads.amounts import LoadFunction
-from compoundkin.model.loads.gravity import warn_of_unit
-from compoundkin.model.loads.load_table import LoadTable
+from compoundkin.model.loads.amounts import LoadFunction, LoadTable
+from compoundkin.model.loads.attachments import COORDINATE
+from compoundkin.model.loads.gravity import Gravity, warn_of_unit
 from compoundkin.model.mechanism import Mechanism
 
 # The key that tells springs and dampers along pairs from those between points.

@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, suggestion
 from compoundkin.base.suffixes import SUFFIXES, Kind, suffix_of
 
 Syntax: TypeAlias = Literal["toml", "json"]
@@ -61,7 +61,7 @@ def known_syntax(syntax: str) -> Syntax:
     for known in SYNTAXES:
         if syntax == known:
             return known
-    raise InvalidInput(Problem("syntax", f"{syntax!r} is not known", nearest(str(syntax), SYNTAXES)))
+    raise InvalidInput(Problem("syntax", f"{syntax!r} is not known", suggestion(str(syntax), SYNTAXES)))
 
 
 def parsed(text: str, syntax: Syntax, where: str, kind: Kind = "mechanism") -> dict[str, Any]:
@@ -109,7 +109,7 @@ def _neighbour(path: Path, kind: Kind) -> str:
         found = sorted(p.name for p in path.parent.iterdir() if p.suffix in SUFFIXES[kind])
     except OSError:
         return ""
-    remedy = nearest(path.name, found)
+    remedy = suggestion(path.name, found)
     return remedy if remedy.startswith("did") else ""
 
 

@@ -14,13 +14,15 @@ from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.tagged_tables import TAGGED
 from compoundkin.files.written_quantities import rate, values
-from compoundkin.model.attributes import ANGLE, TIME, rated
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Link, Mode, drive
+from compoundkin.model.attributes import ANGLE, TIME, driver_and_rate
+from compoundkin.model.definition import CYLINDERS, DRIVES
+from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode, drive
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.outlines.link_outline import OUTLINES, LinkOutline
+from compoundkin.model.outlines import OUTLINES, LinkOutline
 from compoundkin.model.pairs import WRITTEN, Pair
 from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.written import CYLINDERS, DRIVES
+from compoundkin.model.prescribed_motion import PrescribedMotion
 
 
 def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
@@ -128,29 +130,29 @@ def _pair(kind: type[Pair], raw: Any, where: str, log: Recovery) -> Pair:
 
 
 # The keys that only drivers of points and of links' angles have.
-LED = {key.name for key in Lead.keys} - {key.name for key in Drive.keys}
+LED = {key.name for key in PrescribedMotion.keys} - {key.name for key in Drive.keys}
 
 
-def _driven(base: Mechanism, drives: Iterable[Drive | Lead]) -> Iterator[tuple[str, bool | None]]:
+def _driven(base: Mechanism, drives: Iterable[Drive | PrescribedMotion]) -> Iterator[tuple[str, bool | None]]:
     """Yield what is driven, and whether it is an angle."""
     for item in drives:
-        if isinstance(item, Lead):
+        if isinstance(item, PrescribedMotion):
             yield from ((name, word == ANGLE) for word, name in item.drivers.items())
         else:
             yield item.name, doc.is_angle(base, item)
 
 
-def _drive(base: Mechanism | None, raw: Any, where: str, log: Recovery) -> Drive | Lead:
+def _drive(base: Mechanism | None, raw: Any, where: str, log: Recovery) -> Drive | PrescribedMotion:
     if isinstance(raw, dict) and not LED.isdisjoint(raw):
         before = len(log.problems)
-        led = log.table(raw, Lead.keys, where, ANGLE in raw)
+        led = log.table(raw, PrescribedMotion.keys, where, ANGLE in raw)
         if len(log.problems) > before:
             log.doubts.append(f"{re.escape(where)}$")
-        return Lead(led.pop("name", led.get("point", led.get("link", ""))), **led)
+        return PrescribedMotion(led.pop("name", led.get("point", led.get("link", ""))), **led)
     said = {k: v for k, v in raw.items() if isinstance(v, str)} if isinstance(raw, dict) else {}
     meant = Drive("", said.get("link", ""), said.get("on", FRAME), said.get("pair", ""))
     found = log.table(raw, Drive.keys, where, doc.is_angle(base, meant) if base else None)
-    made: Drive | Lead = drive(found.pop("link"), **found)
+    made: Drive | PrescribedMotion = drive(found.pop("link"), **found)
     return made
 
 
@@ -162,7 +164,7 @@ def _expected(angles: Mapping[str, bool | None], raw: Any, where: str, log: Reco
 
 
 def _at(angles: Mapping[str, bool | None], key: str, raw: Any, where: str, log: Recovery) -> float:
-    name, word = rated(key, list(angles))
+    name, word = driver_and_rate(key, list(angles))
     try:
         if key == TIME and key not in angles:
             return single(raw, where)

@@ -9,13 +9,13 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
-from compoundkin.base.errors import InvalidMechanism, Problem, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
 from compoundkin.files.single_values import bad, wrong
 from compoundkin.files.value_readers import READERS
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.loads import WRITTEN as LOADS
-from compoundkin.model.outlines.link_outline import OUTLINES
+from compoundkin.model.outlines import OUTLINES
 from compoundkin.model.profiles import disc
 
 # Begins every name that stands in for a broken one: the Unicode replacement character.
@@ -74,7 +74,7 @@ class Recovery:
         for key, value in raw.items():
             if key in known:
                 continue
-            remedy = nearest(key, known)
+            remedy = suggestion(key, known)
             self.report(bad(inside(where, key), "there is no such key here", remedy))
             meant = next((name for name in known if remedy == f"did you mean {name!r}?"), None)
             if meant is not None and meant not in given:

@@ -19,7 +19,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.suffixes import Kind, everything, form_of
+from compoundkin.base.suffixes import Kind, all_suffixes, file_format
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.mechanism_files import encoded
 from compoundkin.files.parquet_library import parquet
@@ -130,7 +130,7 @@ class Savable:
 
         Raises InvalidInput for another suffix, where the file cannot be written, or where a library is missing.
         """
-        content = self.content(form_of(self.saved_as, path))
+        content = self.content(file_format(self.saved_as, path))
         write_atomically(path, lambda file: file.write(content))
 
 
@@ -156,14 +156,14 @@ def save(what: Any, path: str | os.PathLike[str]) -> None:
     if isinstance(what, Savable):
         what.save(path)
     elif isinstance(what, Contained):
-        text = what.content(form_of(what.saved_as, path))
+        text = what.content(file_format(what.saved_as, path))
         write_atomically(path, lambda file: file.write(text))
     elif isinstance(what, Mechanism):
-        content = encoded(what, form_of("mechanism", path), path)
+        content = encoded(what, file_format("mechanism", path), path)
         write_atomically(path, lambda file: file.write(content))
     elif isinstance(what, Table | Tabulated):
-        write = WRITERS[form_of("table", path)]
+        write = WRITERS[file_format("table", path)]
         write_atomically(path, write(what if isinstance(what, Table) else what.table()))
     else:
         told = f"a {type(what).__name__} cannot be saved"
-        raise InvalidInput(Problem(str(path), told, everything()))
+        raise InvalidInput(Problem(str(path), told, all_suffixes()))

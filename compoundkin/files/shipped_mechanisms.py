@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.suffixes import SUFFIXES, suffix_for
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def path(name: str) -> Path:
     compoundkin.base.errors.UnknownName: sixbar: the catalog has no such mechanism; did you mean 'six-bar'?
     """
     if name not in names():
-        raise UnknownName(Problem(name, "the catalog has no such mechanism", nearest(name, names())))
+        raise UnknownName(Problem(name, "the catalog has no such mechanism", suggestion(name, names())))
     return folder() / (name + SUFFIX)
 
 
@@ -86,7 +86,7 @@ def resolve(name_or_path: str | PathLike[str]) -> Path:
         return path(text)
     if Path(text).suffix in SUFFIXES["mechanism"] or "/" in text or "\\" in text:
         raise InvalidInput(Problem(text, "there is no such file", _remedy(text)))
-    raise UnknownName(Problem(text, "neither a file nor in the catalog", nearest(text, names())))
+    raise UnknownName(Problem(text, "neither a file nor in the catalog", suggestion(text, names())))
 
 
 def _remedy(text: str) -> str:

@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import hidden_character_problem
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.base.series import Number
-from compoundkin.base.texts import unseen
 
 # value as written, its place, whether its coordinate is an angle (None: not known) -> value as held
 Reader: TypeAlias = Callable[[Any, str, "bool | None"], Any]
@@ -56,8 +56,8 @@ def text(value: Any, where: str, angle: bool | None = None) -> str:
     """Read a text."""
     if not isinstance(value, str):
         raise wrong(where, value, "a text", "write it in quotes")
-    if unseen(value):
-        raise bad(where, unseen(value), "leave it out")
+    if hidden_character_problem(value):
+        raise bad(where, hidden_character_problem(value), "leave it out")
     return value
 
 

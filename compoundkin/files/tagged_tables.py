@@ -6,19 +6,18 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
 from compoundkin.files.document import DWELL, KIND, PROGRAM, RISING, SEGMENT
 from compoundkin.files.recovery import PROFILE, Recovery, Tagged
 from compoundkin.files.single_values import bad, described, numbers, wrong
 from compoundkin.files.written_quantities import point
-from compoundkin.model import laws, leads, profiles
+from compoundkin.model import laws, prescribed_motion, profiles
 from compoundkin.model.attributes import TIME
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import Law
-from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.laws.program_segments import ProgramSegment
-from compoundkin.model.leads import Path
-from compoundkin.model.loads.load_table import LoadTable
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment
+from compoundkin.model.loads.amounts import LoadTable
+from compoundkin.model.prescribed_paths import Path
 from compoundkin.model.profiles import Profile
 
 
@@ -41,7 +40,7 @@ def of_kind(
     kind = raw.get(KIND)
     if not isinstance(kind, str) or kind not in known:
         what = f"there is no {word} {described(kind)}" if KIND in raw else "it is missing"
-        log.report(bad(f"{where}.{KIND}", what, nearest(str(kind), list(known))))
+        log.report(bad(f"{where}.{KIND}", what, suggestion(str(kind), list(known))))
         return None
     entries = {key: value for key, value in raw.items() if key != KIND}
     return made(log, known[kind], entries, where, angle)
@@ -49,7 +48,7 @@ def of_kind(
 
 def path(log: Recovery, raw: Any, where: str, angle: bool | None) -> Path | None:
     """Return the path that a table says. None where it is broken, which is reported."""
-    return of_kind(log, "path", leads.WRITTEN, raw, where, False)
+    return of_kind(log, "path", prescribed_motion.WRITTEN, raw, where, False)
 
 
 def segments(

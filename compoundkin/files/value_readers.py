@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.files.single_values import (
     Reader,
     bad,

@@ -5,25 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from compoundkin.base.arrays import Number
+from compoundkin.base.copies import nested_equal
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.nested_values import same
-from compoundkin.base.series import Number
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
 from compoundkin.files.load_entries import load_table
 from compoundkin.files.reader import default_name
-from compoundkin.model.attributes import ANGLE, OF_POINTS, rated
-from compoundkin.model.elements import Drive, Expectation, Gravity, Lead, Link
+from compoundkin.model.attributes import ANGLE, OF_POINTS, driver_and_rate
+from compoundkin.model.definition import CYLINDERS, DRIVES
+from compoundkin.model.elements import Drive, Expectation, Link
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
-from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.laws.program_segments import ProgramSegment
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
+from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.outlines.link_outline import OUTLINES
+from compoundkin.model.outlines import OUTLINES
 from compoundkin.model.pairs import WRITTEN
-from compoundkin.model.written import CYLINDERS, DRIVES
+from compoundkin.model.prescribed_motion import PrescribedMotion
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
@@ -40,7 +41,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     for name in WRITTEN:
         out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
-    out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | Lead)]
+    out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | PrescribedMotion)]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
     for name in (*LOADS, OUTLINES):
         out[name] = [_load(mechanism, item) for item in mechanism.items if getattr(item, "table", "") == name]
@@ -74,7 +75,7 @@ def _table(item: Any, keys: tuple[Key, ...], angle: bool = False) -> dict[str, A
 def _left_out(key: Key, value: Any) -> bool:
     if key.required:
         return False
-    return value is None or same(value, key.default) or (isinstance(value, str | tuple) and not value)
+    return value is None or nested_equal(value, key.default) or (isinstance(value, str | tuple) and not value)
 
 
 def _link(item: Link) -> dict[str, Any]:
@@ -99,11 +100,11 @@ def _pair(item: Any) -> dict[str, Any]:
     return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
 
 
-def _driven(mechanism: Mechanism, item: Drive | Lead) -> dict[str, Any]:
-    return _lead(item) if isinstance(item, Lead) else _drive(mechanism, item)
+def _driven(mechanism: Mechanism, item: Drive | PrescribedMotion) -> dict[str, Any]:
+    return _lead(item) if isinstance(item, PrescribedMotion) else _drive(mechanism, item)
 
 
-def _lead(item: Lead) -> dict[str, Any]:
+def _lead(item: PrescribedMotion) -> dict[str, Any]:
     """Return what leads a point or turns a link. Raises InvalidInput where a Python function does."""
     for key in item.keys:
         held = getattr(item, key.name)
@@ -150,7 +151,7 @@ def _program(item: Program, angle: bool) -> Any:
 
 def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
     angles = {d.name: bool(doc.is_angle(mechanism, d)) for d in mechanism.drives}
-    angles |= {item.drivers[ANGLE]: True for item in mechanism.leads.values() if item.angle is not None}
+    angles |= {item.drivers[ANGLE]: True for item in mechanism.prescribed_motions.values() if item.angle is not None}
     out = _table(item, doc.EXPECTED, doc.quantity_is_angle(item.quantity))
     if item.at:
         out["at"] = {key: _at(angles, key, value) for key, value in item.at}
@@ -161,7 +162,7 @@ def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
 
 
 def _at(angles: Mapping[str, bool], key: str, value: float) -> Any:
-    name, word = rated(key, list(angles))
+    name, word = driver_and_rate(key, list(angles))
     return (exact_numbers.rate if word else exact_numbers.coordinate)(value, angles.get(name, False))
 
 

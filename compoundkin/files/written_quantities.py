@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.files.single_values import bad, held, numbers, single, wrong
 from compoundkin.files.worded_numbers import warn_of_radians, worded_range, worded_rate
 from compoundkin.model.geometry import polar, vector

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import constant
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
@@ -64,7 +64,7 @@ def drawn_value(
         return None if length is None else _signed(first_of(length), given.drives[name][0])
     ends = given.cut(slice(None), slice(0, 1)).ends[pair.name]
     poses = (column(drawn[pair.members[0]]), column(drawn[pair.members[1]]))
-    return pair.shown_coordinate(ends, poses) * pair.driven_by(driven.drive.link)
+    return pair.drawn_coordinate(ends, poses) * pair.driven_by(driven.drive.link)
 
 
 def _signed(length: Number, values: Number) -> Number:

@@ -8,10 +8,11 @@ from math import factorial
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED, End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.limits import CLIPPED, LimitRule, Root
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, whole_turns
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import TURN, Number, whole_turns
 from compoundkin.kinematics.approach import SPACING, spacings
 from compoundkin.kinematics.group_paths import GroupPath
 from compoundkin.kinematics.inputs import Inputs

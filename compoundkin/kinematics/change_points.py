@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.bracketing import false_position
-from compoundkin.base.series import Number
 from compoundkin.kinematics.double_roots import EXTRA, TOUCHING, roots_along, slope_is_zero, squares
 from compoundkin.kinematics.driver_ways import BLOCK, NEAR, SearchedWay, searched_ways
 from compoundkin.kinematics.tracking import Tracker

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -109,7 +109,7 @@ def _read(solving_order: SolvingOrder, part: str) -> tuple[int, int]:
         if mode is not None:
             return k, mode
     what = f"{part!r} is no configuration of a group"
-    raise InvalidInput(Problem("modes", what, nearest(part, list(known)) + " with +, - or a number from 1"))
+    raise InvalidInput(Problem("modes", what, suggestion(part, list(known)) + " with +, - or a number from 1"))
 
 
 def _labels(solving_order: SolvingOrder) -> Iterator[tuple[str, int]]:
@@ -166,7 +166,7 @@ def read_hint(solving_order: SolvingOrder, hint: Mapping[str, object] | None) ->
     """Return a hint as planar vectors. Raises InvalidInput for points that the mechanism does not have."""
     letters = solving_order.structure.mechanism.carriers
     wrong = [
-        Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))
+        Problem(f"hint.{k}", f"there is no point {k!r}", suggestion(k, list(letters)))
         for k in hint or {}
         if k not in letters
     ]

@@ -6,15 +6,15 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column, first_of
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.attached_places import surroundings
 from compoundkin.kinematics.groups.general import bodies_at, known_configurations
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.drawn_poses import told_poses
+from compoundkin.model.mechanism import poses_from_drawing
 
 # Random starts for a group that is not drawn completely; those after the first closed one only where a
 # drawing can tell the better of two.
@@ -76,7 +76,7 @@ class ClosedStates:
     def _guesses(self) -> list[Pose | None]:
         """Return the poses of the group's bodies as far as the drawing and what is known already show them."""
         group, block = self.solver.group, self.block
-        told = told_poses(
+        told = poses_from_drawing(
             {link: self._points(link) for link in (*group.uses, *group.links)},
             ((pair, block.ends[pair.name]) for pair in (*group.inner, *group.outer)),
             {k: first_of(p) for k, p in self.sketch.items()},

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import Number, entry
-from compoundkin.base.display import Shows
+from compoundkin.base.display import DisplaysHtml
 from compoundkin.base.poses import Pose
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -22,7 +22,7 @@ SIGNS = {1: "+", -1: "-", 0: "±"}
 
 
 @dataclass(frozen=True, eq=False)
-class Configuration(Shows):
+class Configuration(DisplaysHtml):
     """A mechanism assembled at one value of every driver, in one way. The values are radians or lengths.
 
     `poses` are those of all links. `modes[k]` is, for groups with several configurations, "+", "-" ("±" at the limit
@@ -59,7 +59,7 @@ class Configuration(Shows):
 
 
 @dataclass(frozen=True, eq=False)
-class ConfigurationCurve(Shows):
+class ConfigurationCurve(DisplaysHtml):
     """A curve of configurations: `links` move although all drivers stand still.
 
     `through` is one of them; its name says nothing, for the groups of those on a curve have no modes.

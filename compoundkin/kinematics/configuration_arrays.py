@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import Number, Vectors, wrapped
-from compoundkin.base.display import Shows, counted
-from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, nearest
+from compoundkin.base.display import DisplaysHtml, count_phrase
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, suggestion
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.configuration import (
     Configuration,
@@ -25,7 +25,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True, eq=False)
-class Configurations(Shows):
+class Configurations(DisplaysHtml):
     """All configurations of a group or a mechanism. They are arrays (..., m) over poses and, last, configurations.
 
     `bodies` are the poses (..., m) of a group's bodies by their numbers, or of a mechanism's links by their names; NaN
@@ -88,7 +88,7 @@ class Configurations(Shows):
         """How many are real at the first driver values, and whether any is missing."""
         real = sum(1 for _ in self)
         if not self.possible:
-            return f"{counted(real, 'real configuration')} found by a search, which may have missed some."
+            return f"{count_phrase(real, 'real configuration')} found by a search, which may have missed some."
         text = f"{real} real of {self.possible} possible over the complex numbers"
         return f"{text}; none is missing." if self.certified else f"{text}, as far as found numerically."
 
@@ -129,7 +129,7 @@ class Configurations(Shows):
         """Return where a point is, complex (..., m)."""
         mechanism = self.structure.mechanism
         if name not in mechanism.carriers:
-            raise UnknownName(Problem(name, "there is no such point", nearest(name, list(mechanism.carriers))))
+            raise UnknownName(Problem(name, "there is no such point", suggestion(name, list(mechanism.carriers))))
         link = mechanism.carriers[name][0]
         dimension = np.broadcast_to(mechanism.geometry.points[link][name], self.shape)[..., None]
         found: Vectors = np.where(self.real, self.bodies[link].at(dimension).c[0], np.nan).view(Vectors)
@@ -173,7 +173,7 @@ class Configurations(Shows):
     def _index(self, which: int | str) -> int:
         if isinstance(which, str):
             if which not in self.names:
-                raise UnknownName(Problem(which, "there is no such configuration", nearest(which, self.names)))
+                raise UnknownName(Problem(which, "there is no such configuration", suggestion(which, self.names)))
             return self.names.index(which)
         if not -len(self) <= which < len(self):
             raise UnknownName(Problem(str(which), f"there are {len(self)} configurations"))

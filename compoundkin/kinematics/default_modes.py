@@ -6,7 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.arrays import Number
+from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.group_paths import Followed
 from compoundkin.kinematics.groups import GroupSolver, equations_of

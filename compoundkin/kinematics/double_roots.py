@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.composition import composed
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series, compose_series
 from compoundkin.kinematics.block import blocks, places, poses_at, rates
 from compoundkin.kinematics.driver_ways import DriverValues, straight_way
 from compoundkin.kinematics.inputs import Inputs
@@ -183,6 +183,6 @@ def _composed(pose: Pose, gone: Series) -> Pose:
     """Return poses as series in time, from those in how far the drivers have gone."""
 
     def in_time(series: Series) -> Series:
-        return series if len(series.c) == 1 else composed(series.c, gone)
+        return series if len(series.c) == 1 else compose_series(series.c, gone)
 
     return pose.mapped(in_time)

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.kinematics.inputs import Inputs, fit, mapped
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive
@@ -118,7 +118,7 @@ def _number(where: str, value: Any) -> Number:
 def _only_known(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
     names = [d.name for d in mechanism.drives]
     wrong = [
-        Problem(f"{what}.{name}", f"there is no driver {name!r}", nearest(name, names))
+        Problem(f"{what}.{name}", f"there is no driver {name!r}", suggestion(name, names))
         for what, table in given.items()
         if isinstance(table, Mapping)
         for name in table

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.approach import between
 from compoundkin.kinematics.block import blocks, places
 from compoundkin.kinematics.inputs import Inputs

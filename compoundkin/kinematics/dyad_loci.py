@@ -6,9 +6,9 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import dot
+from compoundkin.base.arrays import Number, dot
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, as_series
+from compoundkin.base.series import as_series
 
 # Lines of one picture whose directions differ by less than this (the sine of the angle) are parallel.
 PARALLEL = 1e-6

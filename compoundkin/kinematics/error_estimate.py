@@ -17,8 +17,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED, End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.block import blocks, places
 from compoundkin.kinematics.double_roots import rates_at
 from compoundkin.kinematics.inputs import Inputs

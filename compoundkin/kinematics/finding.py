@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from compoundkin.base.display import Shows
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import DisplaysHtml
 from compoundkin.kinematics.motion import Motion
 
 # So many times the estimate of its error a residual may be: it adds the errors of several links.
@@ -37,7 +37,7 @@ class Finding:
 
 
 @dataclass(frozen=True, repr=False)
-class Check(Shows):
+class Check(DisplaysHtml):
     """All findings about a motion. `poses` of them were checked, `singular` had no rates to check."""
 
     findings: tuple[Finding, ...]

@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import first_of
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.chosen_modes import Shown

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, cross, whole_turns, wrapped
-from compoundkin.base.series import Number, constant
+from compoundkin.base.arrays import TURN, Number, cross, whole_turns, wrapped
+from compoundkin.base.series import constant
 from compoundkin.kinematics.approach import CLOSE, MOST, column, drawn_value, spacings_between
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.model.pairs.contract import as_turn_counting
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.tracking import Tracker

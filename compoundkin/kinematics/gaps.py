@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, column
-from compoundkin.base.bracketing import bisected
+from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.kinematics.group_returns import why_no_return
 from compoundkin.kinematics.motion import Motion
 
@@ -108,7 +108,7 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> Number
         block = motion.block(part, 0, middle[:, None], designs[:, None])
         return column(block.failed == 0, len(designs))
 
-    return bisected(closes, near, bad.astype(float), HALVINGS)[0]
+    return bisect_brackets(closes, near, bad.astype(float), HALVINGS)[0]
 
 
 def _times(motion: Motion, begin: float, end: float) -> tuple[float, float] | None:

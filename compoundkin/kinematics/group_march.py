@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.continuation import StepLengths, Taken, follow
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 
@@ -82,10 +82,10 @@ class GroupMarch:
         self._take(i, self.here[i], state, *known)
         self.first_side = self.side[:, 0].copy()
         there = self.goal == len(stops)
-        self.alive &= there | follow(self._toward_goal, self.alive & ~there, LENGTHS)
+        self.alive &= there | trace_paths(self._toward_goal, self.alive & ~there, LENGTHS)
         return self
 
-    def _toward_goal(self, i: Number, longest: Number) -> Taken:
+    def _toward_goal(self, i: Number, longest: Number) -> StepResult:
         """Try a step of some designs, so long that the prediction is good, to the farthest stop within it."""
         rates, here = [c[i] for c in self.rates], self.sense * self.here[i]
         weights = self._weights(i)
@@ -103,7 +103,7 @@ class GroupMarch:
         lost = (self.spread[i] > FARTHEST) | (self.trials[i] > MOST_TRIALS)
         # near a limit steps vanish in rounding, each of them good
         lost |= ~(good & (within > 0)) & (length <= SHORTEST * np.maximum(1.0, np.abs(here)))
-        return Taken(np.where(lost, 0.0, length), good & ~lost, arrived)
+        return StepResult(np.where(lost, 0.0, length), good & ~lost, arrived)
 
     def _take(self, i: Number, place: Number, state: Number, rates: list[Number], side: Number) -> None:
         """Go on to places."""

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.approach import CLOSE, pace
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.group_march import TERMS, GroupMarch, Node

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compoundkin.base.arrays import column
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, column
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.closed_states import every_state
 from compoundkin.kinematics.group_paths import Followed, GroupPath, both_ways

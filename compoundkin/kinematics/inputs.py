@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.block import rates
 from compoundkin.kinematics.number_parts import between_poses, picked, picked_slope, rectangle, slope
 from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
@@ -21,7 +22,7 @@ from compoundkin.model.pairs.contract import Ends
 
 
 @dataclass(frozen=True, repr=False)
-class Inputs(PrintsShort):
+class Inputs(ShortRepr):
     """All numbers of a solution. Every entry is a number, or an array of shape (1 or designs, 1 or poses).
 
     `ends` are the pairs' dimensions; `drives[name]` the value, speed, acceleration and jerk of a driver.
@@ -126,7 +127,7 @@ class Inputs(PrintsShort):
 
 
 @dataclass(frozen=True, repr=False)
-class PoseGrid(PrintsShort):
+class PoseGrid(ShortRepr):
     """The form in which a motion shows its numbers.
 
     Its shape, the order it was solved to, and which poses do not close.

@@ -12,10 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.bracketing import bisected
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.bracketing import bisect_brackets
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.unit_rates import Solved, matrix_at, rows_of, undetermined, units_of
 
 # A Jacobian free of units has lost its rank where its least singular value is below this part of its largest: rates
@@ -26,7 +26,7 @@ FINE = 50
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Jacobian(PrintsShort):
+class Jacobian(ShortRepr):
     """How fast outputs move when each driver alone moves at unit speed.
 
     `matrix` (..., rows, drivers) has the motion's shape before its rows; NaN where a pose is not assembled or has no
@@ -115,7 +115,7 @@ class Jacobian(PrintsShort):
         value = self.determinant.reshape(self.motion.inputs.designs, -1)
         designs, index = np.nonzero(value[:, :-1] * value[:, 1:] < 0.0)
         before, after = value[designs, index], value[designs, index + 1]
-        inside, _ = bisected(lambda s: self._at(designs, s) * before > 0.0, index + 0.0, index + 1.0, FINE)
+        inside, _ = bisect_brackets(lambda s: self._at(designs, s) * before > 0.0, index + 0.0, index + 1.0, FINE)
         ends = np.minimum(np.abs(before), np.abs(after))
         zero = np.abs(self._at(designs, inside)) < ends
         return tuple(inside[zero & (designs == d)] for d in range(len(value)))

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.buffers import arrays_of_one_buffer
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import LikelySlip, warn
-from compoundkin.base.series import Number
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.structure.kinematic_structure import Structure
 

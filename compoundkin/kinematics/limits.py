@@ -8,7 +8,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.base.series import Number, Series
+from compoundkin.base.arrays import Number
+from compoundkin.base.series import Series
 
 # Below this fraction of its largest terms a discriminant is zero: rounding of a limit position, where
 # the group is stretched or folded. A few hundred units in the last place of the terms it is the difference of.

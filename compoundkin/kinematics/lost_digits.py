@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block, poses_at
 from compoundkin.kinematics.error_estimate import LinkErrors, errors_at
 from compoundkin.kinematics.inputs import Inputs

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
-from compoundkin.base.display import ShowsPicture, way
+from compoundkin.base.display import DisplaysPicture, display_function
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, with_poses
 from compoundkin.kinematics.chosen_modes import GroupMode, modes_of
 from compoundkin.kinematics.derived.figures_of_forces import AsksForces
@@ -28,7 +28,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True)
-class Motion(CopiesFields, ShowsPicture, AsksForces):
+class Motion(CopiesFields, DisplaysPicture, AsksForces):
     """A mechanism solved: every link's pose with all derivatives, over designs and poses.
 
     `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that cannot be
@@ -155,11 +155,11 @@ class Motion(CopiesFields, ShowsPicture, AsksForces):
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Draw quantities over the driver, the time or any other quantity. `compoundkin.plot` of this motion."""
-        return way("plot")(self, *names, **options)
+        return display_function("plot")(self, *names, **options)
 
     def animate(self, **options: Any) -> Any:
         """Return an animation to be saved as GIF, MP4 or SVG. `compoundkin.animate` of this motion."""
-        return way("animation")(self, **options)
+        return display_function("animation")(self, **options)
 
     @property
     def solving_order(self) -> SolvingOrder:

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import real_numbers
 from compoundkin.base.arrays import Number, is_number
-from compoundkin.base.display import PrintsShort, short
+from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
-from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.results import PointMotion
 from compoundkin.model.geometry import vector
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MovingPoint(PrintsShort):
+class MovingPoint(ShortRepr):
     """A point with its velocity and acceleration. Complex numbers or arrays that broadcast.
 
     Each is given as a complex number, as (x, y), or as a complex array; in the user's length unit, per second and s^2.
@@ -56,7 +56,7 @@ class MovingPoint(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MovingLine(PrintsShort):
+class MovingLine(ShortRepr):
     """A line of a link in motion: one of its points, and its angle.
 
     Both have their rates, so that it stands for the whole link as well. `point` is a MovingPoint, a point of a motion,
@@ -97,7 +97,7 @@ class MovingLine(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Travel(PrintsShort):
+class Travel(ShortRepr):
     """How far a slide has moved, with its rates. Real numbers or arrays; length, per second, per s^2."""
 
     value: Number
@@ -178,4 +178,4 @@ def shape_of(**given: Any) -> tuple[int, ...]:
 
 def _refuse_infinite(where: str, value: Number) -> None:
     if np.isinf(value).any():
-        raise InvalidInput(Problem(where, f"{short(value)} is infinite", "NaN says that none is known"))
+        raise InvalidInput(Problem(where, f"{short_repr(value)} is infinite", "NaN says that none is known"))

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry, turns_above
+from compoundkin.base.arrays import Number, first_entry, turns_above
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quiet_solution import quietly_solved

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 
 def rectangle(value: Number, designs: slice, poses: slice) -> Number:

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import check_design
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotDetermined
-from compoundkin.base.given_numbers import hold_design
 from compoundkin.base.poses import FIXED
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.branch import TrackedBranch
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.driver_values import inputs, times_of
@@ -25,8 +26,7 @@ from compoundkin.kinematics.solution import solve, solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import RATES
-from compoundkin.model.design_numbers import mechanism_of_design, number_of_design
-from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.mechanism import Mechanism, mechanism_of_design, values_of_design
 from compoundkin.structure import decompose
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -49,7 +49,7 @@ def alone(what: Mechanism | Structure, design: int) -> tuple[Mechanism | Structu
         return what, design
     if prod(shape[:-1]) == 1:
         return what, design
-    hold_design(design, prod(shape[:-1]))
+    check_design(design, prod(shape[:-1]))
     return mechanism_of_design(what.mechanism if isinstance(what, Structure) else what, shape, design), 0
 
 
@@ -68,7 +68,7 @@ def motion_of_design(motion: Motion, design: int) -> Motion:
     shape, own = motion.shape, _Design(design)
     structure = decompose(mechanism_of_design(motion.mechanism, shape, design))
     given = own.inputs(motion.inputs)
-    time = number_of_design(motion.time, shape, design)
+    time = values_of_design(motion.time, shape, design)
     if [group.links for group in structure.groups] != [group.links for group in motion.structure.groups]:
         # other pairs are redundant in it than in all of them
         values, *rates = ({name: held[k] for name, held in given.drives.items()} for k in range(4))
@@ -141,7 +141,7 @@ class _Design:
 
     def _shown(self, shown: Shown, shape: tuple[int, ...]) -> Shown:
         def own(value: Any) -> Any:
-            return number_of_design(value, shape, self.index)
+            return values_of_design(value, shape, self.index)
 
         poses = {
             name: pose if pose is FIXED else pose.mapped(lambda series: Series(own(series.c)))

@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.reasons import Reason, Words, told
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.guide_ends import Ended, as_ended, bounds_name
+from compoundkin.model.pairs.travel_limits import TravelLimited, as_travel_limited, bounds_name
 from compoundkin.structure.kinematic_structure import Structure
 
 # An end is reached, not passed, within this part of the size (or radians): positions are right to a few units of
@@ -29,11 +29,11 @@ BEFORE = -1
 class PassedEnd(NamedTuple):
     """An end of a guide that a pose is beyond. Its pair, and the words for it."""
 
-    pair: Ended
+    pair: TravelLimited
     reason: str
 
 
-class GuideEnds(PrintsShort):
+class GuideEnds(ShortRepr):
     """The pairs of a structure whose guides have ends.
 
     They go by the group after which all their links are known (`known_by`). A pose
@@ -42,10 +42,10 @@ class GuideEnds(PrintsShort):
 
     def __init__(self, structure: Structure, size: float) -> None:
         self.size = size
-        self.pairs = tuple(own for pair in structure.mechanism.written_pairs if (own := as_ended(pair)))
+        self.pairs = tuple(own for pair in structure.mechanism.written_pairs if (own := as_travel_limited(pair)))
         self._groups = len(structure.groups)
         # before all groups, or after the one by which the last of its links is known
-        self._after: dict[int, list[tuple[int, Ended]]] = {}
+        self._after: dict[int, list[tuple[int, TravelLimited]]] = {}
         self.known_by: list[int] = []
         known = {link: index for index, group in enumerate(structure.groups) for link in group.links if self.pairs}
         for k, pair in enumerate(self.pairs):
@@ -82,7 +82,7 @@ class GuideEnds(PrintsShort):
         pair = self.pairs[failed - self._groups - 1]
         return PassedEnd(pair, told(self.reasons(block, pair), at))
 
-    def reasons(self, block: Block, pair: Ended) -> tuple[Reason, ...]:
+    def reasons(self, block: Block, pair: TravelLimited) -> tuple[Reason, ...]:
         """Return why a pose may be beyond a guide's end or its beginning."""
         start, stop = self._distances(block, pair)
         poses = tuple(block.world[name] for name in pair.members)
@@ -99,17 +99,17 @@ class GuideEnds(PrintsShort):
     def _margins(self, block: Block) -> list[Number]:
         return [self._margin(block, pair) for pair in self.pairs]
 
-    def _margin(self, block: Block, pair: Ended) -> Number:
+    def _margin(self, block: Block, pair: TravelLimited) -> Number:
         scale = 1.0 if pair.free_is_angle else self.size
         return np.minimum(*self._distances(block, pair)) / scale + AT_END
 
-    def _distances(self, block: Block, pair: Ended) -> tuple[Number, Number]:
+    def _distances(self, block: Block, pair: TravelLimited) -> tuple[Number, Number]:
         poses = tuple(block.world[name] for name in pair.members)
         low, high = (side.point for side in block.ends[bounds_name(pair)])
         return pair.inside((low, high), block.ends[pair.name], poses)
 
 
-def _shown(pair: Ended, value: Any) -> Words:
+def _shown(pair: TravelLimited, value: Any) -> Words:
     return (np.rad2deg(value), " degrees") if pair.free_is_angle else (value,)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import PLAIN, degrees
-from compoundkin.base.display import way
+from compoundkin.base.display import display_function
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.contract import HasQuantities, OfMotion, motion_of
@@ -22,9 +22,9 @@ from compoundkin.model.attributes import (
     RADIANS,
     Attribute,
     Dimension,
-    course_figure,
-    readable,
+    motion_figure,
     unit_of,
+    with_superscripts,
 )
 
 
@@ -60,7 +60,7 @@ class Quantity:
         >>> Quantity("G.acceleration", "mm/s^2", np.zeros((1, 1))).label
         'G.acceleration [mm/s²]'
         """
-        return f"{self.name} [{readable(self.unit)}]".lstrip() if self.unit else self.name
+        return f"{self.name} [{with_superscripts(self.unit)}]".lstrip() if self.unit else self.name
 
     @property
     def shown(self) -> Self:
@@ -115,9 +115,9 @@ def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
     """Return the quantity of a name, or a vector and which part is meant. Raises UnknownName."""
     if not isinstance(name, str):
         raise InvalidInput(Problem("quantity", f"{name!r} is no name", 'write "G.velocity", one text for each'))
-    of, figure = course_figure(name)
+    of, figure = motion_figure(name)
     if figure:
-        return way("course")(motion, of, figure), ""
+        return display_function("course")(motion, of, figure), ""
     owner, word, part = owner_and_part(motion, name)
     found = replace(read_of(owner, word), name=name.removesuffix(f".{part}") if part else name)
     if part:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.attributes import (
-    ALSO,
+    ALIASES,
     CATALOGUE,
     DERIVED,
     PARTS,
@@ -17,7 +17,7 @@ from compoundkin.model.attributes import (
     Dimension,
     Kind,
     coordinate_dimension,
-    vector_of,
+    vector_and_part,
 )
 
 
@@ -35,7 +35,7 @@ def owner_and_part(motion: HasQuantities, name: str) -> tuple[Owner, str, str]:
         return (*_asked(motion, name), "")
     except UnknownName:
         vector, _, part = name.rpartition(".")
-        if not vector_of(name)[1] and not _is_known(motion, vector):
+        if not vector_and_part(name)[1] and not _is_known(motion, vector):
             raise
     return (*_asked(motion, vector), part)
 
@@ -46,7 +46,7 @@ def check_part(name: str, part: str, is_vector: bool) -> None:
     if not is_vector:
         raise UnknownName(Problem(name, f"{vector} is no vector", f"leave .{part} out"))
     if part not in PARTS:
-        raise UnknownName(Problem(name, f"{vector} has no {part!r}", nearest(part, list(PARTS))))
+        raise UnknownName(Problem(name, f"{vector} has no {part!r}", suggestion(part, list(PARTS))))
 
 
 def _is_known(motion: HasQuantities, name: str) -> bool:
@@ -61,7 +61,7 @@ def _asked(motion: HasQuantities, name: str) -> tuple[Owner, str]:
     found = [owner_of(motion, kind, owner) for kind in CATALOGUE if owner in getattr(motion, kind)]
     if not found:
         what = f"there is no point, link, pair or driver {owner!r}"
-        raise UnknownName(Problem(name, what, nearest(owner, known_owners(motion))))
+        raise UnknownName(Problem(name, what, suggestion(owner, known_owners(motion))))
     for one in found:
         if not dot or one.has(word):
             return one, word if dot else next(iter(one.attributes))
@@ -101,9 +101,9 @@ def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
     if kind not in ("pairs", "drives"):
         return Owner(name, kind, motion, "length" if kind == "points" else "angle", CATALOGUE[kind])
     dimension = coordinate_dimension(getattr(motion, kind)[name].is_angle)
-    return Owner(name, kind, motion, dimension, {**CATALOGUE[kind], **ALSO[dimension]})
+    return Owner(name, kind, motion, dimension, {**CATALOGUE[kind], **ALIASES[dimension]})
 
 
 def _nearest(owner: str, word: str, known: list[str]) -> str:
-    remedy = nearest(word, known)
+    remedy = suggestion(word, known)
     return f"did you mean '{owner}.{remedy.split(chr(39))[1]}'?" if remedy.startswith("did") else remedy

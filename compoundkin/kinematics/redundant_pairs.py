@@ -7,11 +7,11 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import NotAssembled, NotDetermined, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import held_scales
+from compoundkin.model.pairs.contract import constraint_scales
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.redundancy import mobility_analysis
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED
@@ -53,7 +53,7 @@ def opening(motion: Motion, pair: Pair) -> Number:
     """
     poses = tuple(motion.poses[name] for name in pair.members)
     held = pair.closure(motion.inputs.ends[pair.name], poses)
-    parts = [one.c[0] / scale for one, scale in zip(held, held_scales(pair, motion.size), strict=True)]
+    parts = [one.c[0] / scale for one, scale in zip(held, constraint_scales(pair, motion.size), strict=True)]
     squares = sum(np.abs(np.broadcast_to(part, motion.failed.shape)) ** 2 for part in parts)
     return np.where(motion.failed == 0, np.sqrt(squares) * motion.size, 0.0)
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import Vectors, unwrapped
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.arrays import Number, Vectors, unwrapped
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.inputs import PoseGrid
 from compoundkin.model.geometry import vector
 
@@ -182,7 +182,9 @@ class Named(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         if name not in self._made:
             if name not in self._names:
-                raise UnknownName(Problem(str(name), f"there is no such {self._kind}", nearest(str(name), self._names)))
+                raise UnknownName(
+                    Problem(str(name), f"there is no such {self._kind}", suggestion(str(name), self._names))
+                )
             self._made[name] = self._make(name)
         return self._made[name]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.buffers import keep_freed_memory
-from compoundkin.base.series import Number
 from compoundkin.kinematics.block import BLOCK, Block, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.change_points import pass_through

@@ -9,24 +9,23 @@ from typing import Protocol
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.kinematics.passed_ends import BEFORE, GuideEnds
-from compoundkin.model.load_problems import load_designs
-from compoundkin.model.outlines.outline_problems import outline_designs
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
+from compoundkin.model.pairs.contract import Ends, as_turn_counting, constraint_scales
+from compoundkin.model.validation import load_designs, outline_designs
 from compoundkin.structure.four_bars import FourBarLoops, four_bar_loops
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import DrivenPair
 
 
-class SolvingOrder(PrintsShort):
+class SolvingOrder(ShortRepr):
     """The order in which a structure is solved.
 
     First come the driven links of the frame, then the solvers of its groups. `ends` are the pairs' sides and the ends
@@ -198,7 +197,7 @@ def residual(pairs: Sequence[Pair], block: Block, size: float) -> Number:
     for pair in pairs:
         poses = tuple(block.world[name] for name in pair.members)
         held = pair.closure(block.ends[pair.name], poses)
-        for one, scale in zip(held, held_scales(pair, size), strict=True):
+        for one, scale in zip(held, constraint_scales(pair, size), strict=True):
             total = total + np.abs(one.c[0] / scale) ** 2
     return total
 

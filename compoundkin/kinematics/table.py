@@ -10,13 +10,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.derived.contract import HasQuantities
 from compoundkin.kinematics.quantities import Quantity, quantity, read_of
 from compoundkin.kinematics.quantity_owners import owner_of
 from compoundkin.model.attributes import TABULATED, TIME, VALUE, unit_of
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 ASSEMBLED, DESIGN = "assembled", "design"
 # What files and data frames say of the angles in them.
@@ -91,7 +91,7 @@ class Table:
     def __getitem__(self, name: str) -> Quantity:
         """Return a column by its name; raises UnknownName with the nearest there is."""
         if name not in self._named:
-            raise UnknownName(Problem(str(name), "the table has no such column", nearest(str(name), self.names)))
+            raise UnknownName(Problem(str(name), "the table has no such column", suggestion(str(name), self.names)))
         return self._named[name]
 
     def __len__(self) -> int:

@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.approach import approach_path
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of
@@ -26,7 +26,7 @@ from compoundkin.kinematics.limits import NEAREST, Root
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 
 
-class Tracker(PrintsShort):
+class Tracker(ShortRepr):
     """Chooses and keeps the configuration of every group, for given inputs."""
 
     def __init__(

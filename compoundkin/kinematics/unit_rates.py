@@ -8,8 +8,8 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
-from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, blocks, places
 from compoundkin.kinematics.double_roots import rates_at
 from compoundkin.kinematics.inputs import Inputs
@@ -17,7 +17,7 @@ from compoundkin.kinematics.joined_blocks import JoinedBlocks
 from compoundkin.kinematics.quantities import Quantity, quantity, whole_and_part
 from compoundkin.kinematics.table import AtPoses
 from compoundkin.kinematics.tracking import Tracker
-from compoundkin.model.attributes import LENGTH, RATE_OF, order_of, unit_of
+from compoundkin.model.attributes import LENGTH, RATE_OF, derivative_order, unit_of
 from compoundkin.structure.kinematic_structure import Structure
 
 
@@ -60,14 +60,14 @@ class Row(NamedTuple):
 
 def rows_of(motion: Solved, names: tuple[str, ...]) -> tuple[Row, ...]:
     """Return the rows of quantities by name, two of a vector. Raises UnknownName, InvalidInput for what has no rate."""
-    wanted = names or tuple(name for name in motion.mechanism.outputs if order_of(name) == 0)
+    wanted = names or tuple(name for name in motion.mechanism.outputs if derivative_order(name) == 0)
     if not wanted:
         raise InvalidInput(Problem("outputs", "nothing is named", 'name some: motion.jacobian("G", "bar.angle")'))
     return tuple(row for name in wanted for row in _rows(motion, name))
 
 
 def _rows(motion: Solved, name: str) -> tuple[Row, ...]:
-    if order_of(name) if isinstance(name, str) else False:
+    if derivative_order(name) if isinstance(name, str) else False:
         told = "it is a rate itself, and a Jacobian tells the rates of places and angles"
         raise InvalidInput(Problem(name, told, "name what it is the rate of, such as a point or a link's angle"))
     whole, part = whole_and_part(motion, name)

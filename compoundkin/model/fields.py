@@ -1,7 +1,7 @@
-"""The keys a mechanism file may hold, declared beside what they describe; readers, writers and the schema follow.
+"""Keys of a mechanism file, declared with the fields they describe; readers, writers and schema follow.
 
 A kind of pair declares each of its fields once: as a field of a dataclass, with `value_key`, `link_key` or `point_key`
-as its metadata. The argument of its word, the key in files, the schema, the text on it and the checks of names follow.
+as its metadata. The argument of its constructor, the key in files, the schema and the checks of names follow.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import MISSING, Field, dataclass, fields
 from typing import Any, Literal, ParamSpec, TypeVar
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.errors import Problem, suggestion
 
 # What a value is: how a file writes it and how Python holds it.
 #   name     text                                         str
@@ -99,11 +99,11 @@ def spot_key(link: str, doc: str) -> dict[str, Any]:
     return {"kind": "spot", "doc": doc, "link": link}
 
 
-def keys_of(kind: type[Any]) -> tuple[Key, ...]:
+def declared_keys(kind: type[Any]) -> tuple[Key, ...]:
     """Return the keys in files of a kind, by its fields.
 
     >>> from compoundkin.model.pairs.slot import Slot
-    >>> [key.name for key in keys_of(Slot) if key.required]
+    >>> [key.name for key in declared_keys(Slot) if key.required]
     ['link', 'on', 'through']
     """
     return tuple(_key(kind, field) for field in fields(kind) if "kind" in field.metadata)
@@ -124,7 +124,7 @@ class DeclaredKeys:
     def __get__(self, item: object, kind: type[Any]) -> tuple[Key, ...]:
         name = f"{kind.__module__}.{kind.__qualname__}"
         if name not in self._known:
-            self._known[name] = keys_of(kind)
+            self._known[name] = declared_keys(kind)
         return self._known[name]
 
 
@@ -155,7 +155,7 @@ def name_problems(
     members = {field: getattr(item, field) for field in link_fields(type(item))}
     missing = [(field, name) for field, name in members.items() if name not in links]
     for field, name in missing:
-        yield Problem(f"{where}.{field}", f"there is no link {name!r}", nearest(name, list(links)))
+        yield Problem(f"{where}.{field}", f"there is no link {name!r}", suggestion(name, list(links)))
     if missing:
         return
     if len(set(members.values())) < len(members):
@@ -169,11 +169,11 @@ def name_problems(
             choice = f"name {wording.point}: {', '.join(links[name])}"
             yield Problem(f"{where}.{field}", f"link {name!r} has several points", choice)
         elif letter not in links[name]:
-            remedy = nearest(letter, list(links[name]))
+            remedy = suggestion(letter, list(links[name]))
             yield Problem(f"{where}.{field}", f"link {name!r} has no point {letter!r}", remedy)
 
 
-def only_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
+def implied_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
     """Return the points that are left to be understood. They are the only ones of their links."""
     found = {}
     for field, link in point_fields(type(item)).items():
@@ -185,22 +185,24 @@ def only_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, st
 
 
 P = ParamSpec("P")
-Made = TypeVar("Made")
 
 
-def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
+Constructed = TypeVar("Constructed")
+
+
+def constructor(name: str, kind: Callable[P, Constructed]) -> Callable[P, Constructed]:
     """Return the function by which users write a kind. Its fields are the arguments, their sentences the text.
 
     >>> from compoundkin.model.pairs.slot import Slot
-    >>> word("slot", Slot)("crank", on="arm", at="B", through="C").name
+    >>> constructor("slot", Slot)("crank", on="arm", at="B", through="C").name
     'crank/arm'
     """
 
     assert isinstance(kind, type)
     signature = inspect.signature(kind).replace(return_annotation=kind.__name__)
-    make: Callable[P, Made] = kind
+    make: Callable[P, Constructed] = kind
 
-    def made(*args: P.args, **kwargs: P.kwargs) -> Made:
+    def made(*args: P.args, **kwargs: P.kwargs) -> Constructed:
         try:
             signature.bind(*args, **kwargs)
         except TypeError as error:
@@ -209,7 +211,7 @@ def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
         return make(*args, **kwargs)
 
     text = inspect.cleandoc(kind.__doc__ or "").partition("\n\n>>>")
-    arguments = "\n".join(f"* `{key.name}`: {key.doc}{_UNITS.get(key.kind, '')}" for key in keys_of(kind))
+    arguments = "\n".join(f"* `{key.name}`: {key.doc}{_UNITS.get(key.kind, '')}" for key in declared_keys(kind))
     made.__doc__ = f"{text[0]}\n\n{arguments}{''.join(text[1:])}"
     made.__name__, made.__qualname__, made.__module__ = name, name, kind.__module__
     made.__signature__ = signature  # type: ignore[attr-defined]
@@ -218,3 +220,44 @@ def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
 
 # What a sentence on a field leaves out for those who write Python.
 _UNITS: Mapping[Kind, str] = {"angle": " In radians; a number or an array."}
+
+
+# Kinds of keys that are one real number, or two; arrays of them for several designs.
+_ONE, _TWO = ("length", "angle", "number", "turn", "coordinate", "rate", "span"), ("two", "reach", "sweep")
+
+
+def stated_numbers(item: Any) -> dict[str, Any]:
+    """Return the numbers that an item states: "offset", or "radii.0" of two.
+
+    >>> from compoundkin.model.pairs import gear
+    >>> sorted(stated_numbers(gear("sun", "planet", carrier="arm", teeth=(20, 40))))
+    ['pressure_angle', 'teeth.0', 'teeth.1']
+    """
+    found: dict[str, Any] = {}
+    for key in item.keys:
+        value = getattr(item, key.name)
+        if key.kind in _ONE:
+            found[key.name] = value
+        elif key.kind in _TWO and value is not None:
+            found |= {f"{key.name}.{index}": one for index, one in enumerate(value)}
+    return {name: value for name, value in found.items() if value is not None and not isinstance(value, str)}
+
+
+def changed_fields(item: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of an item that these numbers change.
+
+    They are named as `stated_numbers` does.
+
+    >>> from compoundkin.model.pairs import gear
+    >>> changed_fields(gear("sun", "planet", carrier="arm", teeth=(20, 40)), {"teeth.1": 30})
+    {'teeth': (20.0, 30)}
+    """
+    found: dict[str, Any] = {}
+    for name, value in numbers.items():
+        field, _, index = name.partition(".")
+        if index:
+            two = found.get(field, getattr(item, field))
+            found[field] = (value, two[1]) if index == "0" else (two[0], value)
+        else:
+            found[field] = value
+    return found

@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort, short
+from compoundkin.base.arguments import checked, planar_numbers, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, LikelySlip, Problem, warn
-from compoundkin.base.given_numbers import planar_numbers, real_numbers
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import constant
 
 # The link that stands still.
 FRAME = "frame"
 
 
 @dataclass(frozen=True, repr=False)
-class Geometry(PrintsShort):
+class Geometry(ShortRepr):
     """The points of links in their own frames, and the poses that are drawn.
 
     `points[link][name]` is complex, a number or an array; `drawn[link]` is a `Pose` of order 0.
@@ -56,7 +56,7 @@ def _span(points: list[Number]) -> float:
     return float(np.hypot(wide, high))
 
 
-def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:
+def link_from_drawing(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:
     """Return a link's drawn pose, and its points in its own frame.
 
     The origin is the first letter; the x axis points to the second. A single letter shows no direction, so no pose.
@@ -76,7 +76,7 @@ def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Po
     return Pose(constant(origin), constant(turned)), points
 
 
-def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> Pose | None:
+def pose_from_points(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> Pose | None:
     """Return the pose of a link drawn at two points or more, or None."""
     shown = [name for name in points if name in sketch]
     if len(shown) < 2:
@@ -130,7 +130,7 @@ def vector(where: str, value: Any) -> Number:
         out = _planar(where, value)
     except InvalidMechanism as error:
         raise InvalidMechanism(replace(p, remedy="write (x, y) or a complex number") for p in error.problems) from None
-    return complex(out) if out.ndim == 0 else _frozen(out)
+    return complex(out) if out.ndim == 0 else _read_only(out)
 
 
 def _planar(where: str, value: Any) -> Any:
@@ -143,17 +143,17 @@ def _planar(where: str, value: Any) -> Any:
             with np.errstate(invalid="ignore"):  # infinite coordinates are told where they have no meaning
                 return x + 1j * y
         except ValueError:
-            raise _no_point(where, value) from None
+            raise _point_error(where, value) from None
     if value is None or isinstance(value, tuple | list | str):
-        raise _no_point(where, value)
+        raise _point_error(where, value)
     return planar_numbers(where, value, InvalidMechanism)
 
 
-def _no_point(where: str, value: Any) -> InvalidMechanism:
-    return InvalidMechanism(Problem(where, f"{short(value)} is not a point"))
+def _point_error(where: str, value: Any) -> InvalidMechanism:
+    return InvalidMechanism(Problem(where, f"{short_repr(value)} is not a point"))
 
 
-def _frozen(array: Any) -> Any:
+def _read_only(array: Any) -> Any:
     out = np.array(array)
     out.setflags(write=False)
     return out
@@ -168,10 +168,10 @@ def real(where: str, value: Any) -> Number:
     if value is None:
         return None
     out = real_numbers(where, value, InvalidMechanism)
-    return float(out) if out.ndim == 0 else _frozen(out)
+    return float(out) if out.ndim == 0 else _read_only(out)
 
 
-def place_of(value: Any, where: str = "profile") -> complex:
+def single_point(value: Any, where: str = "profile") -> complex:
     """Return a point written as (x, y) or as a complex number. Raises InvalidMechanism for anything else."""
     try:
         if isinstance(value, str):  # Python reads "1+2j" as a number
@@ -181,7 +181,7 @@ def place_of(value: Any, where: str = "profile") -> complex:
         raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y)")) from None
 
 
-def number_of(value: Any, where: str) -> float:
+def single_number(value: Any, where: str) -> float:
     """Return one real number; raises InvalidMechanism naming `where` for anything else."""
     try:
         return float(value)

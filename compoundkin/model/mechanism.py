@@ -1,35 +1,47 @@
-"""A mechanism: links, pairs and drivers, checked as a whole when it is made."""
+"""`Mechanism`: links, pairs and drivers, validated as a whole; poses from its drawing; one design of several."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+import warnings
+from collections import deque
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
+from math import prod
 from typing import Any, cast
 
+import numpy as np
+
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import ShowsPicture, counted
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
-from compoundkin.base.nested_values import same
+from compoundkin.base.arrays import Number
+from compoundkin.base.copies import nested_equal
+from compoundkin.base.display import DisplaysPicture, count_phrase
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number
-from compoundkin.model.drawn_poses import told_poses
-from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Lead, Link, Mode
-from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
-from compoundkin.model.load_problems import load_problems, load_warnings
-from compoundkin.model.number_problems import places_wanted
-from compoundkin.model.outlines.outline_problems import crossed_polygons, outline_problems
-from compoundkin.model.pairs.profile_contact import as_profiled
-from compoundkin.model.pin_pairs import NamesOfPairs
-from compoundkin.model.units import given_units
-from compoundkin.model.validation import problems_of
-from compoundkin.model.written import Written
+from compoundkin.base.series import constant
+from compoundkin.model.attributes import CATALOGUE, DERIVED
+from compoundkin.model.definition import MechanismDefinition, MechanismNames
+from compoundkin.model.elements import Drawn, Expectation, Item, Link, Mode
+from compoundkin.model.geometry import FRAME, Geometry, link_from_drawing, pose_from_points, real
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import DrawnPair, Ends, as_orienting, as_turn_counting
+from compoundkin.model.pairs.profile_contact import as_profile_contact
+from compoundkin.model.prescribed_motion import PrescribedMotion
+from compoundkin.model.units import checked_units
+from compoundkin.model.validation import (
+    crossed_polygons,
+    definition_problems,
+    load_problems,
+    load_warnings,
+    missing_places,
+    outline_problems,
+)
 
 # What is written of a mechanism beside its items.
 _ABOUT = ("title", "source", "description", "outputs", "time", "unit", "units")
 
 
-class Mechanism(Written, ShowsPicture):
+class Mechanism(MechanismDefinition, DisplaysPicture):
     """Links, pairs and drivers, written with the words of this module. Checked as a whole when it is made.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
@@ -64,14 +76,14 @@ class Mechanism(Written, ShowsPicture):
         units: Any = None,
     ) -> None:
         self.title = title
-        self.units, problems = given_units(units, unit)
+        self.units, problems = checked_units(units, unit)
         self.unit = self.units.length if self.units else unit
         self.source = source
         self.description = description
         self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         self.time: Number | None = real("time", time)
         self.items: tuple[Item, ...] = items
-        problems += problems_of(self)
+        problems += definition_problems(self)
         problems += load_problems(self, self.names, units is not None) + outline_problems(self, self.names)
         problems += [] if problems else self._misfits()
         if problems:
@@ -91,7 +103,7 @@ class Mechanism(Written, ShowsPicture):
         Raises InvalidInput where points have neither coordinates nor a place in the drawing.
         """
         if self.unplaced:
-            raise InvalidInput(places_wanted(self.unplaced), heading=f"{self.title!r} has no dimensions yet")
+            raise InvalidInput(missing_places(self.unplaced), heading=f"{self.title!r} has no dimensions yet")
         points: dict[str, Mapping[str, Number]] = {}
         poses: dict[str, Pose] = {}
         fixed = self.links[FRAME].points
@@ -101,12 +113,12 @@ class Mechanism(Written, ShowsPicture):
                 poses[name] = FIXED
                 points[name] = {k: self.sketch[k] if p is None else p for k, p in item.points.items()}
             elif item.is_drawn:
-                pose, points[name] = read_off(item.letters, self.sketch)
+                pose, points[name] = link_from_drawing(item.letters, self.sketch)
                 if pose is not None:
                     poses[name] = pose
             else:
                 points[name] = {k: p for k, p in item.points.items() if p is not None}
-                pose = fitted_pose(points[name], seen) if self.sketch else None
+                pose = pose_from_points(points[name], seen) if self.sketch else None
                 if pose is not None:
                     poses[name] = pose
         return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen, self._profiles)
@@ -125,17 +137,17 @@ class Mechanism(Written, ShowsPicture):
         if not self.sketch or len(geometry.drawn) == len(self.links):
             return geometry.drawn
         ends = [(pair, pair.ends(geometry)) for pair in self.written_pairs]
-        return told_poses(geometry.points, ends, geometry.sketch, geometry.drawn)
+        return poses_from_drawing(geometry.points, ends, geometry.sketch, geometry.drawn)
 
     @property
     def _profiles(self) -> float:
         """The size of the largest profile."""
-        return max((own.extent for pair in self.written_pairs if (own := as_profiled(pair))), default=0.0)
+        return max((own.extent for pair in self.written_pairs if (own := as_profile_contact(pair))), default=0.0)
 
     @cached_property
-    def names(self) -> NamesOfPairs:
+    def names(self) -> MechanismNames:
         """The links, points and pairs that loads may name."""
-        return NamesOfPairs(self)
+        return MechanismNames(self)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
         """Return a copy with items in the place of those of their names.
@@ -153,9 +165,9 @@ class Mechanism(Written, ShowsPicture):
         title = changes.pop("title", self.title)
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
 
-    def without_leads(self) -> Mechanism:
+    def without_prescribed_motion(self) -> Mechanism:
         """Return the mechanism itself, without what leads its points and turns its links."""
-        gone = (Lead, Expectation)
+        gone = (PrescribedMotion, Expectation)
         return Mechanism(self.title, *(item for item in self.items if not isinstance(item, gone)), **self.unit_words)
 
     @property
@@ -166,11 +178,11 @@ class Mechanism(Written, ShowsPicture):
     def link(self, name: str) -> Link:
         """Return the link of a name; raises UnknownName."""
         if name not in self.links:
-            raise UnknownName(Problem(name, "there is no such link", nearest(name, list(self.links))))
+            raise UnknownName(Problem(name, "there is no such link", suggestion(name, list(self.links))))
         return self.links[name]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Mechanism) and same(_plain(self), _plain(other))
+        return isinstance(other, Mechanism) and nested_equal(_plain(self), _plain(other))
 
     def __getstate__(self) -> dict[str, Any]:
         # what is written; what was found of it since is found again
@@ -182,11 +194,11 @@ class Mechanism(Written, ShowsPicture):
     @property
     def in_numbers(self) -> str:
         """How many links and cylinders it is written with, in words."""
-        cylinders = f" and {counted(len(self.cylinders), 'cylinder')}" if self.cylinders else ""
-        return f"{counted(len(self.rigid_links), 'link')}{cylinders}"
+        cylinders = f" and {count_phrase(len(self.cylinders), 'cylinder')}" if self.cylinders else ""
+        return f"{count_phrase(len(self.rigid_links), 'link')}{cylinders}"
 
     def __repr__(self) -> str:
-        return f"Mechanism({self.title!r}: {self.in_numbers}, {counted(len(self.drives), 'driver')})"
+        return f"Mechanism({self.title!r}: {self.in_numbers}, {count_phrase(len(self.drives), 'driver')})"
 
 
 def _identity(item: Item) -> tuple[Any, ...]:
@@ -211,3 +223,157 @@ def _plain(mechanism: Mechanism) -> list[Any]:
     ]
     # the order between different words says nothing; that within one kind does
     return [*about, *drawing, *sorted(written, key=lambda entry: str(entry[0]))]
+
+
+Points = Mapping[str, Mapping[str, Number]]
+
+
+def poses_from_drawing(
+    points: Points, pairs: Iterable[tuple[Pair, Ends]], sketch: Mapping[str, Number], known: Mapping[str, Pose]
+) -> dict[str, Pose]:
+    """Find poses of links from where letters are drawn and poses that are known.
+
+    `points` are those of the links in their own frames. A link of two drawn letters has its pose from them; one of a
+    single letter has its angle from a slide, a gear or a wheel that rolls, where the other members' poses are known.
+    Both go on from link to link; a link that nothing tells is left out.
+    """
+    telling = _PosePropagation(points, sketch, known)
+    # angles that count turns last: a slide tells an angle whatever the turn
+    for pair, ends in sorted(pairs, key=lambda told: as_turn_counting(told[0]) is not None):
+        for link in pair.members:
+            telling.pairs[link].append((pair, ends))
+    return telling.poses_of_all()
+
+
+class _PosePropagation:
+    """What is told so far, and what may still tell more."""
+
+    def __init__(self, points: Points, sketch: Mapping[str, Number], known: Mapping[str, Pose]) -> None:
+        self.points, self.seen, self.poses = points, dict(sketch), dict(known)
+        self.pairs: dict[str, list[tuple[Pair, Ends]]] = {link: [] for link in points}
+        self.carriers: dict[str, list[str]] = {}
+        for link, letters in points.items():
+            for letter in letters:
+                self.carriers.setdefault(letter, []).append(link)
+        for link in known:
+            self._see(link)
+
+    def poses_of_all(self) -> dict[str, Pose]:
+        """Return the poses of all links that are told, in one way or another."""
+        waiting = deque(link for link in self.points if link not in self.poses)
+        while waiting:
+            link = waiting.popleft()
+            pose = None if link in self.poses else self._pose(link)
+            if pose is not None:
+                self.poses[link] = pose
+                waiting.extend(other for other in self._concerned(link) if other not in self.poses)
+        return self.poses
+
+    def _see(self, link: str) -> None:
+        for letter, point in self.points[link].items():
+            if letter not in self.seen:
+                self.seen[letter] = self.poses[link].at(point).c[0]
+
+    def _concerned(self, link: str) -> Iterator[str]:
+        """Note where a link's letters are; the links of which more may be known now."""
+        new = [letter for letter in self.points[link] if letter not in self.seen]
+        self._see(link)
+        for letter in new:
+            yield from self.carriers[letter]
+        for pair, _ in self.pairs[link]:
+            yield from pair.members
+
+    def _pose(self, link: str) -> Pose | None:
+        points = self.points[link]
+        drawn = next((letter for letter in points if letter in self.seen), None)
+        if drawn is None:
+            return None
+        shown = pose_from_points(points, self.seen)
+        if shown is not None:
+            return shown
+        for pair, ends in self.pairs[link]:
+            orienting = as_orienting(pair)
+            seen = DrawnPair(ends, tuple(self.poses.get(name) for name in pair.members), self.seen)
+            angle = orienting.drawn_angle(seen, pair.members.index(link)) if orienting else None
+            if angle is not None:
+                u = np.cos(angle) + 1j * np.sin(angle)
+                counted = constant(angle) if as_turn_counting(pair) else None
+                return Pose(constant(self.seen[drawn] - u * points[drawn]), constant(u), counted)
+        return None
+
+
+def values_of_design(value: Any, shape: tuple[int, ...], design: int) -> Any:
+    """Return a design's part of numbers, arrays, or tables of them.
+
+    Arrays broadcast with a motion's shape; those of one axis are the same for all designs.
+
+    >>> values_of_design(np.array([[1.0], [2.0]]), (2, 73), 1), values_of_design(3.0, (2, 73), 1)
+    (2.0, 3.0)
+    """
+    if isinstance(value, np.ndarray):
+        return _row_of_design(value, shape, design) if value.ndim > 1 else value
+    if isinstance(value, Mapping):
+        return {key: values_of_design(one, shape, design) for key, one in value.items()}
+    if type(value) is tuple:
+        return tuple(values_of_design(one, shape, design) for one in value)
+    return value
+
+
+def mechanism_of_design(mechanism: Mechanism, shape: tuple[int, ...], design: int) -> Mechanism:
+    """Return the mechanism that one of several designs is. The shape is that of its motion.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> lengths = np.array([[1.0], [2.0]])
+    >>> cranks = Mechanism("m", link("frame", A=0), link("crank", A=0, B=lengths), drive("crank"))
+    >>> mechanism_of_design(cranks, (2, 73), 1).links["crank"].points["B"]
+    (2+0j)
+    """
+    with warnings.catch_warnings():
+        # what there is to say was said of the whole
+        warnings.simplefilter("ignore")
+        return Mechanism(
+            mechanism.title,
+            *(_item_of_design(item, shape, design) for item in mechanism.items),
+            source=mechanism.source,
+            description=mechanism.description,
+            outputs=mechanism.outputs,
+            time=values_of_design(mechanism.time, shape, design),
+            **mechanism.unit_words,
+        )
+
+
+def _item_of_design(item: Any, shape: tuple[int, ...], design: int) -> Any:
+    """Return an item with the numbers of one design, itself where it has no others."""
+    if not is_dataclass(item) or isinstance(item, type):
+        return item
+    held = {field.name: getattr(item, field.name) for field in fields(item) if field.init}
+    own = {name: values_of_design(value, shape, design) for name, value in held.items()}
+    changed = {name: value for name, value in own.items() if value is not held[name]}
+    return replace(item, **changed) if changed else item
+
+
+def _row_of_design(value: Number, shape: tuple[int, ...], design: int) -> Number:
+    last = value.shape[-1]
+    row = np.broadcast_to(value, (*shape[:-1], last)).reshape(prod(shape[:-1]), last)[design]
+    return row.item() if last == 1 else row
+
+
+_OTHER_ATTRIBUTES = {word for kind in ("points", "links", "pairs") for word in (*CATALOGUE[kind], *DERIVED[kind])}
+
+
+# What drivers have alone, such as their efforts.
+DRIVER_ATTRIBUTES = frozenset({*CATALOGUE["drives"], *DERIVED["drives"]} - _OTHER_ATTRIBUTES)
+
+
+def available_outputs(mechanism: Mechanism, drivers: Collection[str]) -> list[str]:
+    """Return the outputs that there are with these drivers.
+
+    An effort or a power of a link that does not drive any more is none of them.
+    """
+    known = {*mechanism.carriers, *mechanism.links, *(pair.name for pair in mechanism.written_pairs)}
+    return [name for name in mechanism.outputs if _is_available(name, known, drivers)]
+
+
+def _is_available(name: str, known: Collection[str], drivers: Collection[str]) -> bool:
+    owner, words = name.split("(")[0].split(".")[0], name.rpartition(")")[2].split(".")[1:]
+    return owner in drivers or (owner in known and not DRIVER_ATTRIBUTES & set(words))

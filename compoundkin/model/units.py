@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
 
 # In metres, kilograms, newtons; feet, pounds and their kin as defined by the international agreement of 1959, the
 # pound-force by the standard acceleration of 9.80665 m/s^2.
@@ -76,16 +76,16 @@ def as_units(given: Any) -> Units | None:
     """
     if given is None or isinstance(given, Units):
         return given
-    problems = list(_problems(given))
+    problems = list(_unit_problems(given))
     if problems:
         raise InvalidMechanism(problems)
     return Units(given["length"], given["mass"], given["force"])
 
 
-def given_units(given: Any, unit: str) -> tuple[Units | None, list[Problem]]:
+def checked_units(given: Any, unit: str) -> tuple[Units | None, list[Problem]]:
     """Return units as given, and what is wrong with them. A `unit` of length beside them is one too many.
 
-    >>> given_units({"length": "mm", "mass": "kg", "force": "N"}, "mm")[1][0].what
+    >>> checked_units({"length": "mm", "mass": "kg", "force": "N"}, "mm")[1][0].what
     'units name the unit of length already'
     """
     twice = [Problem("unit", "units name the unit of length already", "leave unit out")] if given and unit else []
@@ -95,7 +95,7 @@ def given_units(given: Any, unit: str) -> tuple[Units | None, list[Problem]]:
         return None, [*twice, *error.problems]
 
 
-def _problems(given: Any) -> Iterator[Problem]:
+def _unit_problems(given: Any) -> Iterator[Problem]:
     if not isinstance(given, Mapping):
         remedy = 'write units={"length": "mm", "mass": "kg", "force": "N"}'
         yield Problem("units", f"{given!r} does not name units", remedy)
@@ -108,4 +108,4 @@ def _problems(given: Any) -> Iterator[Problem]:
             yield Problem(f"units.{key}", f"the unit of {key} is missing", f"known: {', '.join(known)}")
         elif given[key] not in known:
             what = f"{given[key]!r} is no known unit of {key}"
-            yield Problem(f"units.{key}", what, nearest(given[key], list(known)))
+            yield Problem(f"units.{key}", what, suggestion(given[key], list(known)))

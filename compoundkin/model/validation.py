@@ -1,42 +1,50 @@
-"""What can be wrong with the words of a mechanism. Every problem is found, none hides another."""
+"""Validation of a mechanism: names, numbers, masses, loads, outlines. No problem hides another."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import cmath
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeAlias
 
-from compoundkin.base.errors import Problem, nearest
-from compoundkin.model.attributes import RATES, TIME, VALUE, rated
-from compoundkin.model.elements import FRAME, Drive, Item, Lead, Link
-from compoundkin.model.number_problems import (
-    drive_problems,
-    is_finite,
-    no_numbers,
-    placed_drives,
-    point_problems,
-    shape_problems,
-)
+import numpy as np
+
+from compoundkin.base.arrays import LONGEST, SHORTEST, Number, cross
+from compoundkin.base.errors import LikelySlip, Problem, suggestion, warn
+from compoundkin.model.attributes import RATES, TIME, VALUE, driver_and_rate
+from compoundkin.model.definition import CYLINDERS, DRIVES, MechanismDefinition
+from compoundkin.model.elements import Drive, Item, Link
+from compoundkin.model.fields import Key, NameWording, name_problems
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.amounts import tables_of
+from compoundkin.model.loads.contract import Load, NamedParts
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.loads.gravity import Gravity
+from compoundkin.model.loads.mass import Mass, uniform_body
+from compoundkin.model.loads.pretension import Pretension
+from compoundkin.model.outlines import OUTLINES, LinkOutline
+from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.written import CYLINDERS, DRIVES, Written
+from compoundkin.model.prescribed_motion import PrescribedMotion
 
 _PRINTABLE = "use printable text without dots, commas or outer blanks"
 
 
-def problems_of(mechanism: Written) -> Iterator[Problem]:
+def definition_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Find all problems, in the order of the words."""
-    yield from _words(mechanism)
-    yield from _names(mechanism)
+    yield from _element_problems(mechanism)
+    yield from _naming_problems(mechanism)
     yield from point_problems(mechanism)
-    yield from _thought(mechanism)
-    yield from _pairs(mechanism)
-    yield from _joined(mechanism)
-    yield from _drives(mechanism)
-    yield from _modes(mechanism)
-    yield from _expectations(mechanism)
-    yield from _quantities(mechanism)
+    yield from _auxiliary_problems(mechanism)
+    yield from _pair_problems(mechanism)
+    yield from _unconnected_links(mechanism)
+    yield from _driver_problems(mechanism)
+    yield from _mode_problems(mechanism)
+    yield from _expectation_problems(mechanism)
+    yield from _quantity_problems(mechanism)
     yield from shape_problems(mechanism)
 
 
-def _words(mechanism: Written) -> Iterator[Problem]:
+def _element_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Find what is not a word at all."""
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
@@ -47,15 +55,15 @@ def _words(mechanism: Written) -> Iterator[Problem]:
             )
 
 
-def _names(mechanism: Written) -> Iterator[Problem]:
+def _naming_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     if FRAME not in mechanism.links:
         yield Problem(
             "links",
             f"no link is called {FRAME!r}",
-            f"call the fixed link {FRAME!r}; {nearest(FRAME, list(mechanism.links))}",
+            f"call the fixed link {FRAME!r}; {suggestion(FRAME, list(mechanism.links))}",
         )
     seen: set[tuple[str, str]] = set()
-    for where, kind, name in _named(mechanism):
+    for where, kind, name in _named_elements(mechanism):
         if not _is_name(name):
             yield Problem(where, f"{name!r} is not a name", _PRINTABLE)
         if (kind, name) in seen:
@@ -73,14 +81,14 @@ def _names(mechanism: Written) -> Iterator[Problem]:
             yield Problem(f"links.{letter}", "a link and a point have the same name", "rename one of them")
 
 
-def _named(mechanism: Written) -> Iterator[tuple[str, str, str]]:
+def _named_elements(mechanism: MechanismDefinition) -> Iterator[tuple[str, str, str]]:
     """Yield the place, sort and name of everything that has one. Pairs of all kinds share their names."""
     for item in mechanism.parts:
-        if isinstance(item, Link) and item.name not in mechanism.led_links:
+        if isinstance(item, Link) and item.name not in mechanism.auxiliary_links:
             yield f"links.{item.name}", "link", item.name
     for where, pair in mechanism.placed_pairs:
         yield f"{where}.name", "pair", pair.name
-    items = [item for item in mechanism.items if isinstance(item, Drive | Lead)]
+    items = [item for item in mechanism.items if isinstance(item, Drive | PrescribedMotion)]
     for index, drive in enumerate(items):
         yield f"{DRIVES}[{index}].name", "drive", drive.name
 
@@ -89,7 +97,7 @@ def _is_name(name: str) -> bool:
     return bool(name) and name == name.strip() and name.isprintable() and not set(name) & set(".,")
 
 
-def _thought(mechanism: Written) -> Iterator[Problem]:
+def _auxiliary_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     letters = {name: link.letters for name, link in mechanism.rigid_links.items()}
     items = [item for item in mechanism.items if isinstance(item, Cylinder)]
     for index, item in enumerate(items):
@@ -97,26 +105,26 @@ def _thought(mechanism: Written) -> Iterator[Problem]:
         if item.name in (other.name for other in items[:index]):
             remedy = "names are unique: give one of them a name"
             yield Problem(f"{CYLINDERS}[{index}].name", f"the name {item.name!r} is used twice", remedy)
-    for index, drive in enumerate(item for item in mechanism.items if isinstance(item, Drive | Lead)):
-        if isinstance(drive, Lead):
+    for index, drive in enumerate(item for item in mechanism.items if isinstance(item, Drive | PrescribedMotion)):
+        if isinstance(drive, PrescribedMotion):
             yield from drive.problems(letters, f"{DRIVES}[{index}]")
         if isinstance(drive, Drive) and drive.link in mechanism.cylinders and (drive.on, drive.pair) != (FRAME, ""):
             what = f"the cylinder {drive.link!r} is driven by its length, against no other link"
             yield Problem(f"drives[{index}].on", what, "leave `on` and `pair` out")
 
 
-def _pairs(mechanism: Written) -> Iterator[Problem]:
+def _pair_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     letters = {name: link.letters for name, link in mechanism.links.items()}
     for where, pair in mechanism.placed_pairs:
         # what is no number cannot be compared with anything
-        yield from list(no_numbers(pair, where)) or pair.problems(letters, where)
+        yield from list(invalid_numbers(pair, where)) or pair.problems(letters, where)
         shared = mechanism.pins_between(*pair.members[:2])
         if shared:
             yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}",
                           "give the two points different letters")  # fmt: skip
 
 
-def _joined(mechanism: Written) -> Iterator[Problem]:
+def _unconnected_links(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Find links that no pair joins to anything: most often a misspelt letter."""
     paired = {name for names in mechanism.pins.values() for name in names}
     paired |= {name for pair in mechanism.written_pairs for name in pair.members}
@@ -126,19 +134,19 @@ def _joined(mechanism: Written) -> Iterator[Problem]:
         if name in paired or not link.points:
             continue
         others = [k for k, names in mechanism.carriers.items() if name not in names]
-        hints = [f"{k}: {nearest(k, others)}" for k in link.points if nearest(k, others).startswith("did")]
+        hints = [f"{k}: {suggestion(k, others)}" for k in link.points if suggestion(k, others).startswith("did")]
         hints += [f"{a} and {b} are two letters" for a, b in mechanism.case_slips() if {a, b} & set(link.points)]
         yield Problem(f"links.{name}", f"it is joined to nothing: no other link carries {', '.join(link.points)}",
                       "; ".join(hints) or "share a letter with another link or write a slide")  # fmt: skip
 
 
-def _drives(mechanism: Written) -> Iterator[Problem]:
+def _driver_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     driven: dict[tuple[str, frozenset[str]], str] = {}
     for where, drive in placed_drives(mechanism):
         unknown = [(k, n) for k, n in (("link", drive.link), ("on", drive.on)) if n not in mechanism.links]
         for key, name in unknown:
             known = [*mechanism.links, *mechanism.cylinders]
-            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, known))
+            yield Problem(f"{where}.{key}", f"there is no link {name!r}", suggestion(name, known))
         if not unknown:
             choices = mechanism.drivable(drive)
             yield from _driven_pair(drive, choices, where)
@@ -166,16 +174,16 @@ def _driven_pair(drive: Drive, choices: list[str], where: str) -> Iterator[Probl
         yield Problem(f"{where}.pair", f"{what} share several pairs", f"name one: {', '.join(choices)}")
 
 
-def _modes(mechanism: Written) -> Iterator[Problem]:
+def _mode_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     for index, mode in enumerate(mechanism.modes):
         for name in mode.links:
             if name not in mechanism.links:
                 yield Problem(
-                    f"modes[{index}].links", f"there is no link {name!r}", nearest(name, list(mechanism.links))
+                    f"modes[{index}].links", f"there is no link {name!r}", suggestion(name, list(mechanism.links))
                 )
 
 
-def _expectations(mechanism: Written) -> Iterator[Problem]:
+def _expectation_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Published numbers that cannot be held against anything."""
     drives = [drive.name for drive in mechanism.drives]
     # a misspelt drive takes its name from the link; that problem is reported already
@@ -183,9 +191,9 @@ def _expectations(mechanism: Written) -> Iterator[Problem]:
     for index, expectation in enumerate(mechanism.expectations):
         where = f"expected[{index}]"
         for key, value in expectation.at:
-            driver, rate = rated(key, drives)
+            driver, rate = driver_and_rate(key, drives)
             if named and driver not in drives and key != TIME:
-                yield Problem(f"{where}.at.{key}", f"there is no driver {driver!r}", nearest(driver, drives))
+                yield Problem(f"{where}.at.{key}", f"there is no driver {driver!r}", suggestion(driver, drives))
             if rate not in ("", *RATES):
                 yield Problem(f"{where}.at.{key}", f"a driver has no {rate!r}", "known: speed, acceleration, jerk")
             if not is_finite(value):
@@ -197,7 +205,7 @@ def _expectations(mechanism: Written) -> Iterator[Problem]:
             yield Problem(f"{where}.tolerance", what, "give a number that is not negative")
 
 
-def _quantities(mechanism: Written) -> Iterator[Problem]:
+def _quantity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Outputs and published numbers of what there is not. A multiple pin's pairs are named by their links."""
     named = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
     known = dict.fromkeys([*named, *(drive.name for drive in mechanism.drives)])
@@ -206,10 +214,527 @@ def _quantities(mechanism: Written) -> Iterator[Problem]:
     for where, name in asked:
         owner = name.split("(")[0].split(".")[0]
         if owner not in known:
-            yield Problem(where, f"there is no point, link, pair or driver {owner!r}", nearest(owner, list(known)))
+            yield Problem(where, f"there is no point, link, pair or driver {owner!r}", suggestion(owner, list(known)))
     for k, e in enumerate(mechanism.expectations):
         owner, _, attribute = e.quantity.partition(".")
         # a file must tell by the word alone whether the number is in degrees
         if not attribute or (attribute == VALUE and owner.split("(")[0] in mechanism.pins):
             yield Problem(f"expected[{k}].quantity", f"{e.quantity!r} does not say of what kind the number is",
                           f"write {owner}.angle, {owner}.position or another in full")  # fmt: skip
+
+
+# Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
+ZERO_LENGTH = 1e-12
+
+
+# What a driver says of its coordinate in numbers.
+DRIVER_NUMBERS = ("values", *RATES)
+
+
+# What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
+_SCALARS = (complex, float, int)
+
+
+# An error names so many links.
+MOST_NAMED = 12
+
+
+# A direction in which points of a drawing hardly ever lie one behind the other.
+_OBLIQUE = cmath.rect(1.0, 1.0)
+
+
+def point_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    """Find points that are misspelt in the drawing, no numbers, or coincident."""
+    size = _size(mechanism)
+    if 0.0 < size < SHORTEST:
+        yield _off_scale("links", f"the farthest point is at {size:g}")
+    for name, link in mechanism.links.items():
+        if not link.points and name not in mechanism.auxiliary_links:
+            yield Problem(f"links.{name}.points", "a link needs at least one point")
+        for letter, p in link.points.items():
+            where = f"links.{name}.points.{letter}"
+            if p is None and letter not in mechanism.sketch and not set(mechanism.sketch) <= set(mechanism.carriers):
+                # the drawing has a letter that no link has: one of the two is misspelt
+                yield Problem(where, "this point is neither given nor drawn", _undrawn(letter, mechanism.sketch))
+            elif p is not None and not is_finite(p):
+                yield Problem(where, f"{p!r} is empty or not finite")
+            elif p is not None and is_too_great(p):
+                yield _off_scale(where, f"{p!r} is too far away")
+        yield from _lengths(mechanism, name, size)
+    for letter, p in mechanism.sketch.items():
+        if letter not in mechanism.carriers:
+            yield Problem(f"drawn.{letter}", "no link carries this point", suggestion(letter, list(mechanism.carriers)))
+        if not is_finite(p):
+            yield Problem(f"drawn.{letter}", f"{p!r} is empty or not finite")
+        elif is_too_great(p):
+            yield _off_scale(f"drawn.{letter}", f"{p!r} is too far away")
+
+
+def is_finite(value: Any) -> bool:
+    """Return whether a value is finite numbers, one or an array of them."""
+    try:
+        if isinstance(value, _SCALARS):
+            return cmath.isfinite(value)
+        given = np.asarray(value)
+        # to NumPy dates are finite
+        return given.dtype.kind not in "mM" and bool(given.size) and bool(np.all(np.isfinite(given)))
+    except (TypeError, ValueError, OverflowError):  # a text, a ragged list, a whole number of hundreds of digits
+        return False
+
+
+def is_too_great(value: Any) -> bool:
+    """Return whether a finite value is beyond what can be computed with. Of an array, any."""
+    return bool(np.max(np.abs(value)) > LONGEST)
+
+
+def _off_scale(where: str, what: str) -> Problem:
+    return Problem(where, what, "choose another unit: lengths are between 1e-50 and 1e50 of it")
+
+
+def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
+    return f"add {letter} to the drawing; {suggestion(letter, list(sketch))}"
+
+
+def _lengths(mechanism: MechanismDefinition, name: str, size: float) -> Iterator[Problem]:
+    """Pinned points of one link that coincide. A link of no length between two pairs."""
+    link = mechanism.links[name]
+    place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
+    pinned = [(k, p) for k, p in place.items() if k in mechanism.pins and p is not None]
+    for a, b in _coincident([p for _, p in pinned], ZERO_LENGTH * size):
+        yield Problem(
+            f"links.{name}.points.{pinned[b][0]}",
+            f"{pinned[a][0]} and {pinned[b][0]} coincide: a link of zero length",
+            "move one of them or give both one letter",
+        )
+
+
+def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
+    """Yield the pairs of points that coincide in any design."""
+    if all(isinstance(p, _SCALARS) for p in points):
+        yield from sorted(_close_along_line(points, nearer))
+    else:
+        for i, p in enumerate(points):
+            yield from ((i, j) for j in range(i + 1, len(points)) if np.any(np.abs(points[j] - p) <= nearer))
+
+
+def _close_along_line(points: list[complex], nearer: float) -> Iterator[tuple[int, int]]:
+    """Yield the pairs of points that coincide. Each is held against those next to it along one direction only."""
+    along = sorted(((p * _OBLIQUE).real, i) for i, p in enumerate(points) if cmath.isfinite(p))
+    for here, (t, i) in enumerate(along):
+        for there in range(here + 1, len(along)):
+            farther, j = along[there]
+            # twice: rounding of the products
+            if farther - t > 2.0 * nearer:
+                break
+            if abs(points[j] - points[i]) <= nearer:
+                yield min(i, j), max(i, j)
+
+
+def _size(mechanism: MechanismDefinition) -> float:
+    values = [p for link in mechanism.links.values() for p in link.points.values() if p is not None]
+    return max(map(_largest_value, [*values, *mechanism.sketch.values()]), default=0.0)
+
+
+def _largest_value(value: Any) -> float:
+    """Return the greatest absolute value, of what is finite."""
+    if isinstance(value, _SCALARS):
+        return abs(value) if cmath.isfinite(value) else 0.0
+    return float(np.max(np.abs(np.asarray(value))[np.isfinite(value)], initial=0.0))
+
+
+def invalid_numbers(pair: Pair, where: str) -> Iterator[Problem]:
+    """Find what a pair holds in place of real numbers or flags."""
+    for key in pair.keys:
+        for value in _numbers_of(pair, key):
+            if not is_finite(value) or np.iscomplexobj(value):
+                yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite, or not a number")
+            elif is_too_great(value):
+                yield _off_scale(f"{where}.{key.name}", f"{value!r} is too great")
+        flag = getattr(pair, key.name, None)
+        if key.kind == "flag" and not isinstance(flag, bool | np.bool_):
+            yield Problem(f"{where}.{key.name}", f"{flag!r} is neither True nor False")
+
+
+def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
+    """Return the numbers and arrays that a pair holds under a key."""
+    value: Any = getattr(pair, key.name, None)
+    if key.kind in ("reach", "sweep"):
+        ends = value if isinstance(value, tuple | list) else (value,)
+        return tuple(end for end in ends if end is not None and not isinstance(end, str))
+    if key.kind not in ("length", "angle", "two") or (value is None and key.default is None and not key.required):
+        return ()
+    return value if key.kind == "two" else (value,)
+
+
+def drive_problems(drive: Drive, where: str) -> Iterator[Problem]:
+    """Find a driver's numbers that are none, or that stand beside a law."""
+    for key in DRIVER_NUMBERS:
+        value = getattr(drive, key)
+        if value is not None and not is_finite(value):
+            yield Problem(f"{where}.{key}", "the value is empty or not finite")
+        elif value is not None and is_too_great(value):
+            yield _off_scale(f"{where}.{key}", "the value is too great")
+    for key, default in ((key.name, key.default) for key in drive.keys if key.name in DRIVER_NUMBERS):
+        if drive.law is not None and not np.array_equal(getattr(drive, key), default):
+            remedy = f"leave the {key} or the law out"
+            yield Problem(f"{where}.{key}", "the driver has a law as well, which says how it moves", remedy)
+
+
+def placed_drives(mechanism: MechanismDefinition) -> list[tuple[str, Drive]]:
+    """Return each driver with its place in a file."""
+    found: list[tuple[str, Drive]] = []
+    items = [item for item in mechanism.items if isinstance(item, Drive | PrescribedMotion)]
+    for index, item in enumerate(items):
+        count = len(item.drivers) if isinstance(item, PrescribedMotion) else 1
+        if mechanism.prescribed_motions.get(item.name) is item or (
+            isinstance(item, Drive) and item.link not in mechanism.invalid_cylinders
+        ):
+            found += [(f"{DRIVES}[{index}]", drive) for drive in mechanism.drives[len(found) : len(found) + count]]
+    return found
+
+
+def shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    """Find arrays that do not broadcast together."""
+    shapes: list[tuple[str, tuple[int, ...]]] = []
+    for name, link in mechanism.links.items():
+        arrays = ((k, p) for k, p in link.points.items() if not (p is None or isinstance(p, _SCALARS)))
+        shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in arrays]
+    shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
+    for where, pair in mechanism.placed_pairs:
+        numbers = ((key, value) for key in pair.keys for value in _numbers_of(pair, key))
+        # what is no array at all is told of already
+        shapes += [(f"{where}.{key.name}", np.shape(value)) for key, value in numbers if is_finite(value)]
+    for place, drive in placed_drives(mechanism):
+        shapes += [
+            (f"{place}.{k}", np.shape(getattr(drive, k))) for k in DRIVER_NUMBERS if getattr(drive, k) is not None
+        ]
+    total: tuple[int, ...] = ()
+    for where, shape in shapes:
+        if not shape:
+            continue
+        try:
+            total = np.broadcast_shapes(total, shape)
+        except ValueError:
+            yield Problem(
+                where,
+                f"shape {shape} does not broadcast with {total}",
+                "give a new axis to designs: the last axis is the motion",
+            )
+
+
+def missing_places(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]:
+    """Name links whose points have no place, and say how to give them one."""
+    for number, (name, letters) in enumerate(unplaced.items()):
+        if number == MOST_NAMED:
+            yield Problem("links", f"{len(unplaced) - number} more links have points without a place")
+            return
+        what = f"{'the point' if len(letters) == 1 else 'the points'} {', '.join(letters)}"
+        what += f" of {name!r} {'has' if len(letters) == 1 else 'have'} no place"
+        remedy = f"give all coordinates as {letters[0]} = (x, y), or a place in the drawing; the structure needs none"
+        yield Problem(f"links.{name}.points", what, "" if number else remedy)
+
+
+GRAVITY = "gravity"
+
+
+# An inertia below this part of that of a uniform bar or plate through the link's points is most often one in another
+# unit: kg m^2 among millimetres are a millionth, kg cm^2 a hundredth.
+SMALL_INERTIA = 1e-3
+
+
+# What of a load holds numbers, and may be an array over the motion.
+_LOAD_NUMBERS = ("length", "amount", "planar", "point", "spot", "coordinate")
+
+
+MassOrLoad: TypeAlias = Mass | Load | Friction | Pretension
+
+
+def load_problems(mechanism: MechanismDefinition, names: NamedParts, has_units: bool) -> list[Problem]:
+    """Return what is wrong with masses and loads. They need units, well written or not."""
+    found = [] if has_units else list(_without_units(mechanism))
+    for where, item in placed_loads(mechanism):
+        numbers = list(_invalid_load_numbers(where, item))
+        found += numbers
+        if not numbers:
+            # a load on a pin is one on a link of it
+            whole = item.completed(names) if isinstance(item, Load) else item
+            found += whole.problems(names, where)
+            found += _unknown_tables(where, item, names)
+    return [*found, *_repeated_loads(mechanism, names), *_gravity_problems(mechanism), *_load_shape_problems(mechanism)]
+
+
+def placed_loads(mechanism: MechanismDefinition) -> Iterator[tuple[str, MassOrLoad]]:
+    """Yield each mass and load with its place in a file."""
+    count: dict[str, int] = {}
+    for item in mechanism.items:
+        if isinstance(item, Mass | Load | Friction | Pretension):
+            index = count.get(item.table, 0)
+            count[item.table] = index + 1
+            yield f"{item.table}[{index}]", item
+
+
+def _without_units(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    """Find masses and forces of a mechanism that does not say what they are in."""
+    said = next((item for _, item in placed_loads(mechanism)), None)
+    if said is not None:
+        what = f"it has a {said.title}, and masses and forces need units"
+        yield Problem("units", what, 'write units={"length": "mm", "mass": "kg", "force": "N"}')
+
+
+def _load_numbers(item: MassOrLoad) -> Iterator[tuple[str, Any]]:
+    """Yield the numbers and arrays that an item holds, by their keys."""
+    for key in item.keys:
+        held = getattr(item, key.name)
+        if key.kind in _LOAD_NUMBERS and not isinstance(held, str) and held is not None:
+            for part in held if isinstance(held, tuple) else (held,):
+                if isinstance(part, int | float | complex | np.ndarray):
+                    yield key.name, part
+
+
+def load_designs(mechanism: MechanismDefinition) -> Iterator[tuple[str, Any]]:
+    """Yield the arrays of masses and loads over designs with their places.
+
+    The motion's axis is left out.
+    """
+    for where, item in placed_loads(mechanism):
+        for key, value in _load_numbers(item):
+            if np.ndim(value) > 1:
+                yield f"{where}.{key}", value[..., :1]
+
+
+def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
+    """Find what is empty or not finite, and a mass that would change along the motion."""
+    for key, value in _load_numbers(item):
+        if not is_finite(value):
+            yield Problem(f"{where}.{key}", "the value is empty or not finite")
+        elif isinstance(item, Mass | Friction) and np.ndim(value) and np.shape(value)[-1] > 1:
+            what = f"it holds {np.shape(value)[-1]} numbers along the motion, in which it cannot change"
+            yield Problem(f"{where}.{key}", what, "give one number, or one for each design: [[1.0], [2.0]]")
+    for needed in item.keys:
+        if needed.required and needed.kind in _LOAD_NUMBERS and getattr(item, needed.name) is None:
+            yield Problem(f"{where}.{needed.name}", "it is missing", needed.doc)
+
+
+def _unknown_tables(where: str, item: MassOrLoad, names: NamedParts) -> Iterator[Problem]:
+    """Find tables over what there is not."""
+    for key in item.amounts if isinstance(item, Load) else ():
+        for table in tables_of(getattr(item, key)):
+            if table.over not in ("", TIME) and names.coordinate(table.over) is None:
+                what = f"there is no pair, pin or driver {table.over!r}"
+                yield Problem(f"{where}.{key}.over", what, suggestion(table.over, [TIME, *names.pairs]))
+
+
+def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:
+    """Find two masses of a link, two frictions of a pair by whichever names, and names of two loads."""
+    seen = set[tuple[str, object]]()
+    for where, item in placed_loads(mechanism):
+        kind = "load" if isinstance(item, Load) else item.title
+        if isinstance(item, Load) and not (item.name.isprintable() and not set(item.name) & set(".,")):
+            yield Problem(f"{where}.name", f"{item.name!r} is not a name", "use printable text without dots, commas")
+        if (kind, meant := _load_identity(item, names)) in seen and isinstance(item, Load):
+            yield Problem(where, f"the name {item.name!r} is used twice", "names are unique: give one of them a name")
+        elif (kind, meant) in seen:
+            yield Problem(where, f"{item.name!r} has a {kind} already", "leave one of them out, or add them up")
+        seen.add((kind, meant))
+
+
+def _load_identity(item: MassOrLoad, names: NamedParts) -> object:
+    """Return what an item may be once of: a name, or the two links of a pair and where."""
+    pair = names.pair(item.pair) if isinstance(item, Friction | Pretension) else None
+    return item.name if pair is None else (pair.title, pair.letters, frozenset(pair.members))
+
+
+def _gravity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    given = [item.vector for item in mechanism.items if isinstance(item, Gravity)]
+    if len(given) > 1:
+        yield Problem(GRAVITY, "it is given twice", "leave one of them out")
+    for value in given:
+        if not is_finite(value):
+            yield Problem(GRAVITY, "the value is empty or not finite")
+
+
+def _load_shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    """Find arrays of loads that do not broadcast with each other and with the points of links."""
+    total: tuple[int, ...] = ()
+    points = [(f"links.{name}.points.{letter}", np.shape(place)) for name, link in mechanism.links.items()
+              for letter, place in link.points.items() if isinstance(place, np.ndarray)]  # fmt: skip
+    held = [(f"{where}.{key}", np.shape(value)) for where, item in placed_loads(mechanism)
+            for key, value in _load_numbers(item)]  # fmt: skip
+    for place, shape in [*points, *held] if any(shape for _, shape in held) else ():
+        try:
+            total = np.broadcast_shapes(total, shape)
+        except ValueError:
+            what = f"shape {shape} does not broadcast with {total}"
+            yield Problem(place, what, "give a new axis to designs: the last axis is the motion")
+
+
+def load_warnings(mechanism: Any) -> None:
+    """Warn of inertias that are far too small for their links."""
+    told = [item for item in mechanism.items if isinstance(item, Mass) and item.inertia is not None]
+    for item in told if not mechanism.unplaced else ():
+        points = list(mechanism.geometry.points[item.link].values())
+        uniform = np.asarray(mechanism.masses[item.link].mass * uniform_body(points).inertia)
+        if np.any((np.asarray(item.inertia) > 0.0) & (item.inertia < SMALL_INERTIA * uniform)):
+            part = float(np.min(item.inertia / uniform))
+            what = f"masses.{item.link}.inertia: it is {part:.2g} of that of a uniform body through the link's points"
+            warn(f"{what}; it is in {mechanism.units.mass} {mechanism.units.length}^2", LikelySlip)
+
+
+_OUTLINE_LENGTHS = ("width", "radius", "pin")
+
+
+# How many places each list needs.
+_FEWEST_CORNERS = {"through": 2, "polygon": 3}
+
+
+def outline_problems(mechanism: MechanismDefinition, names: NamedParts) -> list[Problem]:
+    """Return what is wrong with outlines, well written or not."""
+    found: list[Problem] = []
+    for where, item in placed_outlines(mechanism):
+        numbers = list(_invalid_outline_numbers(where, item))
+        found += numbers or [
+            *_outline_reference_problems(where, item, names),
+            *_outline_place_problems(where, item, mechanism),
+        ]
+    return [*found, *_repeated_outlines(mechanism), *_outline_shape_problems(mechanism)]
+
+
+def placed_outlines(mechanism: MechanismDefinition) -> Iterator[tuple[str, LinkOutline]]:
+    """Yield each outline with its place in a file."""
+    items = [item for item in mechanism.items if isinstance(item, LinkOutline)]
+    yield from ((f"{OUTLINES}[{index}]", item) for index, item in enumerate(items))
+
+
+def outline_designs(mechanism: MechanismDefinition) -> Iterator[tuple[str, Number]]:
+    """Yield the arrays of outlines over designs with their places."""
+    for where, item in placed_outlines(mechanism):
+        yield from ((f"{where}.{key}", value) for key, value in _outline_numbers(item) if np.ndim(value) > 1)
+
+
+def _outline_numbers(item: LinkOutline) -> Iterator[tuple[str, Any]]:
+    """Yield the numbers and places that an outline holds, by their keys."""
+    yield from ((key, getattr(item, key)) for key in _OUTLINE_LENGTHS if getattr(item, key) is not None)
+    if item.at is not None and not isinstance(item.at, str):
+        yield "at", item.at
+    for key in _FEWEST_CORNERS:
+        yield from ((f"{key}[{k}]", one) for k, one in enumerate(getattr(item, key)) if not isinstance(one, str))
+
+
+def _invalid_outline_numbers(where: str, item: LinkOutline) -> Iterator[Problem]:
+    """Find what is empty or not finite, not above zero, or would change along the motion."""
+    for key, value in _outline_numbers(item):
+        if not is_finite(value):
+            yield Problem(f"{where}.{key}", "the value is empty or not finite")
+        elif is_too_great(value):
+            yield Problem(f"{where}.{key}", "it is too great", "choose another unit")
+        elif np.ndim(value) and np.shape(value)[-1] > 1:
+            what = f"it holds {np.shape(value)[-1]} numbers along the motion, in which an outline cannot change"
+            yield Problem(f"{where}.{key}", what, "give one number, or one for each design: [[8], [10]]")
+        elif key in _OUTLINE_LENGTHS and not np.all(np.asarray(value) > 0.0):
+            yield Problem(f"{where}.{key}", f"a {key} is above zero, not {float(np.min(value)):g}")
+
+
+def _outline_reference_problems(where: str, item: LinkOutline, names: NamedParts) -> Iterator[Problem]:
+    """Find unknown links and points, and what an outline leaves out."""
+    yield from name_problems(item, names.letters, where, NameWording())
+    letters = names.letters.get(item.link, ())
+    for key, fewest in _FEWEST_CORNERS.items():
+        given = getattr(item, key)
+        if given and len(given) < fewest:
+            yield Problem(f"{where}.{key}", f"{len(given)} places are too few", f"give {fewest} or more")
+        for k, one in enumerate(given if letters else ()):
+            if isinstance(one, str) and one not in letters:
+                what = f"link {item.link!r} has no point {one!r}"
+                yield Problem(f"{where}.{key}[{k}]", what, suggestion(one, list(letters)))
+    if not item.polygon and all(getattr(item, key) is None for key in _OUTLINE_LENGTHS):
+        yield Problem(where, "it says no shape", "give a width, a radius, a polygon or the diameter of pins")
+    if item.through and item.width is None:
+        yield Problem(f"{where}.width", "bars through points need a width", "give the width")
+
+
+def _outline_place_problems(where: str, item: LinkOutline, mechanism: MechanismDefinition) -> Iterator[Problem]:
+    """Find a disc without a middle, a middle of nothing, and a pin that joins nothing."""
+    letters = mechanism.links[item.link].letters if item.link in mechanism.links else ()
+    choice = f"name a point: {', '.join(letters)}"
+    if item.radius is not None and item.at is None:
+        yield Problem(f"{where}.at", "a disc needs its middle", choice)
+    if item.at is not None and item.radius is None and item.pin is None:
+        yield Problem(f"{where}.at", "it is the middle of no disc and of no pin", "give a radius, or leave it out")
+    if item.pin is None or not letters:
+        return
+    joined = [letter for letter in letters if is_joined(mechanism, letter)]
+    if item.at is not None and not isinstance(item.at, str):
+        yield Problem(f"{where}.at", "a pin is at a point", choice)
+    elif not joined or (item.at in letters and item.at not in joined):
+        what = f"no pin joins {item.link!r} to another link{f' at {item.at}' if item.at else ''}"
+        yield Problem(f"{where}.pin", what, "leave it out, or write a disc with a radius")
+
+
+def is_joined(mechanism: MechanismDefinition, letter: str) -> bool:
+    """Tell whether a pin or another pair joins links at a point."""
+    return letter in mechanism.real_pins or any(letter in pair.letters for pair in mechanism.real_pairs)
+
+
+def _repeated_outlines(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    seen = set[str]()
+    for where, item in placed_outlines(mechanism):
+        if not (item.name.isprintable() and not set(item.name) & set(".,")):
+            yield Problem(f"{where}.name", f"{item.name!r} is not a name", "use printable text without dots, commas")
+        if item.name in seen:
+            yield Problem(where, f"the name {item.name!r} is used twice", "give one of both outlines a name")
+        seen.add(item.name)
+
+
+def _outline_shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
+    """Find arrays of outlines that do not broadcast with each other and with the points of links."""
+    total: tuple[int, ...] = ()
+    points = [(f"links.{name}.points.{letter}", np.shape(place)) for name, link in mechanism.links.items()
+              for letter, place in link.points.items() if isinstance(place, np.ndarray)]  # fmt: skip
+    held = [(where, np.shape(value)) for where, value in outline_designs(mechanism)]
+    for place, shape in [*points, *held] if held else ():
+        try:
+            total = np.broadcast_shapes(total, shape)
+        except ValueError:
+            what = f"shape {shape} does not broadcast with {total}"
+            yield Problem(place, what, "give a new axis to designs: the last axis is the motion")
+
+
+def crossed_polygons(mechanism: Any) -> Iterator[Problem]:
+    """Find polygons that cross themselves, or that have no area, in any design."""
+    for where, item in placed_outlines(mechanism):
+        points = mechanism.geometry.points.get(item.link, {})
+        if not item.polygon:
+            continue
+        corners = [points[one] if isinstance(one, str) else one for one in item.polygon]
+        if _crosses(np.stack(np.broadcast_arrays(*corners))):
+            yield Problem(
+                f"{where}.polygon", "its sides cross, touch, or have no length", "give its corners in order all around"
+            )
+
+
+def _crosses(corners: Number) -> bool:
+    """Tell whether two sides of a polygon, (corners, ...), have a point in common that is no common corner."""
+    count = len(corners)
+    start, stop = corners, np.roll(corners, -1, axis=0)
+    one, other = np.triu_indices(count, 1)
+    apart = (other - one > 1) & (other - one < count - 1)
+    sides: Number = np.abs(stop - start)
+    if np.any(sides == 0.0):
+        return True
+    back = np.conjugate(np.roll(start, 1, axis=0) - start) * (stop - start)
+    # a corner at which the line runs back over itself
+    if np.any((back.imag == 0.0) & (back.real > 0.0)):
+        return True
+    a, b, c, d = start[one[apart]], stop[one[apart]], start[other[apart]], stop[other[apart]]
+    split = cross(b - a, c - a) * cross(b - a, d - a) <= 0.0
+    return bool(np.any(split & (cross(d - c, a - c) * cross(d - c, b - c) <= 0.0) & _boxes_overlap(a, b, c, d)))
+
+
+def _boxes_overlap(a: Number, b: Number, c: Number, d: Number) -> Number:
+    """Tell which sides have boxes that meet: on one line the products above say nothing."""
+    return (
+        (np.minimum(a.real, b.real) <= np.maximum(c.real, d.real))
+        & (np.minimum(c.real, d.real) <= np.maximum(a.real, b.real))
+        & (np.minimum(a.imag, b.imag) <= np.maximum(c.imag, d.imag))
+        & (np.minimum(c.imag, d.imag) <= np.maximum(a.imag, b.imag))
+    )

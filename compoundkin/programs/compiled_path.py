@@ -1,28 +1,87 @@
-"""A compiled path: chosen outputs of a mechanism as a function of its drivers and free dimensions."""
+"""Compiled paths: chosen outputs of a mechanism as a function of its drivers and free dimensions."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.kinematics.configuration import Configuration
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.configuration import SIGNS, Configuration, named
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import first_configuration, solve
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.programs.calls.quick_calls import QuickCalls
-from compoundkin.programs.calls.written_arrays import held_arrays, hold_threads
-from compoundkin.programs.derivatives.path_objective import PathObjective
-from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
-from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
-from compoundkin.programs.derivatives.sensitivity_program import SensitivityPrograms
-from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.dimension_values import dimension_values
+from compoundkin.programs.backends import chosen_back_end
+from compoundkin.programs.call_numbers import check_threads, output_arrays
+from compoundkin.programs.derivatives.path_objective import ObjectivePose, PathObjective
+from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities, SensitivityPrograms
+from compoundkin.programs.dimensions import (
+    StatedDimensions,
+    check_redundant_pairs,
+    check_single_values,
+    dimension_values,
+    free_dimensions,
+    mechanism_with,
+)
 from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.path_programs import PathPrograms
 from compoundkin.programs.path_values import PathValues
-from compoundkin.programs.program_modes import program_modes
-from compoundkin.programs.sources.source_writer import WritesSources
+from compoundkin.programs.quick_calls import QuickCalls
+from compoundkin.programs.recording.recorded_motion import output_of
+from compoundkin.programs.solved_designs import ProgramConfiguration
+from compoundkin.programs.sources.path_text import WritesSources
+from compoundkin.structure.kinematic_structure import Structure
+
+
+@checked
+def compile(
+    mechanism: Mechanism | Structure,
+    outputs: str | Sequence[str],
+    *,
+    free: str | Sequence[str] = (),
+    values: Any = None,
+    modes: Mapping[str, int] | str | Configuration | None = None,
+    hint: Mapping[str, Any] | None = None,
+    backend: str | None = None,
+) -> CompiledPath:
+    """Return a fast function of drivers and free dimensions of a mechanism.
+
+    `outputs` are quantities by name ("G.position", "bar.angle"), `free` the dimensions that every call may change
+    ("crank.D" a point of a link). The assembly modes are those that `solve` takes for the mechanism as it stands, at
+    its own driver values or `values`, or with `modes` and `hint`; they are kept for all designs. Raises UnknownName for
+    what there is not, and what `solve` raises.
+
+    >>> import numpy as np
+    >>> from compoundkin.model.elements import drive, link
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> path = compile(crank, "B.velocity.length", free="crank.B")
+    >>> path([0.0, 1.0], {"crank.B": np.array([[1.0], [2.0]])}, speed=3.0)["B.velocity.length"][:, 0].tolist()
+    [3.0, 6.0]
+    """
+    names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
+    if not names:
+        raise InvalidInput(Problem("outputs", "no output is named", 'compile(mechanism, ["G.position", ...])'))
+    freed = (free,) if isinstance(free, str) else tuple(free)
+    chosen_back_end(backend)
+    with warnings.catch_warnings():
+        # what is not assembled or has few digits is told at each call
+        warnings.simplefilter("ignore")
+        motion = solve(mechanism, values, order=0, modes=modes, hint=hint)
+    found = tuple(output_of(motion, name) for name in names)
+    stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
+    dimensions = free_dimensions(stated, freed)
+    check_single_values(stated, dimensions)
+    check_redundant_pairs(motion, stated, dimensions)
+    request = {"mechanism": mechanism, "outputs": names, "free": freed, "values": values, "modes": modes, "hint": hint}
+    return CompiledPath(PathPrograms(motion, found, dimensions, backend), {**request, "backend": backend})
+
+
+def compile_request(request: Mapping[str, Any]) -> CompiledPath:
+    """Return the path of a request, as after pickling."""
+    return compile(**request)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -72,7 +131,7 @@ class CompiledPath(WritesSources):
         `threads`. Raises InvalidInput for what does not fit; warns UnassembledPoses and FewDigits as `solve`.
 
         >>> from compoundkin.model.elements import drive, link
-        >>> from compoundkin.programs.compilation import compile
+        >>> from compoundkin.programs.compiled_path import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> compile(crank, "B")([0.0])["B"].tolist()
         [(2+0j)]
@@ -82,9 +141,9 @@ class CompiledPath(WritesSources):
             found = self._quick.found(values, dimensions, rates, threads)
             if found is not None:
                 return found
-        hold_threads(threads)
+        check_threads(threads)
         programs, numbers = self.programs, self.programs.numbers(values, dimensions, *rates, time=time)
-        return programs.computed(numbers, threads, held_arrays(out, programs.outputs_of(numbers), numbers.shape))
+        return programs.computed(numbers, threads, output_arrays(out, programs.outputs_of(numbers), numbers.shape))
 
     @cached_property
     def _quick(self) -> QuickCalls | None:
@@ -106,14 +165,14 @@ class CompiledPath(WritesSources):
         InvalidMechanism for those that no such mechanism can have, such as wheels that do not fit their axes.
 
         >>> from compoundkin.model.elements import drive, link
-        >>> from compoundkin.programs.compilation import compile
+        >>> from compoundkin.programs.compiled_path import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> compile(crank, "B", free="crank.B.x").mechanism({"crank.B.x": 3.0}).links["crank"].points["B"]
         (3+0j)
         """
         stated = self.programs.stated
         values = dimension_values(stated, self.programs.dimensions, dimensions)
-        return designed(stated, {one: value for one, value in values.items() if one.name in (dimensions or {})})
+        return mechanism_with(stated, {one: value for one, value in values.items() if one.name in (dimensions or {})})
 
     @checked
     def objective(self, function: Callable[[ObjectivePose], Any]) -> PathObjective:
@@ -123,7 +182,7 @@ class CompiledPath(WritesSources):
         It is written in arithmetic and NumPy's functions of numbers.
 
         >>> from compoundkin.model.elements import drive, link
-        >>> from compoundkin.programs.compilation import compile
+        >>> from compoundkin.programs.compiled_path import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> float(compile(crank, "B").objective(lambda at: abs(at["B"]) ** 2 * at["weight"])([0.0], weight=0.5))
         2.0
@@ -149,7 +208,7 @@ class CompiledPath(WritesSources):
         "crank.B" is both coordinates. Raises UnknownName for others, and what a call does.
 
         >>> from compoundkin.model.elements import drive, link
-        >>> from compoundkin.programs.compilation import compile
+        >>> from compoundkin.programs.compiled_path import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> found = compile(crank, "B", free="crank.B").derivatives([0.0])
         >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
@@ -168,9 +227,9 @@ class CompiledPath(WritesSources):
         return jax_path(self.programs)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from compoundkin.programs.compilation import compiled_again
+        pass  # joined
 
-        return compiled_again, (dict(self.request),)
+        return compile_request, (dict(self.request),)
 
     def __copy__(self) -> CompiledPath:
         return self
@@ -181,3 +240,15 @@ class CompiledPath(WritesSources):
     def __repr__(self) -> str:
         of = f" of {', '.join(self.free)}" if self.free else ""
         return f"CompiledPath({self.programs.reference.mechanism.title!r}: {', '.join(self.names)}{of})"
+
+
+def program_modes(reference: Motion, configuration: ProgramConfiguration) -> str | Configuration:
+    """Return the signs of all groups that have some, named as configurations are.
+
+    Numbers of configurations are those at one pose: where a group has them it is the configuration itself.
+    """
+    near = first_configuration(reference, 0) if reference.solving_order.numbered else None
+    if near is not None:
+        return near
+    two = {solver.index for solver in reference.solving_order.solvers if solver.modes == 2}
+    return named(reference.structure, {k: SIGNS[sign] for k, sign in configuration.signs.items() if k in two})

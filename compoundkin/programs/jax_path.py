@@ -1,31 +1,41 @@
-"""A compiled path as a pure function of JAX: traced, mapped over designs and differentiated by its users."""
+"""A compiled path as a pure function of JAX: traced, mapped over designs and differentiated by its users.
+
+A graph is evaluated on pairs of a number and a truth: whether the number is valid. Where it is not (the root of a
+negative number, a quotient by zero, a group that does not close) another number stands in for it, so that no derivative
+meets infinity; results are masked last. No setting of JAX is changed: numbers have the precision that JAX gives them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial, reduce
 from importlib.util import find_spec
-from math import pi
-from typing import Any
+from math import isnan, pi
+from typing import Any, NamedTuple
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+import numpy as np
+
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.model.attributes import RATES
-from compoundkin.programs.backends.jax_operations import evaluated
-from compoundkin.programs.graph.input_kinds import DRIVE, SEED
-from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.jax_numbers import common_shape, held
+from compoundkin.model.geometry import vector
+from compoundkin.programs.graph.operation_graph import DRIVE, SEED, InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS, TOTAL
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
+
+__all__ = ["JaxPath", "continuous_angle", "jax_path"]
 
 ASSEMBLED, CERTAIN = "assembled", "certain"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class JaxPath(PrintsShort):
+class JaxPath(ShortRepr):
     """The outputs of a compiled path as a pure function. `CompiledPath.jax` makes it.
 
     It takes the names of the path, `f({"crank": angles}, {"plate.C": places}, speed=10)`, and runs on any device. Its
@@ -53,18 +63,22 @@ class JaxPath(PrintsShort):
 
         drives = self._drives(values, dict(zip(RATES, (speed, acceleration, jerk), strict=True)))
         given = {**drives, **self._dimensions(dimensions or {})}
-        still = frozenset((one.name, int(one.part)) for one, value in drives.items() if one.part > "0" and _zero(value))
+        still = frozenset(
+            (one.name, int(one.part)) for one, value in drives.items() if one.part > "0" and _is_known_zero(value)
+        )
         path = self.path.variant(still)
-        graph, wanted = path.mechanism.graph, _wanted(path)
+        graph, wanted = path.mechanism.graph, _output_nodes(path)
         shape = common_shape(given)
         used = {k: graph.nodes[k].given for k in graph.inputs(wanted)}
-        *found, failed, margin = evaluated(graph, wanted, {k: given[one] for k, one in used.items() if one is not None})
+        *found, failed, margin = evaluate_graph(
+            graph, wanted, {k: given[one] for k, one in used.items() if one is not None}
+        )
         assembled = jnp.broadcast_to(failed == 0.0, shape)
         parts = iter(jnp.where(assembled, value, jnp.nan) for value in found)
         whole = {}
         for output, nodes in zip(self.path.outputs, path.nodes, strict=True):
-            value = _joined(tuple(next(parts) for _ in nodes))
-            whole[output.name] = continuous(value) if output.is_wrapped else value
+            value = _as_output(tuple(next(parts) for _ in nodes))
+            whole[output.name] = continuous_angle(value) if output.is_wrapped else value
         return {**whole, ASSEMBLED: assembled, CERTAIN: self._certain(jnp.broadcast_to(margin, shape), drives)}
 
     def _drives(self, values: Any, rates: Mapping[str, Any]) -> dict[InputNumber, Any]:
@@ -72,16 +86,16 @@ class JaxPath(PrintsShort):
         mechanism = self.path.reference.mechanism
         values = by_name(mechanism, values) or {}
         drives = {drive.name: drive for drive in mechanism.drives}
-        _only_known("values", values, drives)
+        _check_names("values", values, drives)
         found = {}
         for name, drive in drives.items():
             value = values.get(name, drive.values)
             if value is None:
                 raise InvalidInput(Problem(f"values.{name}", "the driver is given no values", f"{{{name!r}: angles}}"))
-            found[InputNumber(DRIVE, name, "0")] = held(f"values.{name}", value)
+            found[InputNumber(DRIVE, name, "0")] = jax_number(f"values.{name}", value)
             for k, word in enumerate(RATES, 1):
                 given = {} if rates[word] is None else by_name(mechanism, rates[word]) or {}
-                _only_known(word, given, drives)
+                _check_names(word, given, drives)
                 found[InputNumber(DRIVE, name, str(k))] = given.get(name, getattr(drive, word))
         return found
 
@@ -90,12 +104,12 @@ class JaxPath(PrintsShort):
         import jax.numpy as jnp
 
         free = [one for one in self.path.dimensions if not one.is_of_law]
-        _only_known("dimensions", dimensions, [one.name for one in free])
+        _check_names("dimensions", dimensions, [one.name for one in free])
         found: dict[InputNumber, Any] = {}
         for one in free:
             own = one.name not in dimensions
             value = self.path.stated.own(one) if own else dimensions[one.name]
-            value = value if own else held(f"dimensions.{one.name}", value, one.is_vector)
+            value = value if own else jax_number(f"dimensions.{one.name}", value, one.is_vector)
             found.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
         return found
 
@@ -126,7 +140,7 @@ def jax_path(path: PathVariants) -> JaxPath:
         raise InvalidInput(Problem("jax", "JAX is not installed", "pip install 'compoundkin[jax]'"))
     found = path.variant(frozenset())
     graph = found.mechanism.graph
-    given = [graph.nodes[k].given for k in graph.inputs(_wanted(found))]
+    given = [graph.nodes[k].given for k in graph.inputs(_output_nodes(found))]
     what, remedy = "it is found by search, which is no pure function", "call the path itself, or its derivatives"
     searched = dict.fromkeys(one.name for one in given if one is not None and one.kind == SEED)
     if searched:
@@ -134,19 +148,19 @@ def jax_path(path: PathVariants) -> JaxPath:
     return JaxPath(path)
 
 
-def _wanted(path: RecordedPath) -> list[int]:
+def _output_nodes(path: RecordedPath) -> list[int]:
     """Return the nodes of the outputs, then those of what failed and of what is certain."""
     limits = RecordedLimits(path.mechanism)
     return [*(node for nodes in path.nodes for node in nodes), limits.failed.x, limits.certain.x]
 
 
-def _joined(parts: tuple[Any, ...]) -> Any:
+def _as_output(parts: tuple[Any, ...]) -> Any:
     from jax.lax import complex as joined
 
     return parts[0] if len(parts) == 1 else joined(*parts)
 
 
-def continuous(angle: Any) -> Any:
+def continuous_angle(angle: Any) -> Any:
     """Return an angle continuous along the last axis, over poses not assembled too."""
     import jax.numpy as jnp
     from jax import lax
@@ -161,17 +175,176 @@ def continuous(angle: Any) -> Any:
     return angle - 2.0 * pi * jnp.concatenate([jnp.zeros_like(turns[..., :1]), turns], axis=-1)
 
 
-def _zero(value: Any) -> bool:
+def _is_known_zero(value: Any) -> bool:
     """Tell whether a rate is a number known to be zero; what JAX traces is not known."""
     return type(value) in (int, float) and value == 0
 
 
-def _only_known(where: str, given: Mapping[str, Any], known: Any) -> None:
+def _check_names(where: str, given: Mapping[str, Any], known: Any) -> None:
     wrong = [
-        Problem(f"{where}.{name}", "there is no such name", nearest(name, known)) for name in given if name not in known
+        Problem(f"{where}.{name}", "there is no such name", suggestion(name, known))
+        for name in given
+        if name not in known
     ]
     if wrong:
         raise UnknownName(wrong)
 
 
-__all__ = ["JaxPath", "continuous", "jax_path"]
+def jax_number(where: str, value: Any, is_vector: bool = False) -> Any:
+    """Return a value as it is, if it can be one. Points may be pairs."""
+    import jax
+
+    if isinstance(value, jax.Array):
+        if jax.numpy.iscomplexobj(value) and not is_vector:
+            raise InvalidInput(Problem(where, "complex numbers are no real ones", "take their .real"))
+        return value
+    if type(value) in (int, float) or (is_vector and type(value) is complex):
+        return value  # it takes the precision of others
+    if not is_vector:
+        return real_numbers(where, value)
+    if isinstance(value, tuple | list) and len(value) == 2 and any(isinstance(part, jax.Array) for part in value):
+        return value[0] + 1j * value[1]
+    return vector(where, value)
+
+
+def common_shape(given: Mapping[InputNumber, Any]) -> tuple[int, ...]:
+    """Return the shape to which all broadcast; raises InvalidInput where there is none."""
+    shapes = {one: np.shape(value) for one, value in given.items()}
+    try:
+        shape = np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(dict.fromkeys(f"{one.name} {shape}" for one, shape in shapes.items() if shape))
+        raise InvalidInput(Problem("shapes", f"{told} do not broadcast", "the last axis is the motion")) from None
+    if 0 in shape:
+        raise InvalidInput(Problem("shapes", "there are no poses, or no designs"))
+    return shape
+
+
+class GuardedNumber(NamedTuple):
+    """A number or a truth, and whether it is one at all."""
+
+    value: Any
+    is_valid: Any = True
+
+
+def evaluate_graph(graph: OperationGraph, wanted: Sequence[int], given: Mapping[int, Any]) -> list[Any]:
+    """Return some nodes as JAX arrays. The inputs' arrays broadcast; their last axis is the motion."""
+    import jax.numpy as jnp
+
+    arrays = {k: _real(jnp, array) for k, array in given.items()}
+    shape = jnp.broadcast_shapes(*(array.shape for array in arrays.values()))
+    found: dict[int, GuardedNumber] = {}
+    for k in graph.needed(wanted):
+        node = graph.nodes[k]
+        operands = [found[n] for n in node.operands]
+        if node.operation == INPUT:
+            found[k] = GuardedNumber(arrays[k])
+        elif node.operation == CONSTANT:
+            found[k] = GuardedNumber(0.0, False) if isnan(node.value) else GuardedNumber(node.value)
+        elif node.operation in REDUCTIONS:
+            found[k] = _reduction(jnp, node.operation, operands[0], shape)
+        else:
+            found[k] = RULES[node.operation](jnp, *operands)
+    return [_masked_value(jnp, found[k]) for k in wanted]
+
+
+def _real(jnp: Any, array: Any) -> Any:
+    """Return an array of floating-point numbers, at the precision that JAX gives them."""
+    found = jnp.asarray(array)
+    return found if jnp.issubdtype(found.dtype, jnp.floating) else found.astype(float)
+
+
+def _masked_value(jnp: Any, one: GuardedNumber) -> Any:
+    value = jnp.asarray(_as_number(jnp, one.value))
+    return value if one.is_valid is True else jnp.where(one.is_valid, value, jnp.nan)
+
+
+def _as_number(jnp: Any, value: Any) -> Any:
+    """Return a truth as 0.0 or 1.0, of the precision of what it meets."""
+    return jnp.where(value, 1.0, 0.0) if jnp.asarray(value).dtype == bool else value
+
+
+def _both(jnp: Any, one: Any, other: Any) -> Any:
+    if one is True or other is False:
+        return other
+    return one if other is True or one is False else jnp.logical_and(one, other)
+
+
+def _elementwise(name: str, jnp: Any, *operands: GuardedNumber) -> GuardedNumber:
+    """Apply a function that is smooth wherever it is defined, or has one slope at each side."""
+    value = getattr(jnp, name)(*(_as_number(jnp, one.value) for one in operands))
+    return GuardedNumber(value, reduce(partial(_both, jnp), (one.is_valid for one in operands)))
+
+
+def _comparison(name: str, jnp: Any, one: GuardedNumber, other: GuardedNumber) -> GuardedNumber:
+    """Compare two numbers; nothing is told of what is no number."""
+    told = getattr(jnp, name)(_as_number(jnp, one.value), _as_number(jnp, other.value))
+    return GuardedNumber(_both(jnp, told, _both(jnp, one.is_valid, other.is_valid)))
+
+
+def _logical(name: str, jnp: Any, *operands: GuardedNumber) -> GuardedNumber:
+    return GuardedNumber(getattr(jnp, name)(*(one.value for one in operands)))
+
+
+def _inv(jnp: Any, x: GuardedNumber) -> GuardedNumber:
+    value = _as_number(jnp, x.value)
+    there = _both(jnp, value != 0.0, x.is_valid)
+    return GuardedNumber(1.0 / jnp.where(there, value, 1.0), there)
+
+
+def _sqrt(jnp: Any, x: GuardedNumber) -> GuardedNumber:
+    value = _as_number(jnp, x.value)
+    smooth = value > 0.0
+    root = jnp.where(smooth, jnp.sqrt(jnp.where(smooth, value, 1.0)), 0.0)
+    return GuardedNumber(root, _both(jnp, value >= 0.0, x.is_valid))
+
+
+def _log(jnp: Any, x: GuardedNumber) -> GuardedNumber:
+    value = _as_number(jnp, x.value)
+    there = _both(jnp, value > 0.0, x.is_valid)
+    return GuardedNumber(jnp.log(jnp.where(there, value, 1.0)), there)
+
+
+def _atan2(jnp: Any, y: GuardedNumber, x: GuardedNumber) -> GuardedNumber:
+    away = jnp.logical_or(y.value != 0.0, x.value != 0.0)
+    angle = jnp.arctan2(jnp.where(away, y.value, 0.0), jnp.where(away, x.value, 1.0))
+    return GuardedNumber(angle, _both(jnp, y.is_valid, x.is_valid))
+
+
+def _extreme(name: str, jnp: Any, one: GuardedNumber, other: GuardedNumber) -> GuardedNumber:
+    """Return the greater or the lesser of two, of which one may be no number."""
+    a = jnp.where(one.is_valid, _as_number(jnp, one.value), _as_number(jnp, other.value))
+    b = jnp.where(other.is_valid, _as_number(jnp, other.value), a)
+    always = one.is_valid is True or other.is_valid is True
+    return GuardedNumber(getattr(jnp, name)(a, b), True if always else jnp.logical_or(one.is_valid, other.is_valid))
+
+
+def _select(jnp: Any, truth: GuardedNumber, one: GuardedNumber, other: GuardedNumber) -> GuardedNumber:
+    value = jnp.where(truth.value, _as_number(jnp, one.value), _as_number(jnp, other.value))
+    always = one.is_valid is True and other.is_valid is True
+    return GuardedNumber(value, True if always else jnp.where(truth.value, one.is_valid, other.is_valid))
+
+
+def _reduction(jnp: Any, operation: str, one: GuardedNumber, shape: tuple[int, ...]) -> GuardedNumber:
+    """Reduce over the last axis; one pose that is no number makes the whole none."""
+    whole, there = jnp.broadcast_to(_as_number(jnp, one.value), shape), jnp.broadcast_to(one.is_valid, shape)
+    whole = jnp.where(there, whole, 0.0)
+    if not shape:
+        return GuardedNumber(whole, there)
+    value = (jnp.sum if operation == TOTAL else jnp.min)(whole, axis=-1, keepdims=True)
+    return GuardedNumber(value, jnp.all(there, axis=-1, keepdims=True))
+
+
+RULES: dict[str, Callable[..., GuardedNumber]] = {
+    **{name: partial(_elementwise, one.compute.__name__) for name, one in OPERATIONS.items() if not one.is_truth},
+    "abs": partial(_elementwise, "abs"),
+    **{name: partial(_comparison, OPERATIONS[name].compute.__name__) for name in ("ge", "gt", "eq")},
+    **{name: partial(_logical, OPERATIONS[name].compute.__name__) for name in ("and", "or", "not")},
+    "fmax": partial(_extreme, "maximum"),
+    "fmin": partial(_extreme, "minimum"),
+    "inv": _inv,
+    "sqrt": _sqrt,
+    "log": _log,
+    "atan2": _atan2,
+    "select": _select,
+}

@@ -9,35 +9,35 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.calls.call_numbers import CallNumbers, DriverNumbers, call_numbers
-from compoundkin.programs.calls.call_seeds import CallSeeds
-from compoundkin.programs.derivatives.law_chain import with_law_slopes
-from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.dimension_values import dimension_values, hold_laws
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
-from compoundkin.programs.limits.approach_look import DrawnApproach
-from compoundkin.programs.limits.limit_look import LimitLook, LimitPrograms
-from compoundkin.programs.limits.settled_values import settled_values
-from compoundkin.programs.limits.solved_designs import ProgramConfiguration, solved_designs
+from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers, ReadyProgram, call_numbers
+from compoundkin.programs.call_seeds import CallSeeds
+from compoundkin.programs.derivatives.law_slopes import with_law_slopes
+from compoundkin.programs.dimensions import (
+    FreeDimension,
+    StatedDimensions,
+    check_laws,
+    dimension_values,
+    mechanism_with,
+)
+from compoundkin.programs.limit_screening import DrawnApproach, LimitScreening, ScreenedDesigns
 from compoundkin.programs.path_values import PathValues
-from compoundkin.programs.ready_program import ReadyProgram
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
 from compoundkin.programs.recording.recorded_mechanism import Recording
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput
+from compoundkin.programs.recording.recorded_motion import ProgramOutput
+from compoundkin.programs.solved_designs import ProgramConfiguration, solve_designs, values_near_limits
 
 # The least margin among what a program finds; no output is called so.
 LEAST = ""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PathPrograms(PrintsShort):
+class PathPrograms(ShortRepr):
     """A mechanism in one configuration, and the programs made of it.
 
     They compute outputs, of free dimensions. `reference` is its own motion, from which the configuration is taken.
@@ -102,9 +102,9 @@ class PathPrograms(PrintsShort):
         return DrawnApproach(self.reference, self.configuration.shown)
 
     @cached_property
-    def limits(self) -> LimitPrograms:
+    def limits(self) -> LimitScreening:
         """The programs that look at designs near limits."""
-        return LimitPrograms(self._recording(), self.approach, self.chosen_backend)
+        return LimitScreening(self._recording(), self.approach, self.chosen_backend)
 
     def variant(self, still: frozenset[tuple[str, int]], is_seeded: bool = False) -> RecordedPath:
         """Return it recorded where some rates of drivers are zero.
@@ -154,7 +154,7 @@ class PathPrograms(PrintsShort):
         motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
         order = self.reference.solving_order
         if self.law_numbers:
-            hold_laws(self.law_numbers, dimensions, motion.times(order))
+            check_laws(self.law_numbers, dimensions, motion.times(order))
         numbers = call_numbers(order, motion, found)
         numbers = self.seeds.added(self.variant(numbers.still), numbers)
         return with_law_slopes(numbers, order, motion, found) if is_sloped and self.law_numbers else numbers
@@ -175,13 +175,13 @@ class PathPrograms(PrintsShort):
         values = {one: one.value_in(numbers.given) for one in self.dimensions}
         # what moves the drivers is told; a program of motion has no designs
         one_law = {one: value for one, value in values.items() if not (one.is_of_law and np.ndim(value))}
-        mechanism = designed(self.stated, one_law)
-        return solved_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
+        mechanism = mechanism_with(self.stated, one_law)
+        return solve_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
 
     def settled(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:
         """Return outputs as they are found, made certain near limits."""
         look = self.limits.doubtful(numbers, least)
-        failed = settled_values(numbers, self.names, arrays, look, self.solved)
+        failed = values_near_limits(numbers, self.names, arrays, look, self.solved)
         return self.shown(numbers, arrays, failed, look=look)
 
     def shown(
@@ -190,7 +190,7 @@ class PathPrograms(PrintsShort):
         arrays: list[Number],
         failed: Number | None,
         shape: tuple[int, ...] | None = None,
-        look: LimitLook | None = None,
+        look: ScreenedDesigns | None = None,
     ) -> PathValues:
         """Return certain outputs; angles are unwrapped along the motion in place."""
         for k in self._wrapped:

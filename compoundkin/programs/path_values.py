@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
-from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.base.given_numbers import hold_design
-from compoundkin.base.series import Number
+from compoundkin.base.arguments import check_design, checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
-from compoundkin.programs.calls.call_numbers import CallNumbers, picked
-from compoundkin.programs.limits.limit_look import LimitLook
+from compoundkin.programs.call_numbers import CallNumbers, numbers_of_designs
+from compoundkin.programs.limit_screening import ScreenedDesigns
 
 
 class PathValues(Mapping[str, Any]):
@@ -40,7 +39,7 @@ class PathValues(Mapping[str, Any]):
         failed: Number | None,
         solving: Callable[[CallNumbers], Told],
         shape: tuple[int, ...] | None = None,
-        look: LimitLook | None = None,
+        look: ScreenedDesigns | None = None,
     ) -> None:
         self._numbers, self.found, self.failed, self._solving, self.look = numbers, found, failed, solving, look
         self.shape = self.numbers.shape if shape is None else shape
@@ -56,7 +55,7 @@ class PathValues(Mapping[str, Any]):
         """Return an output by its name; raises UnknownName."""
         found = self.found.get(name) if isinstance(name, str) else None
         if found is None:
-            raise UnknownName(Problem(str(name), "there is no such output", nearest(str(name), list(self.found))))
+            raise UnknownName(Problem(str(name), "there is no such output", suggestion(str(name), list(self.found))))
         if found.size != prod(self.shape):
             found = np.broadcast_to(found, self.numbers.extent)
         return found.reshape(self.shape)
@@ -88,9 +87,9 @@ class PathValues(Mapping[str, Any]):
         >>> ck.gaps(found.motion())
         ()
         """
-        hold_design(design, self.numbers.extent[0])
+        check_design(design, self.numbers.extent[0])
         with np.errstate(all="ignore"):
-            return self._solving(picked(self.numbers, np.array([design]))).motion
+            return self._solving(numbers_of_designs(self.numbers, np.array([design]))).motion
 
     def __repr__(self) -> str:
         return f"PathValues({', '.join(self.found)} at {self.shape} poses)"

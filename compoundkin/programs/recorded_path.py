@@ -8,17 +8,15 @@ from functools import cached_property
 from typing import Protocol
 
 from compoundkin.kinematics.motion import Motion
-from compoundkin.programs.calls.call_numbers import CallNumbers
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.dimensions import FreeDimension, StatedDimensions
 from compoundkin.programs.graph.flat_program import Carried
-from compoundkin.programs.graph.input_kinds import SEED, SIDE
-from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.graph.operation_graph import SEED, SIDE, InputNumber
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import RecordedMarch
-from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
+from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, record_mechanism
+from compoundkin.programs.recording.recorded_motion import ProgramOutput, record_outputs
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_outputs
 
 
 @dataclass(frozen=True)
@@ -32,9 +30,9 @@ class RecordedPath:
     @classmethod
     def of(cls, recording: Recording, outputs: Sequence[ProgramOutput], marches: bool = True) -> RecordedPath:
         """Record a mechanism and outputs of it."""
-        mechanism = recorded(recording)
+        mechanism = record_mechanism(recording)
         march = RecordedMarch.of(mechanism) if marches and recording.steps else None
-        return cls(mechanism, recorded_outputs(mechanism, outputs), march)
+        return cls(mechanism, record_outputs(mechanism, outputs), march)
 
     @cached_property
     def nodes(self) -> tuple[tuple[int, ...], ...]:

@@ -6,10 +6,11 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.definition import Pins, driven_pair
+from compoundkin.model.elements import Drive
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.model.pin_pairs import Pins, driven_pair
+from compoundkin.model.pairs.contract import Drivable
 from compoundkin.structure.cycles import find
 from compoundkin.structure.parts import Body, DrivenPair, Passive
 

@@ -75,7 +75,11 @@ def _at_general_dimensions(fault: Fault) -> Fault:
 def without_leads(structure: Structure) -> Structure:
     """Return the structure of the mechanism itself, nothing led."""
     try:
-        return decompose(structure.mechanism.without_leads()) if structure.mechanism.leads else structure
+        return (
+            decompose(structure.mechanism.without_prescribed_motion())
+            if structure.mechanism.prescribed_motions
+            else structure
+        )
     except InvalidMechanism:  # of links that nothing else joins
         return structure
 

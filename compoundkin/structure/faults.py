@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.elements import Drive
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_drivable
+from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.structure.composites import GROUND, spanned
 from compoundkin.structure.cycles import find
 from compoundkin.structure.matching import Matching
@@ -143,7 +144,7 @@ def _over(system: System, found: Deficiency) -> Fault:
 def _over_remedy(system: System, amount: int, drives: Sequence[DrivenPair], pairs: Sequence[str]) -> str:
     names = list(dict.fromkeys(step.drive.name for step in drives if not step.is_passive))
     free = f"free {_of(amount, pairs, 'coordinate', 'of the pairs')}"
-    led = [k for k, item in system.mechanism.leads.items() if len({*item.drivers.values()} & {*names}) > 1]
+    led = [k for k, item in system.mechanism.prescribed_motions.items() if len({*item.drivers.values()} & {*names}) > 1]
     drivers = _of(amount, names, "driver") + (f" (lead {_listed(led)} by x or y alone)" if led else "")
     return f"remove {drivers} or {free}" if names else f"{free} or take out a link"
 
@@ -191,7 +192,7 @@ def _links_of(system: System, constraint: Constraint) -> tuple[str, ...]:
 
 def _in_input_order(system: System, links: Iterable[str]) -> tuple[str, ...]:
     """Return the links once each; the frame only if it is alone."""
-    moving = set(links) - {FRAME, *system.mechanism.led_links}
+    moving = set(links) - {FRAME, *system.mechanism.auxiliary_links}
     return tuple(sorted(moving, key=system.place_of.__getitem__)) or (FRAME,)
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from compoundkin.base.display import ShowsPicture
-from compoundkin.model.elements import FRAME
+from compoundkin.base.display import DisplaysPicture
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
@@ -22,7 +22,7 @@ SHOWN_GROUPS = 12
 
 
 @dataclass(frozen=True)
-class Structure(ShowsPicture):
+class Structure(DisplaysPicture):
     """A mechanism taken apart. The frame with its driven links, then the Assur groups in solving order.
 
     `pairs` lists every pair, a multiple pin of k links as k - 1 of them. Where `faults` is not empty the

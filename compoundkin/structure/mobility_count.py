@@ -95,15 +95,15 @@ def mobility_of(mechanism: Mechanism, pairs: Sequence[Pair], passive: Sequence[P
     for pair in pairs:
         numbers[pair.code, pair.held] = numbers.get((pair.code, pair.held), 0) + 1
     for letter, names in mechanism.pins.items():
-        led = sum(name in mechanism.led_links for name in names)
+        led = sum(name in mechanism.auxiliary_links for name in names)
         if led:
             kind = next((pair.code, pair.held) for pair in pairs if pair.letters == (letter,) and pair.free_is_angle)
             numbers[kind] -= led
     for pair in mechanism.written_pairs:
-        if not mechanism.led_links.isdisjoint(pair.members):
+        if not mechanism.auxiliary_links.isdisjoint(pair.members):
             numbers[pair.code, pair.held] -= 1
     counts = tuple(PairCount(code, held, number) for (code, held), number in numbers.items() if number)
-    return Mobility(len(mechanism.links) - len(mechanism.led_links), counts, len(mechanism.drives), len(passive))
+    return Mobility(len(mechanism.links) - len(mechanism.auxiliary_links), counts, len(mechanism.drives), len(passive))
 
 
 def _times(held: int) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from compoundkin.base.poses import Pose
 from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import Drivable
+from compoundkin.model.pairs.contract import Drivable
 
 # How many freedoms a link has in the plane.
 LINK_FREEDOMS = 3

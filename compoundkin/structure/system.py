@@ -13,13 +13,13 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED
-from compoundkin.base.series import Number
+from compoundkin.model.definition import pin_at
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.profile_contact import as_profiled
-from compoundkin.model.pin_pairs import pin_at
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.structure.composites import GROUND, Composites
 from compoundkin.structure.parts import LINK_FREEDOMS, Dropped
 
@@ -76,7 +76,7 @@ class System:
     def is_thought(self, constraint: Constraint) -> bool:
         """Return whether a constraint is only thought, to lead a point."""
         links = self.mechanism.carriers[constraint.letter] if constraint.letter else constraint.pair.members
-        return len([name for name in links if name not in self.mechanism.led_links]) < 2
+        return len([name for name in links if name not in self.mechanism.auxiliary_links]) < 2
 
     def neighbour(self, letter: str, body: int) -> int:
         """Return the first other body that carries a letter."""
@@ -145,7 +145,7 @@ def generic_jacobian(pair: Pair, ends: Ends) -> Number:
     So is all else there; otherwise the rank of a mechanism would depend on the unit of its lengths.
     """
     rows = np.array(pair.jacobian(ends, (FIXED,) * len(ends)), dtype=float)
-    profiled = as_profiled(pair)
+    profiled = as_profile_contact(pair)
     if profiled:
         rows[..., 2::3] /= profiled.extent
         rows[..., pair.held :, :] *= profiled.extent / profiled.coordinate_scale

@@ -9,8 +9,7 @@ from os import PathLike
 from typing import Any, ClassVar
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.silence import silence
+from compoundkin.base.errors import InvalidInput, Problem, suppress_pose_warnings
 from compoundkin.base.suffixes import Kind
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
@@ -110,6 +109,6 @@ def study(
         raise InvalidInput(Problem("sample", "the dimensions are the columns of a table", f"{TableSample.word!r}"))
     drive = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
     made = Study(mechanism, free, asked, sample_of(sample, count, seed, free), **drive, modes=modes, given=given)
-    with silence():
+    with suppress_pose_warnings():
         made.hold()
     return made

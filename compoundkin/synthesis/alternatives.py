@@ -10,7 +10,7 @@ from math import comb
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.structure.cycles import find

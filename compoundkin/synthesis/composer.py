@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.groups import DYADS
-from compoundkin.model.elements import FRAME, Item, drawn, drive, link
+from compoundkin.model.elements import Item, drawn, drive, link
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from compoundkin.synthesis.chains import AssurGroup, assur_group

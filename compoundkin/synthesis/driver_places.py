@@ -9,28 +9,21 @@ from typing import TypeVar
 
 import numpy as np
 
-from compoundkin.base.series import Number
-from compoundkin.model.elements import (
-    FRAME,
-    Drawn,
-    Drive,
-    Expectation,
-    Friction,
-    Gravity,
-    Item,
-    Lead,
-    Link,
-    LinkOutline,
-    Load,
-    Mass,
-    Mode,
-    Pretension,
-)
+from compoundkin.base.arrays import Number
+from compoundkin.model.definition import driver_independent_name
+from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.loads.gravity import Gravity
+from compoundkin.model.loads.mass import Mass
+from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines import LinkOutline
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.pairs.optional_answers import as_drivable
-from compoundkin.model.pin_pairs import lasting_name
+from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.synthesis.chains.joints import Joints
 
 # What the old frame is called while another link is the frame.
@@ -101,9 +94,9 @@ def means(item: Drive, place: DriverPlace) -> bool:
 
 def is_driver(item: Item, drive: Drive | None) -> bool:
     """Return whether a word is that driver, as written."""
-    if drive is None or not isinstance(item, Drive | Lead):
+    if drive is None or not isinstance(item, Drive | PrescribedMotion):
         return False
-    return drive.name in item.drivers.values() if isinstance(item, Lead) else item.name == drive.name
+    return drive.name in item.drivers.values() if isinstance(item, PrescribedMotion) else item.name == drive.name
 
 
 def stays(item: Item, link: str) -> bool:
@@ -143,7 +136,7 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
     """Return a word with links renamed; drivers and pairs keep their own names."""
     if isinstance(item, Link):
         return replace(item, name=names.get(item.name, item.name))
-    if isinstance(item, Drive | Lead):
+    if isinstance(item, Drive | PrescribedMotion):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
     if isinstance(item, Mass | Load | Friction | Pretension | LinkOutline):
         return item.renamed(names)
@@ -175,4 +168,4 @@ def without_driver(item: Item, mechanism: Mechanism, drive: Drive | None) -> Ite
     """
     if drive is None or not isinstance(item, Load | Friction):
         return item
-    return item.renamed({}, {drive.name: lasting_name(mechanism, drive.name)})
+    return item.renamed({}, {drive.name: driver_independent_name(mechanism, drive.name)})

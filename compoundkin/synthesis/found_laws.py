@@ -7,16 +7,18 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.inputs import fit, mapped
 from compoundkin.kinematics.results import PairMotion
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Mode, drawn
+from compoundkin.model.definition import Pins, driven_pair
+from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Mode, drawn
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import MotionTable
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pin_pairs import Pins, driven_pair
+from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.synthesis.inversion import WITHIN
 
 # What a law holds at each time: value, speed, acceleration.
@@ -65,7 +67,7 @@ def driven_forward(motion: Motion, *drivers: str | Drive) -> Mechanism:
     for one in asked:
         _driver(mechanism, one.link, one.on, one.pair)
     driven = [Drive(one.name, one.link, one.on, one.pair, law=_law(motion, one)) for one in asked]
-    gone = (Drive, Lead, Mode, Expectation)
+    gone = (Drive, PrescribedMotion, Mode, Expectation)
     kept: list[Item] = [item for item in mechanism.items if not isinstance(item, gone)]
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]
@@ -143,7 +145,7 @@ def _places(motion: Motion, drives: list[Drive]) -> dict[str, Any]:
 
 def _outputs(mechanism: Mechanism, drives: list[Drive]) -> list[str]:
     """Return the outputs whose owners there still are."""
-    thought = mechanism.led_links
+    thought = mechanism.auxiliary_links
     pairs = (pair.name for pair in mechanism.written_pairs if thought.isdisjoint(pair.members))
     links = (name for name in mechanism.links if name not in thought)
     known = {*mechanism.carriers, *links, *pairs, *(one.name for one in drives)}

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import column
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
-from compoundkin.model.kept_outputs import kept_outputs
-from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.mechanism import Mechanism, available_outputs
 from compoundkin.structure import decompose
 from compoundkin.synthesis.driver_places import is_driver, renamed, stays, without_driver
 
@@ -97,7 +97,7 @@ def with_driver(
         if points := _assembled(mechanism):
             kept.append(drawn(**points))
     drives = [item.name for item in (*kept, new) if isinstance(item, Drive)]
-    outputs = kept_outputs(mechanism, drives)
+    outputs = available_outputs(mechanism, drives)
     made = _written(mechanism, f"{mechanism.title}, {link} driven", [*kept, new], outputs)
     return _standing(made, new) if isinstance(new, Drive) and new.values is None and new.law is None else made
 
@@ -107,7 +107,7 @@ def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
     names = [item.name for item in mechanism.drives]
     if instead:
         if instead not in names:
-            raise UnknownName(Problem(instead, "there is no such driver", nearest(instead, names)))
+            raise UnknownName(Problem(instead, "there is no such driver", suggestion(instead, names)))
         return mechanism.drives[names.index(instead)]
     if len(names) > 1:
         what = "there are several drivers, and it is not said which one gives way"
@@ -124,7 +124,7 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     drawn = mechanism.drawn_poses
     if all(name in drawn for name in pair.members):
         poses = tuple(column(drawn[name]) for name in pair.members)
-        value = pair.shown_coordinate(pair.ends(mechanism.geometry), poses) * pair.driven_by(new.link)
+        value = pair.drawn_coordinate(pair.ends(mechanism.geometry), poses) * pair.driven_by(new.link)
     else:
         value = pair.drawn_length(mechanism.sketch)
     if value is None:

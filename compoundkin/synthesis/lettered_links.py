@@ -9,9 +9,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.model.elements import FRAME
-from compoundkin.model.geometry import vector
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.model.geometry import FRAME, vector
 from compoundkin.synthesis.chains.skeletons import layout, lettered
 
 # What stands between a point and its link: "B on crank".
@@ -54,7 +53,7 @@ class LetteredLinks:
     def link(self, name: str) -> str:
         """Return the name of a link. Raises UnknownName for one that is not there yet."""
         if name not in self.links:
-            raise UnknownName(Problem(name, "there is no such link yet", nearest(name, list(self.links))))
+            raise UnknownName(Problem(name, "there is no such link yet", suggestion(name, list(self.links))))
         return name
 
     def new_links(self, names: Sequence[str], wanted: int, where: str) -> None:

@@ -1,4 +1,4 @@
-"""What objects show of themselves in notebooks: pictures and tables as HTML, on light and on dark pages alike."""
+"""What objects display in notebooks: pictures and tables as HTML, for light and dark pages alike."""
 
 from __future__ import annotations
 
@@ -22,25 +22,27 @@ from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis
-from compoundkin.view.page.force_blocks import forces_html
 from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_sections, plain_table
 from compoundkin.view.page.markup import safe
-from compoundkin.view.page.player import framed
+from compoundkin.view.page.viewer import framed_player
 from compoundkin.view.report.centres_section import centre_blocks
 from compoundkin.view.report.configurations_section import circuits_report, configurations_section
-from compoundkin.view.report.extremes_blocks import cam_blocks
+from compoundkin.view.report.forces_section import assumptions, drives_blocks, reactions_blocks
 from compoundkin.view.report.interference_section import blocks_of_designs
-from compoundkin.view.report.mobility_sections import analysis_blocks
+from compoundkin.view.report.motion_report import simulation_report
+from compoundkin.view.report.outputs_section import cam_blocks
+from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.structure_sections import links_section
+from compoundkin.view.report.structure_sections import analysis_blocks, links_section
 from compoundkin.view.report.whole_report import Studied, report
 from compoundkin.view.report.wording import counted, listed
 from compoundkin.view.sketch import draw
 
 # Pictures of more links than these take more than a second: they are drawn where they are asked for.
 MOST_LINKS = 30
+
+
 # What shows itself as blocks of a report.
 _BLOCKS: dict[type, Callable[[Any], Iterable[Block]]] = {
     Centres: centre_blocks,
@@ -72,18 +74,18 @@ def svg_of(what: Mechanism | Structure | Motion) -> str | None:
     if len(mechanism.links) > MOST_LINKS:
         return None
     try:
-        return _pictured(what)
+        return _picture_of(what)
     except CompoundkinError:
         return None
 
 
-def _pictured(what: Mechanism | Structure | Motion) -> str | None:
+def _picture_of(what: Mechanism | Structure | Motion) -> str | None:
     if isinstance(what, Motion):
         return draw(what).svg
-    return _apart(what) if isinstance(what, Structure) else _drawn(what)
+    return _structure_picture(what) if isinstance(what, Structure) else _mechanism_picture(what)
 
 
-def _drawn(mechanism: Mechanism) -> str | None:
+def _mechanism_picture(mechanism: Mechanism) -> str | None:
     """The sketch; none where a pose would have to be searched that is not likely to exist, which takes seconds.
 
     The graph of what has letters alone.
@@ -93,7 +95,7 @@ def _drawn(mechanism: Mechanism) -> str | None:
     return None if decompose(mechanism).faults and not mechanism.sketch else draw(mechanism).svg
 
 
-def _apart(structure: Structure) -> str:
+def _structure_picture(structure: Structure) -> str:
     """The groups; the graph of what cannot be taken apart."""
     return draw(structure, kind="graph" if structure.faults else "groups").svg
 
@@ -138,10 +140,10 @@ def _(what: Structure) -> Iterator[str]:
     dropped = what.relaxation.dropped if what.relaxation else ()
     told = [*(f"Passive: {one}." for one in what.passive), *(f"Left out: {one}." for one in dropped)]
     yield from (plain_block(Paragraph(text)) for text in told)
-    yield plain_table(_groups(what), "Groups in solving order")
+    yield plain_table(_groups_table(what), "Groups in solving order")
 
 
-def _groups(structure: Structure) -> TableBlock:
+def _groups_table(structure: Structure) -> TableBlock:
     """The frame with its driven links, then each group: what it is, its links, what it is attached to."""
     columns = (Column("no.", style="each"), Column("group"), Column("class"), Column("order", style="each"),
                Column("links"), Column("uses"))  # fmt: skip
@@ -157,7 +159,7 @@ def _groups(structure: Structure) -> TableBlock:
 def _(what: Motion) -> Iterator[str]:
     if len(what.mechanism.links) > MOST_LINKS or what.inputs.poses < 2:
         raise InvalidInput(Problem("motion", "it has one pose, or is too large to be shown unasked", "draw() it"))
-    yield framed(what)
+    yield framed_player(what)
 
 
 @_parts.register
@@ -170,13 +172,13 @@ def _(what: Report) -> Iterator[str]:
 def _(what: Check) -> Iterator[str]:
     columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
                Column("", style="passed"))  # fmt: skip
-    rows = tuple((f.name, f.value, f.limit, _where(f.pair, f.pose), f.passed) for f in what.findings)
+    rows = tuple((f.name, f.value, f.limit, _finding_place(f.pair, f.pose), f.passed) for f in what.findings)
     verdict = f"failed: {listed(what.failed)}" if what.failed else what.verdict
     singular = f", {what.singular} of them without rates" if what.singular else ""
     yield plain_table(TableBlock(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
 
 
-def _where(name: str, pose: tuple[int, ...]) -> str:
+def _finding_place(name: str, pose: tuple[int, ...]) -> str:
     return f"{name}, pose {', '.join(map(str, pose))}" if name and pose else name
 
 
@@ -216,3 +218,15 @@ def _(what: Studied) -> Iterator[str]:
 @_parts.register
 def _(what: Forces | Simulation) -> Iterator[str]:
     yield from forces_html(what, len(what.motion.mechanism.links) <= MOST_LINKS)
+
+
+def forces_html(what: Forces | Simulation, drawn: bool) -> Iterator[str]:
+    """Yield a picture, if `drawn`, and tables of forces or a simulation."""
+    if isinstance(what, Simulation):
+        yield framed_player(what.motion) if drawn else ""
+        yield from plain_sections(simulation_report(what).sections)
+        return
+    sample = Sample(what.motion)
+    caption = f"<strong>{safe(what.mechanism.title)}</strong>: {safe('; '.join(assumptions(sample, what)))}"
+    yield plain_figure(draw(what).svg, caption) if drawn else f"<p>{caption}</p>"
+    yield from map(plain_block, (*reactions_blocks(sample, what), *drives_blocks(sample, what)))

@@ -14,11 +14,11 @@ from sphinx.application import Sphinx
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.symbols import Outline, Strap, Track, Wheel
 from compoundkin.structure import roman
 from compoundkin.synthesis.chains import structure_name
-from compoundkin.view.sketch.shown_pose import scene_in, solved_over
+from compoundkin.view.sketch.picture_options import scene_in, solved_over
 
 FOLDER = "gallery"
 # So many turns of a driver, in so many poses each, are tried for a path to close.
@@ -109,7 +109,7 @@ def kind_of(mechanism: ck.Mechanism, structure: ck.results.Structure) -> str:
         return CAMS
     if marks & {Wheel, Track, Strap}:
         return GEARS
-    driven = structure.driven.items() if not mechanism.led_links else ()
+    driven = structure.driven.items() if not mechanism.auxiliary_links else ()
     lines = (step.pair.members for name, step in driven if not structure.driven_angles[name])
     if mechanism.cylinders or any(FRAME not in members for members in lines):
         return CYLINDERS

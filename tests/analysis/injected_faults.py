@@ -14,7 +14,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import run
 from compoundkin.kinematics.tracking import Tracker
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # Other configurations nearer than this (of the size, or radians) are the same: the pose is next to where they meet.
 APART = 1e-3

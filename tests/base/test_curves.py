@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.curves import Analytic, Curve, Function, Spline
-from compoundkin.base.curves.samples import convex_hull
+from compoundkin.base.curves.samples import hull_indices
 from compoundkin.base.errors import InvalidMechanism
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Series, constant
 from tests.support import differences
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -286,10 +287,10 @@ def test_convex_hull_against_another_algorithm() -> None:
     rng = np.random.default_rng(3)
     points = rng.standard_normal(300) + 1j * rng.standard_normal(300)
     found = ConvexHull(np.stack((points.real, points.imag), axis=-1)).vertices
-    own = convex_hull(points)
+    own = hull_indices(points)
     start = list(found).index(own[0])
     assert own.tolist() == np.roll(found, -start).tolist()
-    assert convex_hull(np.linspace(0, 1 + 1j, 5)).tolist() == [0, 4]
+    assert hull_indices(np.linspace(0, 1 + 1j, 5)).tolist() == [0, 4]
 
 
 # --- splines ------------------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compoundkin.base.pivots import Elimination
+from compoundkin.base.linear import Elimination
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4, 6, 9])

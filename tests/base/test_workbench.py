@@ -8,9 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compoundkin.base.arrays import TURN, Number, column, entry, row, turns_above, unwrapped, whole_turns, wrapped
-from compoundkin.base.bracketing import bisected, false_position, greatest, least
-from compoundkin.base.continuation import StepLengths, Taken, corrected_across, follow, runge_kutta, tangent
-from compoundkin.base.newton import Rest, gauss_newton, newton
+from compoundkin.base.bracketing import bisect_brackets, false_position, golden_section_minimum, newton_maximum
+from compoundkin.base.continuation import (
+    StepLengths,
+    StepResult,
+    correct_in_hyperplane,
+    runge_kutta,
+    tangent,
+    trace_paths,
+)
+from compoundkin.base.newton import StoppingRule, gauss_newton, newton
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
 
@@ -96,7 +103,7 @@ def test_newtons_steps_can_be_limited() -> None:
     assert found.longest[0] == 1.0
 
 
-REST = Rest(exact=1e-15, rounding=1e-12, longest=0.3, patience=10, gain=0.9)
+REST = StoppingRule(exact=1e-15, rounding=1e-12, longest=0.3, patience=10, gain=0.9)
 
 
 def least_step(matrix: Number, right: Number) -> Number:
@@ -128,26 +135,26 @@ def test_least_steps_give_up_where_none_leads_on() -> None:
 def test_paths_have_steps_of_their_own_and_arrive_or_are_given_up() -> None:
     t, tried = np.zeros(3), [0, 0, 0]
 
-    def step(i: Number, h: Number) -> Taken:
+    def step(i: Number, h: Number) -> StepResult:
         for k in i:
             tried[k] += 1
         # the second cannot pass a half, the third only in short steps
         good = np.where(i == 1, t[i] + h < 0.5, np.where(i == 2, h < 0.02, True))
         t[i] += np.where(good, h, 0.0)
-        return Taken(h, good, t[i] >= 1.0)
+        return StepResult(h, good, t[i] >= 1.0)
 
-    arrived = follow(step, np.ones(3, dtype=bool), StepLengths(0.1, 0.2, 1e-9, 2, 10_000))
+    arrived = trace_paths(step, np.ones(3, dtype=bool), StepLengths(0.1, 0.2, 1e-9, 2, 10_000))
     assert arrived.tolist() == [True, False, True]
     assert t[1] == pytest.approx(0.5, abs=1e-8)
     assert tried[0] < tried[1] < 100 < tried[2] + 50
 
 
 def test_dead_paths_are_never_stepped() -> None:
-    def step(i: Number, h: Number) -> Taken:
+    def step(i: Number, h: Number) -> StepResult:
         assert i.tolist() == [1]
-        return Taken(h, h > 0.0, h > 0.0)
+        return StepResult(h, h > 0.0, h > 0.0)
 
-    arrived = follow(step, np.array([False, True]), StepLengths(0.1, 0.1, 0.0, 1, 5))
+    arrived = trace_paths(step, np.array([False, True]), StepLengths(0.1, 0.1, 0.0, 1, 5))
     assert arrived.tolist() == [False, True]
 
 
@@ -167,18 +174,18 @@ def test_a_path_is_corrected_across_its_tangent() -> None:
     along, side = tangent(ring(y)[1], np.array([[0.0, 1.0]]))
     assert along.tolist() == [[0.0, 1.0]]
     assert side.tolist() == [1.0]
-    found = corrected_across(ring, y + 0.1 * along, along, 1e-12, 9)
+    found = correct_in_hyperplane(ring, y + 0.1 * along, along, 1e-12, 9)
     assert found.x == pytest.approx(np.array([[np.sqrt(0.99), 0.1]]))
     assert found.matrix.shape == (1, 1, 2)
 
 
 def test_bisection_keeps_the_sides_of_every_bracket() -> None:
     inside, outside = np.array([0.0, 3.0]), np.array([2.0, 1.0])
-    first, second = bisected(lambda x: (x > np.e / 2) == np.array([False, True]), inside, outside, 60)
+    first, second = bisect_brackets(lambda x: (x > np.e / 2) == np.array([False, True]), inside, outside, 60)
     assert first == pytest.approx(np.e / 2, abs=1e-15)
     assert (first[0] <= np.e / 2) & (second[0] > np.e / 2)
     assert (first[1] > np.e / 2) & (second[1] <= np.e / 2)
-    rough, beyond = bisected(lambda x: x < np.pi, np.ones(1), np.full(1, 9.0), 60, enough=0.01)
+    rough, beyond = bisect_brackets(lambda x: x < np.pi, np.ones(1), np.full(1, 9.0), 60, enough=0.01)
     assert 0.005 < (beyond - rough)[0] <= 0.01 * np.pi
 
 
@@ -200,11 +207,15 @@ def test_golden_section_leaves_brackets_that_are_not_worth_it() -> None:
         calls[which] += 1
         return (s - centre[which]) ** 2
 
-    place, value = least(f, np.zeros(2), np.ones(2), 50, lambda found, width: (found < 1.0) & (width > 1e-6))
+    place, value = golden_section_minimum(
+        f, np.zeros(2), np.ones(2), 50, lambda found, width: (found < 1.0) & (width > 1e-6)
+    )
     assert place[0] == pytest.approx(0.3, abs=1e-5)
     assert value[0] < 1e-10
     assert calls[1] == 2 < calls[0]
-    assert [len(found) for found in least(f, np.zeros(0), np.zeros(0), 50, lambda found, _: found > 0)] == [0, 0]
+    assert [
+        len(found) for found in golden_section_minimum(f, np.zeros(0), np.zeros(0), 50, lambda found, _: found > 0)
+    ] == [0, 0]
 
 
 def test_the_greatest_value_is_found_between_bounds_or_at_one() -> None:
@@ -213,5 +224,5 @@ def test_the_greatest_value_is_found_between_bounds_or_at_one() -> None:
         return slope - s**3, -3.0 * s**2
 
     low, start, high = np.full(2, -2.0), np.array([-1.9, 1.5]), np.full(2, 2.0)
-    assert greatest(rise, (low, start, high), 1e-8, 60) == pytest.approx(np.array([1.0, 0.0]), abs=1e-5)
-    assert greatest(rise, (low[:1], low[:1], high[:1] - 1.5), 1e-8, 60) == pytest.approx(0.5)
+    assert newton_maximum(rise, (low, start, high), 1e-8, 60) == pytest.approx(np.array([1.0, 0.0]), abs=1e-5)
+    assert newton_maximum(rise, (low[:1], low[:1], high[:1] - 1.5), 1e-8, 60) == pytest.approx(0.5)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.base.silence import silence
+from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.studies.responses import studied_path
 from compoundkin.studies.runs.study_program import StudyProgram
 from compoundkin.studies.samples import sample_of
@@ -68,7 +68,7 @@ def asked(study: StudyProgram, is_sloped: bool) -> None:
         designs = study.path.designs(study.sample.designs(study.variations, part))
         _ = response.slopes(designs) if is_sloped else response.values(designs)
 
-    with silence():
+    with suppress_pose_warnings():
         each(study, lambda chunk: [block(chunk[k : k + study.block]) for k in range(0, len(chunk), study.block)])
 
 

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import compoundkin as ck
-from compoundkin.cli import cli, progress
+from compoundkin.cli import cli, shell
 from compoundkin.files.shipped_mechanisms import load_named
 from tests import catalog
 
@@ -79,14 +79,14 @@ def test_progress_is_shown_on_a_terminal_that_has_to_wait(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("TERM", "xterm")
-    with progress.counting("drawing", "frames", patience=0.0) as told:
+    with shell.counting("drawing", "frames", patience=0.0) as told:
         told(1, 3)
     assert capsys.readouterr() == ("", "")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with progress.counting("drawing", "frames", patience=1000.0) as told:
+    with shell.counting("drawing", "frames", patience=1000.0) as told:
         told(1, 3)
     assert capsys.readouterr().err.strip() == ""
-    with progress.counting("drawing", "frames", patience=0.0) as told:
+    with shell.counting("drawing", "frames", patience=0.0) as told:
         told(1, 3)
         told(2, 3)
     shown = capsys.readouterr()

@@ -532,7 +532,7 @@ def test_long_work_is_told_on_a_terminal_and_wiped_away(monkeypatch: pytest.Monk
     import sys
     import time
 
-    from compoundkin.cli.progress import working
+    from compoundkin.cli.shell import working
 
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.model.pairs.contract import as_turn_counting
 from compoundkin.results import Check, Motion
 from tests.dynamics.cases import SI
 from tests.stress.sketch import Placed

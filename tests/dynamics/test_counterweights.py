@@ -70,7 +70,7 @@ def heavy(name: str) -> ck.Mechanism:
     masses = [
         ck.mass(link, float(rng.uniform(0.5, 2.0)), at=complex(*rng.uniform(-0.2, 0.2, 2)) * size, inertia=size**2 / 9)
         for link in mechanism.links
-        if link != "frame" and link not in mechanism.led_links
+        if link != "frame" and link not in mechanism.auxiliary_links
     ]
     return mechanism.replace(*masses, units=UNITS)
 

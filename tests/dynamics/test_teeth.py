@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.reactions.reverse_pass import accompanying, found_reactions, reverse_pass
-from compoundkin.model.pairs.optional_answers import as_accompanied
+from compoundkin.model.pairs.contract import as_transmitting_pair
 from compoundkin.results import Forces
 from tests.support import reference
 
@@ -62,7 +62,7 @@ def transmitted(forces: Forces) -> dict[str, Any]:
     """What each pair of teeth or strands transmits."""
     found = {}
     for name, wrench in forces.wrenches.items():
-        if pair := as_accompanied(forces.solving_order.pairs[name]):
+        if pair := as_transmitting_pair(forces.solving_order.pairs[name]):
             poses = tuple(forces.poses[link] for link in pair.members)
             found[name] = pair.transmitted(forces.inputs.ends[name], poses, wrench)
     return found

@@ -135,7 +135,7 @@ def test_names_of_what_is_only_thought_are_refused_and_not_shown() -> None:
     assert "5 links, the frame among them: 5 binary." in text
     assert "P     R, revolute  outer-left - outer-right  P" in text
     assert "five-bar\n" in text
-    assert {link.name for link in led.rigid_links.values()} == {*led.links} - led.led_links
+    assert {link.name for link in led.rigid_links.values()} == {*led.links} - led.auxiliary_links
     assert next(str(one.drivers[0]) for one in ck.alternatives(led, frames=["frame"])) == "left on frame (A)"
     inverted = ck.with_frame(led, "left")
     back = ck.solve(inverted, time=motion.time)

@@ -17,8 +17,7 @@ from compoundkin.kinematics import solve
 from compoundkin.model.elements import drive, link, mode
 from compoundkin.model.geometry import deg
 from compoundkin.model.laws.cam_laws import LAWS
-from compoundkin.model.laws.motion_programs import Program, program
-from compoundkin.model.laws.program_segments import ProgramSegment, dwell, fall, rise
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwell, fall, program, rise
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, cam, face, slide, slot
 from compoundkin.model.profiles import Profile, Synthesised, disc, formula, profile

@@ -13,10 +13,10 @@ import pytest
 from click.testing import CliRunner
 
 import compoundkin as ck
-from compoundkin.base.suffixes import SUFFIXES, form_of
+from compoundkin.base.suffixes import SUFFIXES, file_format
 from compoundkin.cli import cli
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.programs.compilation import compile
+from compoundkin.programs.compiled_path import compile
 
 
 @cache
@@ -115,7 +115,7 @@ def test_a_report_of_the_command_line_is_refused_before_its_mechanism_is_read(
     what = ["--links", "4"] if verb == "atlas" else ["no-such-mechanism"]
     result = CliRunner().invoke(cli, [verb, *what, "-o", f"a{suffix}"], standalone_mode=False)
     with pytest.raises(ck.errors.InvalidInput) as in_python:
-        form_of("report", f"a{suffix}")
+        file_format("report", f"a{suffix}")
     assert isinstance(result.exception, ck.errors.InvalidInput)
     assert str(result.exception) == str(in_python.value)
     assert not list(tmp_path.iterdir())

@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import order_of
+from compoundkin.model.attributes import derivative_order
 from tests import catalog
 
 
@@ -44,7 +44,7 @@ def test_a_quantity_is_that_of_the_motion(six_bar: ck.results.Motion, name: str,
     found = quantity(six_bar, name)
     np.testing.assert_array_equal(found.values, expected(six_bar))  # type: ignore[operator]
     assert found.unit == unit
-    assert found.order == order_of(name)
+    assert found.order == derivative_order(name)
     assert found.is_angle == (unit == "rad")
     assert found.is_vector == np.iscomplexobj(found.values)
 

@@ -21,13 +21,13 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import dumps, loads, schema
 from compoundkin.model.laws import FunctionLaw, Law
-from compoundkin.model.laws.function_law import differentiated
-from compoundkin.model.laws.law_corners import corners
-from compoundkin.model.laws.motion_programs import Program, program
-from compoundkin.model.laws.path_parts import PathPart
-from compoundkin.model.laws.program_segments import rise
-from compoundkin.model.laws.time_tables import TimeTable
-from compoundkin.model.leads import LinePath, place_table
+from compoundkin.model.laws.function_law import differentiate_function
+from compoundkin.model.laws.law_numbers import derivative_jumps
+from compoundkin.model.laws.motion_programs import Program, program, rise
+from compoundkin.model.laws.path_coordinate import PathCoordinate
+from compoundkin.model.laws.table_laws import TimeTable
+from compoundkin.model.prescribed_motion import place_table
+from compoundkin.model.prescribed_paths import LinePath
 from tests.model.test_programs import MOVING, programs
 
 # Central differences over nine points, step 0.01: the error is of the eighth power (Abramowitz and Stegun, 25.3).
@@ -165,20 +165,27 @@ def test_functions_are_followed_exactly(name: str) -> None:
     def blind(x: Any) -> Any:
         return np.array([float(f(np.float64(one))) for one in np.ravel(x)]).reshape(np.shape(x))
 
-    exact, found = differentiated(f, t, 3), differentiated(blind, t, 3)
+    exact, found = differentiate_function(f, t, 3), differentiate_function(blind, t, 3)
     for k, limit in enumerate((1e-15, 1e-10, 1e-8, 1e-6)):
         np.testing.assert_allclose(exact[k], found[k], rtol=limit, atol=limit * 10)
 
 
 def test_a_power_of_zero_has_its_derivatives() -> None:
-    assert [one.tolist() for one in differentiated(lambda t: t**2, np.zeros(1), 3)] == [[0.0], [0.0], [2.0], [0.0]]
+    assert [one.tolist() for one in differentiate_function(lambda t: t**2, np.zeros(1), 3)] == [
+        [0.0],
+        [0.0],
+        [2.0],
+        [0.0],
+    ]
 
 
 @settings(max_examples=30)
 @given(st.floats(0.01, 2.0), st.floats(-3.0, 3.0))
 def test_differences_are_as_good_as_they_say(scale: float, phase: float) -> None:
     t = np.linspace(0.0, 2.0, 41)
-    found = differentiated(lambda x: np.array(list(map(math.sin, np.ravel(x) / scale + phase))).reshape(x.shape), t, 3)
+    found = differentiate_function(
+        lambda x: np.array(list(map(math.sin, np.ravel(x) / scale + phase))).reshape(x.shape), t, 3
+    )
     for k, limit in enumerate((1e-15, 1e-11, 1e-10, 1e-8)):
         exact = np.sin(t / scale + phase + k * np.pi / 2)
         np.testing.assert_allclose(found[k] * scale**k, exact, atol=10 * limit)
@@ -531,5 +538,9 @@ def test_corners_of_a_path_are_those_of_its_law() -> None:
     """Such as the jumps of acceleration of a point led along a line; of a table they are its times."""
     law = program(rise(5.0, over=2.0, law="parabolic"))
     line, table = LinePath((0j, 3 + 4j), law), place_table([0.0, 1.0, 3.0, 4.0], [0j, 1j, 2j, 4 + 1j])
-    assert corners(PathPart(line, "x"), 0.0, 2.0).tolist() == corners(law, 0.0, 2.0).tolist() == [0.0, 1.0, 2.0]
-    assert corners(PathPart(table, "y"), 0.5, 4.0).tolist() == [1.0, 3.0, 4.0]
+    assert (
+        derivative_jumps(PathCoordinate(line, "x"), 0.0, 2.0).tolist()
+        == derivative_jumps(law, 0.0, 2.0).tolist()
+        == [0.0, 1.0, 2.0]
+    )
+    assert derivative_jumps(PathCoordinate(table, "y"), 0.5, 4.0).tolist() == [1.0, 3.0, 4.0]

@@ -14,8 +14,16 @@ from scipy.optimize import linprog
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidMechanism
-from compoundkin.model.laws.motion_programs import Program, least_time, program, synchronised
-from compoundkin.model.laws.program_segments import ProgramSegment, dwell, fall, rise
+from compoundkin.model.laws.motion_programs import (
+    Program,
+    ProgramSegment,
+    dwell,
+    fall,
+    least_time,
+    program,
+    rise,
+    synchronised,
+)
 
 # (distance, speed, acceleration, jerk) and the time, one for each case: which limits are reached.
 # Closed forms of L. Biagiotti, C. Melchiorri, Trajectory Planning for Automatic Machines and Robots, Springer 2008:

@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin import laws, profiles
-from compoundkin.model.profiles import fitness
+from compoundkin.model.profiles import synthesised
 from tests import catalog
 from tests.scaled import scaled
 
@@ -41,8 +41,8 @@ def test_a_base_circle_that_will_do_is_found_from_an_absurd_one_in_few_trials(
     base: float, follower: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     trials = []
-    asked = fitness._will_do
-    monkeypatch.setattr(fitness, "_will_do", lambda made: trials.append(made.base) or asked(made))
+    asked = synthesised._is_sufficient
+    monkeypatch.setattr(synthesised, "_is_sufficient", lambda made: trials.append(made.base) or asked(made))
     roller = 12.0 if follower == "roller" else 0.0
     with pytest.raises(ck.errors.InvalidMechanism, match="take a base circle of") as told:
         _ = profiles.synthesise(LIFT, base=base, follower=follower, roller=roller).curve

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.errors import Problem, suggestion
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import vector
 from compoundkin.model.pairs import slide
@@ -263,8 +263,8 @@ def test_sizes() -> None:
 def test_problems_say_where_what_and_remedy() -> None:
     assert str(Problem("a.b", "it is wrong", "mend it")) == "a.b: it is wrong; mend it"
     assert str(Problem("", "it is wrong")) == "it is wrong"
-    assert nearest("x", []) == "there is none"
-    assert nearest("zzz", [f"n{k}" for k in range(20)]).endswith("...")
+    assert suggestion("x", []) == "there is none"
+    assert suggestion("zzz", [f"n{k}" for k in range(20)]).endswith("...")
     error = ck.errors.InvalidMechanism([Problem("a", "b"), Problem("c", "d")])
     assert str(error) == "2 problems:\n  a: b\n  c: d"
     assert str(ck.errors.NotDetermined("plain")) == "plain"

@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.profiles import Synthesised, synthesise
-from compoundkin.model.profiles.fitness import least_base
+from compoundkin.model.profiles.synthesised import least_base
 
 SPEED = 2.0
 ANGLES = np.linspace(-1.0, 12.0, 3_000)

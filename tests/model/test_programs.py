@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from compoundkin.base.errors import InvalidInput, InvalidMechanism
 from compoundkin.base.series import Series
 from compoundkin.model.laws.cam_laws import LAWS, Discontinuity, unit_pieces
-from compoundkin.model.laws.motion_programs import Program, program
-from compoundkin.model.laws.program_segments import ProgramSegment, dwell, fall, rise
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwell, fall, program, rise
 
 MOVING = [law for law in LAWS if law != "dwell"]
 

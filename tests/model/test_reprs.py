@@ -14,7 +14,7 @@ from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.checks import verify
 from compoundkin.analysis.coupler import centrodes, inflection_circle, path_curvature, pole, stationary_curvature
 from compoundkin.analysis.mechanical_advantage import mechanical_advantage
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.model.elements import drawn, drive, link
 from compoundkin.model.laws import time_table
 from compoundkin.structure import decompose
@@ -70,9 +70,9 @@ def test_a_check_that_fails_names_what_failed() -> None:
 
 
 def test_long_tuples_and_mappings_are_counted() -> None:
-    assert short(tuple(range(9))) == "9 values"
-    assert short({str(k): k for k in range(9)}) == "9 entries"
-    assert short({"a": np.zeros(3)}) == "{a: array (3,)}"
+    assert short_repr(tuple(range(9))) == "9 values"
+    assert short_repr({str(k): k for k in range(9)}) == "9 entries"
+    assert short_repr({"a": np.zeros(3)}) == "{a: array (3,)}"
 
 
 def test_a_group_of_many_links_prints_some() -> None:

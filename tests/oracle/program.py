@@ -45,7 +45,7 @@ def structure_of(mechanism: Any) -> Any:
 
 def is_drivable(pair: Any) -> bool:
     """Whether a driver may prescribe what a pair leaves free."""
-    from compoundkin.model.pairs.optional_answers import as_drivable
+    from compoundkin.model.pairs.contract import as_drivable
 
     return as_drivable(pair) is not None
 

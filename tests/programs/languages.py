@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.programs.sources import LANGUAGES
-from compoundkin.programs.sources.contract import WrittenProgram
+from compoundkin.programs.sources.written_program import WrittenProgram
 
 # What a language needs to be run.
 NEEDED = {"c": "gcc", "javascript": "node", "matlab": "octave-cli"}

@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from compoundkin.programs.backends.tape.tape_backend import Tape
-from compoundkin.programs.derivatives.adjoints import reverse
-from compoundkin.programs.derivatives.slope_rules import SLOPE_RULES, slopes
-from compoundkin.programs.derivatives.tangents import forward
+from compoundkin.programs.backends.tape_backend import Tape
+from compoundkin.programs.derivatives.differentiation import SLOPE_RULES, forward, reverse, slopes
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, OPERATIONS, TOTAL

@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, UnknownName
-from compoundkin.programs.compilation import compile
+from compoundkin.programs.compiled_path import compile
 from tests.catalog import mechanism as loaded
 
 # Sizes of wheels must fit the distance of their axes; teeth are whole.

@@ -14,7 +14,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError, InvalidInput, UnknownName
-from compoundkin.programs.compilation import compile
+from compoundkin.programs.compiled_path import compile
 from compoundkin.programs.graph.operation_graph import OperationGraph
 from tests.benchmarks import six_bar
 from tests.programs.test_tape import arrays, plain, program_of_everything
@@ -38,12 +38,12 @@ def path() -> Any:
 
 def test_every_operation_of_a_graph() -> None:
     """In every stratum, with what is no number here and there."""
-    from compoundkin.programs.backends.jax_operations import evaluated
+    from compoundkin.programs.jax_path import evaluate_graph
 
     graph, given, outputs = program_of_everything(7, times=2)
     values = dict(zip((graph.input(each) for each in given), arrays(given, (4, 7), 5), strict=True))
     with jax.enable_x64():
-        found = quick(lambda given: evaluated(graph, outputs, given), values)
+        found = quick(lambda given: evaluate_graph(graph, outputs, given), values)
     for k, ours, theirs in zip(outputs, found, plain(graph, outputs, values, (4, 7)), strict=True):
         one, other = (np.broadcast_to(x, (4, 7)) for x in (ours, theirs))
         np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-12, err_msg=str(graph.nodes[k]))
@@ -120,13 +120,13 @@ def test_it_has_the_digits_that_its_user_chose() -> None:
 
 
 def test_angles_go_on_over_full_turns_and_gaps() -> None:
-    from compoundkin.programs.jax_path import continuous
+    from compoundkin.programs.jax_path import continuous_angle
 
     turning, angles = compile(ck.catalog.load_named("double-crank"), ["follower.angle"]), np.linspace(0.0, 15.0, 200)
     rocking = np.where(np.abs(angles - 7.0) < 1.0, np.nan, np.angle(np.exp(-0.7j * angles)))
     with jax.enable_x64():
         found = quick(turning.jax(), angles)["follower.angle"]
-        over_gaps = quick(lambda angle: continuous(angle), np.stack([rocking, angles, rocking[::-1]]))
+        over_gaps = quick(lambda angle: continuous_angle(angle), np.stack([rocking, angles, rocking[::-1]]))
     np.testing.assert_allclose(found, turning(angles)["follower.angle"], atol=1e-12)
     np.testing.assert_allclose(over_gaps[0], np.where(np.isnan(rocking), np.nan, -0.7 * angles), atol=1e-12)
     np.testing.assert_allclose(over_gaps[2] - over_gaps[2, 0], 0.7 * angles + 0.0 * over_gaps[2], atol=1e-12)
@@ -162,13 +162,13 @@ def test_a_slip_is_told() -> None:
 
 
 def test_the_package_does_without_it() -> None:
-    told = "import sys, compoundkin, compoundkin.programs.compilation; sys.exit('jax' in sys.modules)"
+    told = "import sys, compoundkin, compoundkin.programs.compiled_path; sys.exit('jax' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", told], check=False).returncode == 0
 
 
 def test_a_graph_of_constants() -> None:
-    from compoundkin.programs.backends.jax_operations import evaluated
+    from compoundkin.programs.jax_path import evaluate_graph
 
     graph = OperationGraph()
-    (found,) = evaluated(graph, [graph.constant(2.0)], {})
+    (found,) = evaluate_graph(graph, [graph.constant(2.0)], {})
     assert float(found) == 2.0

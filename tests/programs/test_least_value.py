@@ -6,8 +6,8 @@ import numpy as np
 
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.graph.flat_program import BY_BOTH, flat_program
-from compoundkin.programs.graph.least_value import least_value
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.recording.recorded_limits import least_value
 
 
 def test_the_least_of_parts_is_that_of_the_whole() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics.motion import Motion
-from compoundkin.programs import ready_program
+from compoundkin.programs import call_numbers
 from compoundkin.programs.compiled_path import CompiledPath
 
 DESIGNS = 60
@@ -82,8 +82,8 @@ def test_modes_are_carried_from_the_drawing_to_a_part_of_the_motion(begin: float
 def test_looks_at_limits_make_their_programs_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """A call at another value than the mechanism's own looks at the way there: what it needs is kept."""
     made: list[Any] = []
-    ready = ready_program.runner_of
-    monkeypatch.setattr(ready_program, "runner_of", lambda flat, name=None: made.append(flat) or ready(flat, name))
+    ready = call_numbers.runner_of
+    monkeypatch.setattr(call_numbers, "runner_of", lambda flat, name=None: made.append(flat) or ready(flat, name))
     six_bar = ck.catalog.load_named("six-bar")
     path = ck.compile(six_bar, "G.position")
     for angle in (0.5, 0.6, 3.0):

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from compoundkin.base.errors import InvalidInput
-from compoundkin.programs.backends import chosen_back_end, runner_of
-from compoundkin.programs.backends.llvm import llvm_backend
-from compoundkin.programs.backends.llvm.llvm_plan import Machine
+from compoundkin.programs.backends import chosen_back_end, llvm_backend, runner_of
+from compoundkin.programs.backends.llvm_plan import Machine
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, Carried, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from tests.benchmarks import six_bar
@@ -22,14 +21,14 @@ SHAPES = [(1, 1), (1, 17), (1, 2500), (700, 1), (21, 5), (40, 1100), (3, 2100), 
 @pytest.fixture(autouse=True)
 def _own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COMPOUNDKIN_CACHE", str(tmp_path_factory.getbasetemp() / "objects"))
-    monkeypatch.setattr(llvm_backend, "FOR_A_THREAD", 1)
+    monkeypatch.setattr(llvm_backend, "POSES_PER_THREAD", 1)
 
 
 @pytest.fixture(params=[None, Machine(8, True, False), Machine(4, False, False)], ids=["this", "eight", "four"])
 def machine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Any:
     """This processor, and code as for others: fewer lanes, and no masks for remainders."""
     if request.param:
-        monkeypatch.setattr(llvm_backend, "target", lambda: (request.param, ""))
+        monkeypatch.setattr(llvm_backend, "host_target", lambda: (request.param, ""))
     return request.param
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compoundkin.programs.backends import runner_of
-from compoundkin.programs.backends.llvm import object_cache
+from compoundkin.programs.backends import llvm_backend, runner_of
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 
@@ -65,7 +64,7 @@ def test_a_folder_that_cannot_be_written_is_ignored(folder: Path, monkeypatch: p
     (folder / "file").write_text("")
     monkeypatch.setenv("COMPOUNDKIN_CACHE", str(folder / "file"))
     run(5)
-    monkeypatch.setattr(object_cache, "cache_folder", lambda: Path("no\0folder"))
+    monkeypatch.setattr(llvm_backend, "cache_folder", lambda: Path("no\0folder"))
     run(6)
 
 
@@ -74,6 +73,6 @@ def test_where_compiled_code_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", "/caches")
     for platform, part in (("linux", "/caches/compoundkin"), ("darwin", "Caches"), ("win32", "Local")):
         monkeypatch.setattr(sys, "platform", platform)
-        assert part in object_cache.cache_folder().as_posix()
+        assert part in llvm_backend.cache_folder().as_posix()
     monkeypatch.setenv("COMPOUNDKIN_CACHE", "~/kept")
-    assert object_cache.cache_folder() == Path.home() / "kept"
+    assert llvm_backend.cache_folder() == Path.home() / "kept"

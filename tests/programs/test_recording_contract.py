@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.groups import SOLVERS
 from compoundkin.kinematics.motion import Motion
@@ -23,12 +23,12 @@ from compoundkin.model.attributes import (
 )
 from compoundkin.model.pairs import KINDS
 from compoundkin.programs.backends import runner_of
-from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.flat_program import BY_BOTH, FlatProgram, flat_program
-from compoundkin.programs.graph.input_kinds import DRIVE, SEED
+from compoundkin.programs.graph.operation_graph import DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
-from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
-from compoundkin.programs.recording.recorded_outputs import output_of, recorded_outputs
+from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, record_mechanism
+from compoundkin.programs.recording.recorded_motion import output_of, record_outputs
+from compoundkin.programs.solved_designs import seed_values
 from tests.catalog import NAMES, motion
 
 EXACT = 1e-12
@@ -73,7 +73,7 @@ def recording_of(found: Motion) -> RecordedMechanism:
     """A motion's mechanism recorded; signs that change on the way are seeds."""
     signs = {s.index: found.sign(s.index, 0) for s in found.solving_order.solvers
              if not s.is_numbered and s.index not in found.change_points}  # fmt: skip
-    return recorded(Recording(found.solving_order, signs))
+    return record_mechanism(Recording(found.solving_order, signs))
 
 
 def numbers_of(flat: FlatProgram, found: Motion) -> Iterator[Number]:
@@ -87,7 +87,7 @@ def numbers_of(flat: FlatProgram, found: Motion) -> Iterator[Number]:
 
 def values_of(mechanism: RecordedMechanism, found: Motion, names: list[str]) -> list[Number]:
     """What a program finds: the outputs of these names, then which group failed, and the least margin."""
-    limits, outputs = RecordedLimits(mechanism), recorded_outputs(mechanism, [output_of(found, n) for n in names])
+    limits, outputs = RecordedLimits(mechanism), record_outputs(mechanism, [output_of(found, n) for n in names])
     nodes = [one.part(k) for one in (*outputs, limits.failed, limits.certain) for k in (0, 1)]
     graph, shape = mechanism.graph, found.failed.shape
     flat = flat_program(graph, nodes, {node.given: BY_BOTH for node in graph.nodes if node.given})

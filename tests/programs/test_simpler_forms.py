@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph

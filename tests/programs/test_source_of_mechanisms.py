@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
-from compoundkin.programs.calls.seed_values import seed_values
-from compoundkin.programs.compilation import compile
-from compoundkin.programs.compiled_path import CompiledPath
-from compoundkin.programs.recording.recorded_outputs import output_of
+from compoundkin.base.arrays import Number
+from compoundkin.programs.compiled_path import CompiledPath, compile
+from compoundkin.programs.recording.recorded_motion import output_of
+from compoundkin.programs.solved_designs import seed_values
 from compoundkin.programs.sources import LANGUAGES
-from compoundkin.programs.sources.contract import WrittenProgram
+from compoundkin.programs.sources.written_program import WrittenProgram
 from tests.catalog import mechanism, motion
 from tests.programs.languages import run
 

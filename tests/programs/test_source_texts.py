@@ -11,15 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compoundkin.base.series import Number
-from compoundkin.programs.backends.tape.tape_backend import TapeRunner
+from compoundkin.base.arrays import Number
+from compoundkin.programs.backends.tape_backend import TapeRunner
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import OPERATIONS
 from compoundkin.programs.sources import LANGUAGES
-from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
-from compoundkin.programs.sources.identifiers import RESERVED, Identifiers, identifier
-from compoundkin.programs.sources.reading_order import reading_order
+from compoundkin.programs.sources.statements import RESERVED, Identifiers, identifier, reading_order
+from compoundkin.programs.sources.written_program import Argument, Result, WrittenProgram
 from tests.programs.languages import assert_alike, run
 
 # What may go wrong at an operation: signs, zeros, halves, numbers beyond integers, and what is no number.

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compoundkin.programs.backends.tape import block_layout
-from compoundkin.programs.backends.tape.tape_backend import Tape
+from compoundkin.programs.backends import tape_backend
+from compoundkin.programs.backends.tape_backend import Tape
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, Carried, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS
@@ -87,10 +87,10 @@ def test_blocks_and_threads_change_no_bit(shape: tuple[int, int], monkeypatch: p
     graph, given, outputs = program_of_everything(3)
     program = flat_program(graph, outputs, given)
     values = dict(zip((graph.input(each) for each in given), arrays(given, shape, 2), strict=True))
-    monkeypatch.setattr(block_layout, "FOR_A_THREAD", 1)
+    monkeypatch.setattr(tape_backend, "NUMBERS_PER_THREAD", 1)
     found = []
     for block, threads in ((8192, 1), (2048, 1), (1024, 3), (100_000, 2)):
-        monkeypatch.setattr(block_layout, "BLOCK", block)
+        monkeypatch.setattr(tape_backend, "BLOCK_SIZE", block)
         found.append([np.empty(program.shape(k, *shape)) for k in outputs])
         Tape().runner(program)([values[k] for k in program.inputs], found[-1], shape, threads)
     for other in found[1:]:
@@ -135,7 +135,7 @@ def test_a_march_carries_numbers_from_pose_to_pose(shape: tuple[int, int], monke
         expected[1, :, k] = now
         now, before = (now + before + drifts[0, k] ** 2) / 2, now
         expected[0, :, k] = now
-    monkeypatch.setattr(block_layout, "FOR_A_THREAD", 1)
+    monkeypatch.setattr(tape_backend, "NUMBERS_PER_THREAD", 1)
     for threads in (1, 2):
         found = [np.empty(program.shape(k, *shape)) for k in outputs]
         Tape().runner(program)([given_arrays[k] for k in program.inputs], found, shape, threads)

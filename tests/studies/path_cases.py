@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 TWENTY = np.deg2rad(20.0 * np.arange(18))
 

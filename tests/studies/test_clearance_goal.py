@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.studies.goals.clearance_constraint import clearance
 from compoundkin.studies.goals.contract import DesignConstraint
 from compoundkin.studies.goals.design_trial import DesignTrial

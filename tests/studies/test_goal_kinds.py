@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.studies.goals.assembly_constraint import assembles, full_turn
 from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmits
 from compoundkin.studies.goals.contract import DesignConstraint, Goal
@@ -128,7 +128,7 @@ def test_a_full_turn_of_four_bars_is_grashofs_condition() -> None:
     is_grashof = ordered[:, 0] + ordered[:, 3] <= ordered[:, 1] + ordered[:, 2]
     turns = is_grashof & ((crank == ordered[:, 0]) | (frame == ordered[:, 0]))
     assert 20 < turns.sum() < 380
-    with silence():
+    with suppress_pose_warnings():
         margins = asked.margins(trial)
     assert (np.isfinite(margins).all(axis=1) == turns).all()
 

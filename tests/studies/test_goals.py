@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.contract import DesignConstraint, Goal
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts

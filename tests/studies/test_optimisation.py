@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.studies.goals.bound_constraint import at_least
 from compoundkin.studies.goals.trace_goal import trace
 from compoundkin.studies.optimisation.stated_problem import stated_problem

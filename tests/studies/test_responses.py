@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.studies.responses import Designs, Response, studied_path
 from compoundkin.studies.responses.solved_response import SolvedResponse
 from compoundkin.studies.samples import sample_of
@@ -85,7 +85,7 @@ def test_designs_that_do_not_assemble_have_no_figure() -> None:
     designs, response = given("bar.angle.stroke")
     lengths = np.append(designs.dimensions["crank.D.x"][1:], 90.0)
     broken = designs.path.designs({**designs.dimensions, "crank.D.x": lengths})
-    with silence():
+    with suppress_pose_warnings():
         values, slopes = response.values(broken), response.slopes(broken)
     assert np.isnan(values).tolist() == [False] * 7 + [True]
     assert np.isnan(slopes).all(axis=0).tolist() == [False] * 7 + [True]

@@ -14,7 +14,7 @@ from scipy import stats
 import compoundkin as ck
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.studies.samples.random_rows import RandomSample
 from compoundkin.studies.variations import hold_kinds, variation_from, variation_of, variations_of
 from compoundkin.studies.variations.levels import Levels

@@ -9,7 +9,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.model.pairs.optional_answers import as_drivable
+from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
 from compoundkin.synthesis.chains.structure_names import group_count

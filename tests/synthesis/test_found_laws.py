@@ -9,7 +9,8 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files.mechanism_files import dumps, loads
-from compoundkin.model.elements import Expectation, Lead
+from compoundkin.model.elements import Expectation
+from compoundkin.model.prescribed_motion import PrescribedMotion
 from tests.catalog import mechanism as loaded
 from tests.kinematics.test_led_motions import MIDDLE, RADIUS, SPAN, TIMES, circle, four_bar, redriven
 
@@ -124,7 +125,7 @@ def test_the_command_line_writes_the_mechanism_driven_forward(tmp_path: object) 
 
 def test_a_path_that_returns_a_pair_of_arrays_is_refused() -> None:
     arm = loaded("five-bar-led")
-    kept = [item for item in arm.items if not isinstance(item, Lead | Expectation)]
+    kept = [item for item in arm.items if not isinstance(item, PrescribedMotion | Expectation)]
     led = ck.Mechanism("Robot", *kept, ck.drive("P", along=lambda t: (60.0 + 0.0 * t, 135.0 + 0.0 * t)))
     with pytest.raises(ck.errors.InvalidInput, match=r"several arrays.*return x \+ 1j \* y"):
         ck.solve(led, time=[0.0, 1.0])

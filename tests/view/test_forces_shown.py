@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.shapes import ShapeGroup, leaves
 from tests.view.loaded import MASS, crank, crank_forces, six_bar_forces
 

@@ -12,10 +12,10 @@ from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.driver_rates import DriverRates
 from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, cross, dot
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics import Motion
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # Below this conditioning (rounding becomes 1e-10) a centre is given, but proves nothing to 1e-9.
 POOR = 1e-6
@@ -44,7 +44,7 @@ class CentreVectors:
 
 
 @dataclass(frozen=True, repr=False)
-class Velocities(PrintsShort):
+class Velocities(ShortRepr):
     """What the centres and the drivers' rates say. Arrays of the motion's shape, NaN where they say nothing.
 
     `twists[link]` (3, poses) in own coordinates relative to the frame; `conditioning[link]` is near 0 where rounding
@@ -69,7 +69,7 @@ class Velocities(PrintsShort):
 
 
 @dataclass(frozen=True, repr=False)
-class VelocityCheck(PrintsShort):
+class VelocityCheck(ShortRepr):
     """Solved velocities against those from centres, relative to the fastest link.
 
     By link and by point.

@@ -12,10 +12,10 @@ from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCent
 from compoundkin.analysis.centres.instant_centres import Centres
 from compoundkin.analysis.centres.recomputation import recompute
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.contract import Line
 
 # Poses a block: temporaries of a few dozen arrays of this length stay in a second-level cache.

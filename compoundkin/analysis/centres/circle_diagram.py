@@ -9,11 +9,10 @@ from itertools import combinations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED
-from compoundkin.base.series import Number
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Line
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.model.pairs.contract import Line, as_turn_counting
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import DrivenPair
 

@@ -36,7 +36,7 @@ from compoundkin.analysis.centres.derivation_steps import (
 )
 from compoundkin.analysis.centres.known_centres import KnownCentres
 from compoundkin.analysis.centres.rate_sets import RateSets, driver_rate_sets
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 
 # Diagrams kept; each holds a few kilobytes.
@@ -48,7 +48,7 @@ MOST_VALUES = 3
 
 
 @dataclass(frozen=True, repr=False)
-class Derivation(PrintsShort):
+class Derivation(ShortRepr):
     """The order in which the centres of a circle diagram are found.
 
     `body[k]` is the first link of those that move as one with link k; rules speak of bodies. `moves` carry the

@@ -16,7 +16,7 @@ from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.analysis.centres.rate_sets import pair_amplitudes
 from compoundkin.analysis.centres.rate_transport import measured, transport
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Where the error of a twist is magnified more than this, other links are taken to carry it through.
 FAIR = 1e5

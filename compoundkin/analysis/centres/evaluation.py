@@ -15,7 +15,7 @@ from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.derivation_steps import Given, LineCrossing, SolvedCentre, Trial
 from compoundkin.analysis.centres.homogeneous import cross, dot, norm, sine_between
 from compoundkin.analysis.centres.rate_transport import TransportedRates, measured, transport
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 
 class Evaluation:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.model.pairs.contract import Line
 
 
@@ -98,7 +98,7 @@ class OwnCoordinates:
 
 
 @dataclass(frozen=True, repr=False)
-class PrimaryCentres(PrintsShort):
+class PrimaryCentres(ShortRepr):
     """The primary centres of a motion. Unit vectors (3, poses or 1), and the lengths they had before.
 
     A driver's rate times the length is the amplitude of its twist on the unit vector; `rates` holds these.

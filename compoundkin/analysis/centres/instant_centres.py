@@ -20,9 +20,9 @@ from compoundkin.analysis.centres.centre_velocities import (
 )
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation_steps import DerivationStep, crossing_text
-from compoundkin.base.display import PrintsShort, Shows
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import DisplaysHtml, ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 
 # A centre farther away than this many times the mechanism's size is at infinity: rounding hides anything farther.
@@ -42,7 +42,7 @@ class Status(IntEnum):
 
 
 @dataclass(frozen=True, repr=False)
-class Centre(PrintsShort):
+class Centre(ShortRepr):
     """The relative instant centre of two links. Arrays of the motion's shape, NaN where `status` is not FOUND.
 
     `homogeneous` (..., 3) is (x, y, w) in the user's length unit, a unit vector in the mechanism's own
@@ -100,7 +100,7 @@ class Centre(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False)
-class Centres(CentreVectors, Shows):
+class Centres(CentreVectors, DisplaysHtml):
     """All n (n - 1) / 2 instant centres of a motion. ``centres["crank", "bar"]``, either link first."""
 
     def derivation(self) -> tuple[DerivationStep, ...]:
@@ -133,7 +133,7 @@ class Centres(CentreVectors, Shows):
             raise InvalidInput(Problem("centre", f"{links!r} are not two links", 'centres["crank", "bar"]'))
         for name in links:
             if name not in names:
-                raise UnknownName(Problem(str(name), "there is no such link", nearest(str(name), names)))
+                raise UnknownName(Problem(str(name), "there is no such link", suggestion(str(name), names)))
         if links[0] == links[1]:
             raise InvalidInput(Problem("centre", f"{links[0]!r} has no centre relative to itself", "name two links"))
         return names.index(links[0]), names.index(links[1])

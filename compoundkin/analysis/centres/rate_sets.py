@@ -12,7 +12,7 @@ from compoundkin.analysis.centres.circle_diagram import Couple
 from compoundkin.analysis.centres.derivation_steps import Bridge, Join, Meeting, Move, Turn
 from compoundkin.analysis.centres.homogeneous import cross, dot
 from compoundkin.analysis.centres.known_centres import GENERIC, KnownCentres, sine
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 
 @dataclass

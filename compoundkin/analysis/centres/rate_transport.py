@@ -14,7 +14,7 @@ from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.derivation_steps import Bridge, Join, Move, Turn
 from compoundkin.analysis.centres.rate_sets import attach, pair_amplitudes, ring_amplitudes
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Samples besides the exact one: that both underestimate an error tenfold is rarer than one in a thousand.
 SAMPLES = 2

@@ -10,7 +10,7 @@ from compoundkin.analysis.centres.driver_rates import DriverRates, known, pick
 from compoundkin.analysis.centres.evaluation import Evaluation, joining
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.analysis.centres.rate_transport import LINEAR, MOVED
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Where errors are magnified more than this (rounding becomes 1e-11), other lines are tried for the centre.
 FAIR = 1e5

@@ -14,7 +14,7 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Diagram
 from compoundkin.analysis.centres.homogeneous import norm
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 Path = dict[int, int]  # edge of the diagram -> +1 or -1 as it is run through
 

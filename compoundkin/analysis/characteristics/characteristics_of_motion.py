@@ -23,14 +23,13 @@ from compoundkin.analysis.characteristics.limit_positions import DriverDeadPoint
 from compoundkin.analysis.characteristics.linkage_types import SliderCrank, linkage_types
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
-from compoundkin.base.arguments import checked
-from compoundkin.base.display import counted, short
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.given_numbers import hold_design
+from compoundkin.base.arguments import check_design, checked
+from compoundkin.base.display import count_phrase, short_repr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, closed_cycles
 from compoundkin.kinematics.one_design import motion_of_design
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
 DWELL, STRAIGHT = 0.01, 0.001
@@ -97,11 +96,11 @@ class Characteristics:
         if name in named:
             return named[name]
         if not isinstance(name, str):
-            raise UnknownName(Problem(short(name), "it is no name of an output", nearest("", list(named))))
+            raise UnknownName(Problem(short_repr(name), "it is no name of an output", suggestion("", list(named))))
         try:
             meant = outputs_of(self.motion, [name])[0]
         except UnknownName:
-            raise UnknownName(Problem(name, "there is no such output", nearest(name, list(named)))) from None
+            raise UnknownName(Problem(name, "there is no such output", suggestion(name, list(named)))) from None
         if meant.name in named:
             return named[meant.name]
         asked = f"ask for it: characteristics(motion, [{name!r}])"
@@ -113,8 +112,8 @@ class Characteristics:
         return tuple(one.name for one in self.outputs)
 
     def __repr__(self) -> str:
-        parts = [counted(len(self.outputs), "output"), counted(len(self.groups), "group")]
-        parts += [counted(len(self.warnings), "warning")] if self.warnings else []
+        parts = [count_phrase(len(self.outputs), "output"), count_phrase(len(self.groups), "group")]
+        parts += [count_phrase(len(self.warnings), "warning")] if self.warnings else []
         return f"Characteristics({self.motion.mechanism.title!r}: {', '.join(parts)})"
 
 
@@ -163,7 +162,7 @@ def characteristics(
 
 
 def _check(motion: Motion, design: int, dwell: float, straight: float) -> None:
-    hold_design(design, motion.inputs.designs)
+    check_design(design, motion.inputs.designs)
     for name, part in (("dwell", dwell), ("straight", straight)):
         if not 0 < part < 1:
             raise InvalidInput(Problem(name, f"{part:g} is no part of a stroke", "give a number between 0 and 1"))

@@ -14,7 +14,7 @@ from compoundkin.analysis.characteristics.point_places import path_of
 from compoundkin.analysis.characteristics.traced_path import TracedPath, around
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.curves.self_crossings import crossings
+from compoundkin.base.curves.samples import crossings
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 

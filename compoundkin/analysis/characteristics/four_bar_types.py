@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
+from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import LONGEST, Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.given_numbers import real_numbers
 
 # Lengths whose sums differ by less than this part of the loop are equal: a change point, and not a gap of rounding.
 EQUAL = 1e-9

@@ -13,7 +13,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, driver_dead_points
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import order_of
+from compoundkin.model.attributes import derivative_order
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ def limits_of(motion: Motion, design: int, outputs: Iterable[OutputFigures]) -> 
     there = between(motion, design, places, 0)
     # what takes rates, such as a force, has no limit there
     named = [one.output.coordinate for one in outputs if one.least is not None]
-    known = [quantity(there, name) for name in named if order_of(name) == 0]
+    known = [quantity(there, name) for name in named if derivative_order(name) == 0]
     at = drivers_at(motion, design, places.tolist())
     return tuple(
         DriverDeadPoint(

@@ -14,9 +14,8 @@ import numpy as np
 
 from compoundkin.analysis.characteristics.four_bar_types import EQUAL, FourBar, four_bar_code
 from compoundkin.analysis.characteristics.four_links import FourLinks, loops_of_four
-from compoundkin.base.arguments import checked
+from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.arrays import Number, cross
-from compoundkin.base.given_numbers import hold_design
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 
@@ -98,7 +97,7 @@ def linkage_types(what: Mechanism | Structure, design: int = 0) -> tuple[FourBar
     'crank-rocker'
     """
     structure = decompose(what) if isinstance(what, Mechanism) else what
-    hold_design(design, _designs(structure))
+    check_design(design, _designs(structure))
     measured = Measured(structure, design)
     found = (
         measured.slider_crank(loop) if loop.slide else measured.four_bar(loop) for loop in loops_of_four(structure)

@@ -14,7 +14,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import order_of
+from compoundkin.model.attributes import derivative_order
 
 # A motion is shown by about so many samples when dwells are looked for.
 SAMPLES = 288
@@ -77,7 +77,7 @@ class OutputCourse:
         return Sampled(places[good], values[good], self._at, self.cycle, advance)
 
     def _at(self, s: Number) -> Number:
-        there = between(self.motion, self.design, np.ravel(s), order_of(self.coordinate))
+        there = between(self.motion, self.design, np.ravel(s), derivative_order(self.coordinate))
         return np.ravel(quantity(there, self.coordinate).values)
 
     def _dwell(self, span: DwellSpan) -> Dwell:

@@ -32,7 +32,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, closed_cycles, dead_points
 from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import STROKE, order_of, unit_of
+from compoundkin.model.attributes import STROKE, derivative_order, unit_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +186,7 @@ class OutputFigures:
         if not len(places):
             return ()
         found = quantity(
-            between(self.motion, self.design, places, order_of(self.output.coordinate)), self.output.coordinate
+            between(self.motion, self.design, places, derivative_order(self.output.coordinate)), self.output.coordinate
         )
         at, values = drivers_at(self.motion, self.design, places.tolist()), np.ravel(found.values)
         return tuple(

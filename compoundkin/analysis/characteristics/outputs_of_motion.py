@@ -24,11 +24,11 @@ from compoundkin.model.attributes import (
     TABULATED,
     Kind,
     coordinate_dimension,
-    course_figure,
-    order_of,
+    derivative_order,
+    motion_figure,
     unit_of,
 )
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 
 # How many outputs are chosen where the mechanism names none.
@@ -94,7 +94,7 @@ def outputs_of(motion: Motion, names: Sequence[str]) -> tuple[Output, ...]:
     [('G', '', 'G.velocity.length'), ('rocker.angle', 'rocker.angle', 'rocker.angular_velocity')]
     """
     # the figure of a whole motion means the quantity that it is of
-    found = (_output(motion, course_figure(name)[0]) for name in names)
+    found = (_output(motion, motion_figure(name)[0]) for name in names)
     return tuple({one.name: one for one in found}.values())
 
 
@@ -152,7 +152,7 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
         return mechanism.outputs
     used = {letter for pair in mechanism.written_pairs for letter in pair.letters}
     free = {k: links for k, links in mechanism.carriers.items() if k not in used and len(links) == 1}
-    driven = {drive.link for drive in mechanism.drives} | mechanism.led_links
+    driven = {drive.link for drive in mechanism.drives} | mechanism.auxiliary_links
     tracers = [letter for letter, links in free.items() if links != (FRAME,)]
     tracers = [letter for letter in tracers if free[letter][0] not in driven] or tracers
     sliding = {pair.members[1]: pair.name for pair in mechanism.written_pairs
@@ -167,4 +167,4 @@ def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ..
 
     The motion must have been solved for the latter.
     """
-    return tuple(outputs) or tuple(n for n in default_outputs(motion.mechanism) if order_of(n) <= motion.order)
+    return tuple(outputs) or tuple(n for n in default_outputs(motion.mechanism) if derivative_order(n) <= motion.order)

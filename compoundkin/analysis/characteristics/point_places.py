@@ -8,8 +8,8 @@ import numpy as np
 
 from compoundkin.analysis.characteristics.driver_stretches import stretches
 from compoundkin.analysis.characteristics.traced_path import TracedPath
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.given_numbers import hold_design
+from compoundkin.base.arguments import check_design
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 
 # A point moves where its path is longer than this part of the mechanism: rounding of a group on a group.
@@ -22,10 +22,10 @@ def path_of(motion: Motion, point: str, design: int = 0, whole: bool = False) ->
     With it, whether it turns back there. It is as far as no driver turns back, and unless `whole` as far as the point
     does not.
     """
-    hold_design(design, motion.inputs.designs)
+    check_design(design, motion.inputs.designs)
     if point not in motion.mechanism.carriers:
         letters = list(motion.mechanism.carriers)
-        raise UnknownName(Problem(point, "there is no such point", nearest(point, letters)))
+        raise UnknownName(Problem(point, "there is no such point", suggestion(point, letters)))
     if not motion.inputs.is_rigid:
         what = "dimensions change along the motion: its poses are of different mechanisms"
         raise InvalidInput(Problem(point, what, "solve one design over its driver's values"))

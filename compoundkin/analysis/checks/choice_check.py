@@ -8,8 +8,9 @@ import numpy as np
 
 from compoundkin.analysis.checks.continuation_check import SAME, known_at
 from compoundkin.analysis.checks.group_walk import GroupWalk
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places
 from compoundkin.kinematics.finding import Finding, rounded_by, worst

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.analysis.checks.group_walk import NEWTON, SINGULAR, GroupWalk, bases, own_equations
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import poses_at
 from compoundkin.kinematics.finding import Finding, rounded_by, worst

@@ -8,15 +8,16 @@ from math import factorial
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
 from compoundkin.kinematics.double_roots import rates_at
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 # Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
 OFFSETS = np.arange(-4, 5)
@@ -96,7 +97,7 @@ def _largest(motion: Motion, k: int) -> Number:
         for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
             if series.order >= k:
                 found = np.maximum(found, np.abs(series.c[k]) / size)
-    for pair in filter(None, map(as_profiled, motion.structure.pairs)):
+    for pair in filter(None, map(as_profile_contact, motion.structure.pairs)):
         # in a sharp hollow the contact is faster than any link
         poses = tuple(motion.poses[name] for name in pair.members)
         series = pair.coordinate(motion.inputs.ends[pair.name], poses)
@@ -141,7 +142,7 @@ def _put(pose: Pose, other: Pose, at: tuple[Number, Number], given: Inputs) -> P
 def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
     """Return poses around which no contact passes a jump of its profile."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
-    for pair in filter(None, map(as_profiled, motion.structure.pairs)):
+    for pair in filter(None, map(as_profile_contact, motion.structure.pairs)):
         ends = motion.inputs.ends[pair.name]
         found = [pair.smooth_piece(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
         for piece in found[1:]:

@@ -15,10 +15,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.base.continuation import StepLengths, Taken, follow
+from compoundkin.base.arrays import Number
+from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
 from compoundkin.base.linear import inverted
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, rates
 from compoundkin.kinematics.groups import GroupSolver
@@ -96,7 +96,7 @@ class GroupWalk:
 
     def follow(self) -> Number:
         """Go all ways; return which arrived."""
-        return follow(self._step, np.ones(self.count, dtype=bool), LENGTHS)
+        return trace_paths(self._step, np.ones(self.count, dtype=bool), LENGTHS)
 
     def groups(self) -> Iterator[tuple[GroupSolver, Block]]:
         """Yield each group with all links up to it, where ways have come.
@@ -113,7 +113,7 @@ class GroupWalk:
         *_, (_, block) = self.groups()
         return block.world
 
-    def _step(self, i: Number, h: Number) -> Taken:
+    def _step(self, i: Number, h: Number) -> StepResult:
         """Try one step of some ways; keep the good ones."""
         self._expand(i[self._stale[i]])
         h = np.minimum(h, 1.0 - self.at[i])
@@ -133,7 +133,7 @@ class GroupWalk:
             state[i[kept]] = new[kept]
         self.at[i] = np.where(kept, self.at[i] + h, self.at[i])
         self._stale[i[kept]] = True
-        return Taken(h, kept, self.at[i] >= 1.0)
+        return StepResult(h, kept, self.at[i] >= 1.0)
 
     def _expand(self, i: Number) -> None:
         """Find the series of all groups where some ways are."""

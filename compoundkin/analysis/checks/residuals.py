@@ -14,14 +14,14 @@ import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.centre_velocities import SLOWEST
-from compoundkin.base.arrays import wrapped
+from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import NotDetermined
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
+from compoundkin.model.pairs.contract import as_turn_counting, constraint_scales
 from compoundkin.structure.parts import DrivenPair
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
@@ -97,7 +97,7 @@ def _pair(motion: Motion, pair: Pair, k: int) -> Number:
     ends = motion.inputs.ends[pair.name]
     poses = tuple(motion.poses[member] for member in pair.members)
     # an angle that ought to be zero counts as the length by which it moves a point at the mechanism's size
-    lengths = [motion.size / scale for scale in held_scales(pair, motion.size)]
+    lengths = [motion.size / scale for scale in constraint_scales(pair, motion.size)]
     if k == 1:
         rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
         rows = pair.jacobian(ends, poses)[..., : pair.held, :]

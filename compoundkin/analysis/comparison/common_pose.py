@@ -10,8 +10,8 @@ import numpy as np
 from compoundkin.analysis.comparison.compared_side import ComparedSide
 from compoundkin.analysis.comparison.like_stance import values_of_like_stance
 from compoundkin.analysis.comparison.point_partners import partners_by_name, partners_by_place, shares_places
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError
-from compoundkin.base.series import Number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import LENGTHS
 

@@ -8,12 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
 from compoundkin.kinematics.quiet_solution import quietly_solved
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
 
@@ -42,7 +42,7 @@ class ComparedSide:
     @cached_property
     def letters(self) -> tuple[str, ...]:
         """The points, without those that are only thought."""
-        thought = self.mechanism.led_links
+        thought = self.mechanism.auxiliary_links
         return tuple(k for k, names in self.mechanism.carriers.items() if not thought.issuperset(names))
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compoundkin.base.display import Shows, counted
+from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 
@@ -88,7 +88,7 @@ class TurnDifference:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MechanismComparison(Shows):
+class MechanismComparison(DisplaysHtml):
     """Two mechanisms side by side. All lengths are in the unit of the first, those of the second times `scale`.
 
     `points` and `links` tell which name of the first stands for which of the second. `places` are the points' greatest
@@ -149,7 +149,7 @@ class MechanismComparison(Shows):
         unit = f" {self.structures[0].mechanism.unit}".rstrip()
         told = f"at most {largest.distance:.3g}{unit} apart, at {largest.point}"
         told = "they move alike to rounding" if largest.distance <= ROUNDING * self.size else told
-        missing = f"; {counted(self.apart, 'pose')} can be assembled in one of them alone" if self.apart else ""
+        missing = f"; {count_phrase(self.apart, 'pose')} can be assembled in one of them alone" if self.apart else ""
         return f"{told}{missing}"
 
     def __repr__(self) -> str:

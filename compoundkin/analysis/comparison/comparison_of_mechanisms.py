@@ -13,7 +13,7 @@ from compoundkin.analysis.comparison.link_partners import compared_lengths, link
 from compoundkin.analysis.comparison.shared_course import SharedCourse
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
 

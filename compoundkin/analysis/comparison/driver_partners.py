@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.analysis.comparison.common_pose import CommonPose
 from compoundkin.analysis.comparison.compared_side import ComparedSide
 from compoundkin.analysis.comparison.comparison_findings import ComparedDriver
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # A range that lacks no more than this of a full turn is one.
 _ROUNDING = 1e-6

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from compoundkin.analysis.comparison.compared_side import ComparedSide
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # Points nearer to each other than this part of the size tell no direction.
 _DISTINCT = 1e-9

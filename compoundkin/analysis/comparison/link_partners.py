@@ -7,7 +7,7 @@ from itertools import combinations
 
 from compoundkin.analysis.comparison.comparison_findings import ComparedLength
 from compoundkin.base.arrays import first_entry
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 
 # Of links with more points the distances from the first two are enough.

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.analysis.comparison.compared_side import ComparedSide
 from compoundkin.analysis.comparison.link_partners import link_partners
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Points nearer to each other than this part of the size are in the same place: files of other programs are rounded to
 # three decimals, and drawings may be in numbers of one digit.

@@ -11,8 +11,7 @@ import numpy as np
 from compoundkin.analysis.comparison.common_pose import CommonPose
 from compoundkin.analysis.comparison.comparison_findings import ComparedDriver, PlaceDifference, TurnDifference
 from compoundkin.analysis.comparison.point_partners import partners_by_place, tracers_by_name
-from compoundkin.base.arrays import wrapped
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, wrapped
 from compoundkin.kinematics import Motion
 
 # A full turn is compared in steps of two degrees.

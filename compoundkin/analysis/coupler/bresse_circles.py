@@ -10,14 +10,14 @@ from compoundkin.analysis.coupler.centrodes import pole_moves
 from compoundkin.analysis.coupler.relative_motion import INFINITE, Relative, direction, relative
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CanonicalFrame(PrintsShort):
+class CanonicalFrame(ShortRepr):
     """The frame at the pole whose y axis points to the inflection pole. Arrays of the motion's shape.
 
     `origin` is the pole, `tangent` and `normal` are unit vectors (``normal = i tangent``), `diameter` is that of the
@@ -42,7 +42,7 @@ class CanonicalFrame(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BresseCircle(PrintsShort):
+class BresseCircle(ShortRepr):
     """A circle, or a line, by a point it runs through. Arrays of the motion's shape.
 
     `through` is the pole, or a point of the line where the pole is at infinity; `direction` the unit vector from there

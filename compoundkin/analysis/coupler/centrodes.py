@@ -8,16 +8,16 @@ import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import INFINITE, UNKNOWN, Relative, direction, rate, relative
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import cross
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number, Series
+from compoundkin.base.arrays import Number, cross
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Pole(PrintsShort):
+class Pole(ShortRepr):
     """The pole (relative instant centre) of two links at every pose. Arrays of the motion's shape.
 
     `fixed`, `moving`, `world`: complex, in the frame of the observing link, of the moving link and of the mechanism.
@@ -42,7 +42,7 @@ class Pole(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Centrodes(PrintsShort):
+class Centrodes(ShortRepr):
     """The two curves a pole runs along, and how fast. The moving centrode rolls on the fixed one.
 
     `fixed` is the locus of the pole in the observing link's frame, `moving` that in the moving link's frame, pose by

@@ -10,16 +10,16 @@ import numpy as np
 from compoundkin.analysis.coupler.relative_motion import INFINITE, UNKNOWN, direction, relative_link
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, wrapped
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.kinematics.moving_lines import numbers_of, shape_of, vectors_of
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LinkPosition(PrintsShort):
+class LinkPosition(ShortRepr):
     """A position of a link: where one of its points is, and its angle.
 
     `point` is complex or (x, y), the angle in radians; numbers, or arrays that broadcast. NaN where it is not known.
@@ -43,7 +43,7 @@ class LinkPosition(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Displacement(PrintsShort):
+class Displacement(ShortRepr):
     """The displacement of a link between two positions. Numbers or arrays of their shape.
 
     `angle` is that of the rotation, between -pi and pi; `translation` the way of the point by which the positions are

@@ -20,10 +20,10 @@ from compoundkin.analysis.coupler.relative_motion import (
 )
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # Ball's point is where two curves cross. Where their directions differ by less than this they coincide, as in Cardan's
 # motion, and every point of the circle moves straight; third derivatives are exact to about 1e-12 of their scale.
@@ -31,7 +31,7 @@ COINCIDENT = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PathCurvature(PrintsShort):
+class PathCurvature(ShortRepr):
     """The curvature of a point's path at every pose, in the observing link's frame. Arrays of the motion's shape.
 
     `curvature` (1/length) is positive where the path bends to the left of the point's velocity; `radius` is
@@ -151,7 +151,7 @@ def _path(seen: Relative, x: Number, left: Number, curvature: Number, resting: N
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StationaryCurvature(PrintsShort):
+class StationaryCurvature(ShortRepr):
     """The points whose paths keep their curvature for a moment, at every pose. Arrays of the motion's shape.
 
     In the canonical frame `frame` at polar coordinates (r, psi) the cubic is ``1/r = inverse_m / sin psi + inverse_n /

@@ -10,11 +10,11 @@ from compoundkin.analysis.coupler.displacement import Displacement, LinkPosition
 from compoundkin.analysis.coupler.relative_motion import INFINITE, direction
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PoleTriangle(PrintsShort):
+class PoleTriangle(ShortRepr):
     """The displacements from position 1 to 2, 2 to 3, and 3 to 1.
 
     Their poles are the corners of a triangle. All come in this order, numbers or arrays of the positions' shape, NaN

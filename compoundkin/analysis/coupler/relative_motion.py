@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics import LinkMotion, Motion, PointMotion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.kinematics.moving_lines import vectors_of
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 UNKNOWN = complex(np.nan, np.nan)
 INFINITE = complex(np.inf, np.inf)
@@ -65,7 +66,7 @@ def place(motion: Motion, link: str, point: Any) -> Number:
     if isinstance(point, str):
         known = motion.mechanism.geometry.points[link]
         if point not in known:
-            raise UnknownName(Problem(point, f"link {link!r} has no such point", nearest(point, list(known))))
+            raise UnknownName(Problem(point, f"link {link!r} has no such point", suggestion(point, list(known))))
         return known[point]
     return vectors_of("point", point)
 

@@ -10,9 +10,8 @@ import numpy as np
 
 from compoundkin.analysis.equations.factors import Factor, TurnFactor
 from compoundkin.analysis.equations.notation import LATEX, TEXT, Notation, joined, plain
-from compoundkin.base.arrays import first_entry
-from compoundkin.base.series import Number
-from compoundkin.model.pairs.loop_vectors import Sum, Values
+from compoundkin.base.arrays import Number, first_entry
+from compoundkin.model.pairs.loop_terms import Sum, Values
 
 # A constant angle nearer than this (radians) to a multiple of a right angle is one.
 RIGHT = 1e-13
@@ -42,7 +41,7 @@ class Expression:
     """A sum of products; empty it is zero.
 
     >>> from compoundkin.analysis.equations.factors import Length
-    >>> from compoundkin.model.pairs.loop_vectors import Unknown
+    >>> from compoundkin.model.pairs.loop_terms import Unknown
     >>> angle = Sum(0.0, ((1.0, Unknown("angle", "rod")),))
     >>> found = Expression((turn_product(-1.0, (Length("AB", Sum(2.0)),), angle, True),))
     >>> found.text, found.latex, round(float(found.at({"rod": np.pi / 6})), 12)
@@ -86,7 +85,7 @@ def total(*parts: Expression | Product) -> Expression:
 def turn_product(number: Number, factors: tuple[Factor, ...], angle: Sum, is_sine: bool) -> Product:
     """Return a product with the sine or cosine of an angle. Right angles are taken out of it.
 
-    >>> from compoundkin.model.pairs.loop_vectors import Unknown
+    >>> from compoundkin.model.pairs.loop_terms import Unknown
     >>> right = Sum(np.pi / 2, ((1.0, Unknown("angle", "yoke")),))
     >>> Expression((turn_product(1.0, (), right, False),)).text
     '-sin(yoke)'

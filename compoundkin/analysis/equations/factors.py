@@ -9,9 +9,9 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 
 from compoundkin.analysis.equations.notation import Notation, plain, sum_written
-from compoundkin.base.series import Number, Series
-from compoundkin.model.pairs.loop_terms import Implicit
-from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, Values, turned
+from compoundkin.base.arrays import Number
+from compoundkin.base.series import Series
+from compoundkin.model.pairs.loop_terms import Implicit, ProfileVector, Sum, Unknown, Values, rotated
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ class ProfilePart:
     """A part of a profile's vector, real or imaginary, or of its derivative."""
 
     place: ClassVar[int] = 2
-    of: Curved
+    of: ProfileVector
     order: int
     is_imaginary: bool
 
@@ -86,7 +86,7 @@ class ProfilePart:
         """Return its value."""
         argument = np.asarray(self.of.argument.at(values))
         moving = Series((argument, np.ones_like(argument), np.zeros_like(argument)))
-        found = turned(self.of.angle.at(values), self.of.place(moving).derivative(self.order))
+        found = rotated(self.of.angle.at(values), self.of.place(moving).derivative(self.order))
         return found.imag if self.is_imaginary else found.real
 
     def written(self, how: Notation) -> str:

@@ -14,11 +14,10 @@ from compoundkin.analysis.equations.loop_constants import STRAIGHT, FourBarConst
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
 from compoundkin.analysis.equations.reduced_system import resolved
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import wrapped
-from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME
+from compoundkin.base.arrays import Number, wrapped
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.loop_vectors import Sum, Term, Unknown, Vector
+from compoundkin.model.pairs.loop_terms import Sum, Term, Unknown, Vector
 from compoundkin.structure import Loop, Structure
 
 

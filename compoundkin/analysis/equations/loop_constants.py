@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.analysis.equations.notation import LATEX, TEXT, Notation, plain, sum_written
-from compoundkin.base.arrays import wrapped
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
-from compoundkin.model.pairs.loop_vectors import Sum, Values, difference
+from compoundkin.base.arrays import Number, wrapped
+from compoundkin.base.display import ShortRepr
+from compoundkin.model.pairs.loop_terms import Sum, Values, difference
 from compoundkin.structure import Loop
 
 # A constant angle nearer to zero than this (radians) is rounding.
@@ -19,7 +18,7 @@ STRAIGHT = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FourBarConstants(PrintsShort):
+class FourBarConstants(ShortRepr):
     """Freudenstein's equations of a loop of four pins, for output and coupler.
 
     `lengths` are a (input), b (coupler), c (output) and d (frame); the angles are counted from the line of the frame's
@@ -71,7 +70,7 @@ class FourBarConstants(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SliderCrankConstants(PrintsShort):
+class SliderCrankConstants(ShortRepr):
     """The like of Freudenstein's equation for a slider-crank, of crank angle and displacement.
 
     `lengths` are a (crank), b (rod) and e (offset of the guide, to its left); the angle is counted from the guide, the

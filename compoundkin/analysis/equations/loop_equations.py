@@ -13,14 +13,13 @@ from compoundkin.analysis.equations.rate_equations import RateEquations, rate_eq
 from compoundkin.analysis.equations.reduced_system import ReducedSystem, reduced
 from compoundkin.analysis.equations.vector_loops import DriverEquation, LoopWalk, VectorLoop
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms
-from compoundkin.model.pairs.loop_vectors import Sum, Unknown, angle_of, difference
+from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms, Sum, Unknown, angle_of, difference
 from compoundkin.structure import Structure, decompose
 from compoundkin.structure.graph import loops_through
 

@@ -16,19 +16,18 @@ from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_eq
 from compoundkin.analysis.equations.pose_values import pose_values, unknown_values
 from compoundkin.analysis.equations.rate_equations import rate_equations
 from compoundkin.analysis.equations.rate_solution import condition_of, least
-from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
-from compoundkin.base.given_numbers import real_numbers
+from compoundkin.base.arguments import checked, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.solution import solving_order_of
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.loop_vectors import Unknown
+from compoundkin.model.pairs.loop_terms import Unknown
 from compoundkin.structure import Structure
 
 # Iterations stop when no correction is larger (radians, or parts of the size): the next one would be its square.
@@ -42,7 +41,7 @@ SINGULAR = 1e12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class NewtonIterations(PrintsShort):
+class NewtonIterations(ShortRepr):
     """The iterations of one pose, by steps: radians and lengths.
 
     `estimates` (steps + 1, unknowns) begin with the start, `residuals` (steps + 1, rows) are those of the rows at them,
@@ -107,7 +106,7 @@ def _numbers(where: str, given: Mapping[str, Any], known: Sequence[str]) -> dict
     found = {}
     for name, value in given.items():
         if name not in known:
-            raise UnknownName(Problem(f"{where} {name}", f"there is no {name!r}", nearest(str(name), known)))
+            raise UnknownName(Problem(f"{where} {name}", f"there is no {name!r}", suggestion(str(name), known)))
         number = real_numbers(f"{where} {name}", value)
         if number.size != 1 or not np.isfinite(number).all():
             raise InvalidInput(Problem(f"{where} {name}", "this is not one finite number", "give one for a pose"))

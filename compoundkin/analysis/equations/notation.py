@@ -8,8 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from compoundkin.base.arrays import first_entry
-from compoundkin.model.pairs.loop_terms import Implicit
-from compoundkin.model.pairs.loop_vectors import LETTERS, Sum, Unknown
+from compoundkin.model.pairs.loop_terms import LETTERS, Implicit, Sum, Unknown
 
 # A constant below this is rounding; a factor nearer to one than this is one.
 ROUNDING = 1e-9

@@ -7,13 +7,22 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms
-from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
-from compoundkin.model.pairs.optional_answers import Equivalent, lower_equivalent
+from compoundkin.model.pairs.contract import Ends, Equivalent, lower_equivalent
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    Implicit,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    end_angle,
+)
 
 
 def pair_terms(pair: Pair, ends: Ends) -> LoopTerms:
@@ -49,7 +58,7 @@ def _by_lower_pairs(pair: Pair, lower: Equivalent) -> LoopTerms:
 def _block_angle(slide: Pair, lower: Equivalent) -> Sum:
     """The angle of the link between, by that of the link on which it slides."""
     k, ends = slide.members.index(lower.link), lower.ends[slide.name]
-    return angle_of(slide.members[1 - k]).plus(direction(ends[1 - k]) - direction(ends[k]))
+    return angle_of(slide.members[1 - k]).plus(end_angle(ends[1 - k]) - end_angle(ends[k]))
 
 
 def _sliding(own: Pair, lower: Equivalent, block: Sum, free: Mapping[str, Unknown]) -> Iterator[Vector]:
@@ -58,7 +67,7 @@ def _sliding(own: Pair, lower: Equivalent, block: Sum, free: Mapping[str, Unknow
         inside = own.members[0] == lower.link
         guide = block if inside else angle_of(own.members[0])
         sign = 1 if inside == (own is lower.pairs[1]) else -1
-        yield Vector("", Sum(0.0, ((1.0, free[own.name]),)), guide.plus(direction(lower.ends[own.name][0])), sign)
+        yield Vector("", Sum(0.0, ((1.0, free[own.name]),)), guide.plus(end_angle(lower.ends[own.name][0])), sign)
 
 
 def _across(pair: Pair, lower: Equivalent, block: Sum) -> Iterator[Vector]:

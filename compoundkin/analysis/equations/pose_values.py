@@ -9,12 +9,10 @@ import numpy as np
 
 from compoundkin.analysis.equations.pair_terms import pair_terms
 from compoundkin.analysis.equations.reduced_system import ReducedSystem
-from compoundkin.base.arrays import cross, unwrapped
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, cross, unwrapped
 from compoundkin.kinematics import Motion
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.loop_terms import LoopTerms
-from compoundkin.model.pairs.loop_vectors import Unknown, Values, Vector, turned
+from compoundkin.model.pairs.loop_terms import LoopTerms, Unknown, Values, Vector, rotated
 from compoundkin.structure import Structure
 
 
@@ -80,7 +78,7 @@ def _turns(arm: object, unknown: Unknown) -> bool:
 
 def _lengths(arms: list[Vector], values: Values, rest: Number) -> dict[str, Number]:
     """The lengths of one vector or two of known directions that make up the rest."""
-    along = [turned(arm.angle.at(values), float(arm.sign)) for arm in arms]
+    along = [rotated(arm.angle.at(values), float(arm.sign)) for arm in arms]
     keys = [unknown.key for arm in arms for _, unknown in arm.length.parts]
     if len(arms) == 1:
         return {keys[0]: (rest * np.conj(along[0])).real}

@@ -18,19 +18,18 @@ from compoundkin.analysis.equations.pose_values import given_values, pose_values
 from compoundkin.analysis.equations.rate_solution import RateSolution, Scales, solution_of
 from compoundkin.analysis.equations.reduced_system import ReducedSystem
 from compoundkin.analysis.equations.row_derivatives import bend, slope
-from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arguments import checked, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.moving_lines import shape_of
-from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Values
+from compoundkin.model.pairs.loop_terms import Sum, Unknown, Values
 from compoundkin.structure import Structure
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SymbolArray(PrintsShort):
+class SymbolArray(ShortRepr):
     """A matrix of expressions, or a column of them: rows of entries.
 
     >>> from compoundkin.analysis.equations.loop_equations import loop_equations
@@ -83,7 +82,7 @@ class SymbolArray(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RateEquations(PrintsShort):
+class RateEquations(ShortRepr):
     """The equations of velocities or accelerations, a matrix times the unknown rates.
 
     `order` is 1 or 2. `unknowns` are the coordinates whose rates are unknown, in the order of the columns; `names` are

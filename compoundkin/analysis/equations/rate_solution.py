@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.base.series import Number
-from compoundkin.model.pairs.loop_vectors import Unknown
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.model.pairs.loop_terms import Unknown
 
 # A matrix of pure numbers with a greater condition is singular: an angle at a limit position is known to 1e-8, the
 # root of what rounding leaves, and rates would have less than three digits.
@@ -19,7 +19,7 @@ SINGULAR = 1e6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RateSolution(PrintsShort):
+class RateSolution(ShortRepr):
     """The numbers of rate equations at all poses.
 
     `matrix` is (..., rows, columns), `right_side` (..., rows), `solution` (..., columns). `condition` is that of the
@@ -40,7 +40,7 @@ class RateSolution(PrintsShort):
         """Return the rate of one unknown by its key. Raises UnknownName for one that is not among the unknowns."""
         keys = [unknown.key for unknown in self.unknowns]
         if key not in keys:
-            raise UnknownName(Problem(key, "there is no such unknown", nearest(key, keys)))
+            raise UnknownName(Problem(key, "there is no such unknown", suggestion(key, keys)))
         return self.solution[..., keys.index(key)]
 
 

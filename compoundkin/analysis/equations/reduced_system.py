@@ -15,11 +15,19 @@ import numpy as np
 
 from compoundkin.analysis.equations.rate_solution import Scales
 from compoundkin.analysis.equations.vector_loops import DriverEquation, VectorLoop
-from compoundkin.base.arrays import wrapped
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
-from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit
-from compoundkin.model.pairs.loop_vectors import Curved, Sum, Term, Unknown, Values, Vector, difference
+from compoundkin.base.arrays import Number, wrapped
+from compoundkin.base.display import ShortRepr
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    Implicit,
+    ProfileVector,
+    Sum,
+    Term,
+    Unknown,
+    Values,
+    Vector,
+    difference,
+)
 
 # A factor nearer to one than this is one: of angles that a slide ties, factors are one and nothing else.
 ONE = 1e-12
@@ -54,7 +62,7 @@ class EquationRow:
         """All that it depends on."""
         sums = [self.sum, *self.sums.values()]
         for term in self.terms:
-            sums += [term.angle, term.argument if isinstance(term, Curved) else term.length]
+            sums += [term.angle, term.argument if isinstance(term, ProfileVector) else term.length]
         return frozenset(unknown for own in sums for _, unknown in own.parts)
 
     @property
@@ -66,7 +74,7 @@ class EquationRow:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ReducedSystem(PrintsShort):
+class ReducedSystem(ShortRepr):
     """Rows, and the unknowns that are left in them.
 
     `given` are those whose values and rates drivers give, each with its driver's equation; `sums` has all unknowns in
@@ -85,7 +93,7 @@ class ReducedSystem(PrintsShort):
 
     def scales(self, size: float) -> Scales:
         """Return what makes pure numbers of rows and columns."""
-        profiles = [term for row in self.rows for term in row.terms if isinstance(term, Curved)]
+        profiles = [term for row in self.rows for term in row.terms if isinstance(term, ProfileVector)]
         known = {unknown: own.scale for own in profiles for _, unknown in own.argument.parts}
         rows = [size if row.is_length else 1.0 for row in self.rows]
         columns = [size if unknown.is_length else known.get(unknown, 1.0) for unknown in self.unknowns]
@@ -160,7 +168,7 @@ def resolved(terms: Iterable[Term], sums: Mapping[Unknown, Sum], along: Sum | No
     """Return vectors with unknowns put in. A direction, if any, turns them back."""
     for term in terms:
         angle = _put(term.angle if along is None else difference(along, term.angle), sums)
-        if isinstance(term, Curved):
+        if isinstance(term, ProfileVector):
             yield replace(term, argument=_put(term.argument, sums), angle=angle)
         else:
             yield Vector(term.symbol, _put(term.length, sums), angle, term.sign)

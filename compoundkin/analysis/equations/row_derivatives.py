@@ -16,8 +16,8 @@ import numpy as np
 from compoundkin.analysis.equations.expressions import Expression, Product, total, turn_product
 from compoundkin.analysis.equations.factors import Bend, Length, Partial, ProfilePart, Rate
 from compoundkin.analysis.equations.reduced_system import EquationRow
-from compoundkin.base.series import Number
-from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, Vector
+from compoundkin.base.arrays import Number
+from compoundkin.model.pairs.loop_terms import ProfileVector, Sum, Unknown, Vector
 
 # A number and a rate that it multiplies.
 Rated: TypeAlias = tuple[Number, Rate]
@@ -41,9 +41,9 @@ def bend(row: EquationRow) -> Expression:
     return total(*(part for term in row.terms for part in _bend(term, row.is_imaginary)))
 
 
-def _slope(term: Vector | Curved, unknown: Unknown, is_imaginary: bool) -> Iterator[Product]:
+def _slope(term: Vector | ProfileVector, unknown: Unknown, is_imaginary: bool) -> Iterator[Product]:
     turning = term.angle.slope(unknown)
-    if isinstance(term, Curved):
+    if isinstance(term, ProfileVector):
         yield _profile(term, 1, is_imaginary, 0, term.argument.slope(unknown))
         yield _profile(term, 0, is_imaginary, 1, turning)
         return
@@ -51,9 +51,9 @@ def _slope(term: Vector | Curved, unknown: Unknown, is_imaginary: bool) -> Itera
     yield _across(term, term.sign * turning, is_imaginary, (Length(term.symbol, term.length),))
 
 
-def _bend(term: Vector | Curved, is_imaginary: bool) -> Iterator[Product]:
+def _bend(term: Vector | ProfileVector, is_imaginary: bool) -> Iterator[Product]:
     sign, turning = term.sign, _rate(term.angle)
-    if isinstance(term, Curved):
+    if isinstance(term, ProfileVector):
         passing = _rate(term.argument)
         if passing:
             yield _profile(term, 2, is_imaginary, 0, *_squared(passing))
@@ -94,7 +94,9 @@ def _across(term: Vector, number: float, is_imaginary: bool, factors: tuple[Leng
     return turn_product(number if is_imaginary else -number, factors, term.angle, not is_imaginary)
 
 
-def _profile(term: Curved, order: int, is_imaginary: bool, quarters: int, number: float, *rates: Rate) -> Product:
+def _profile(
+    term: ProfileVector, order: int, is_imaginary: bool, quarters: int, number: float, *rates: Rate
+) -> Product:
     """A part of a profile's derivative turned by quarters: of i z the real part is minus the imaginary one of z."""
     for _ in range(quarters):
         number = number if is_imaginary else -number

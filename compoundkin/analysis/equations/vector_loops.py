@@ -8,17 +8,15 @@ from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import wrapped
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, wrapped
+from compoundkin.base.display import ShortRepr
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms
-from compoundkin.model.pairs.loop_vectors import Sum, Term, Values, Vector, angle_of
+from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms, Sum, Term, Values, Vector, angle_of
 from compoundkin.structure import Loop
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class VectorLoop(PrintsShort):
+class VectorLoop(ShortRepr):
     """A closed loop of links, whose vectors have the sum zero. The sum is so in x and in y."""
 
     loop: Loop

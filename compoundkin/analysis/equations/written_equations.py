@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from compoundkin.analysis.equations.notation import LATEX, TEXT, Notation, joined, plain, sum_written
 from compoundkin.analysis.equations.vector_loops import DriverEquation, Equation, VectorLoop
 from compoundkin.base.arguments import checked
-from compoundkin.model.pairs.loop_terms import Implicit
-from compoundkin.model.pairs.loop_vectors import Curved, Term
+from compoundkin.model.pairs.loop_terms import Implicit, ProfileVector, Term
 
 
 @checked
@@ -52,7 +51,7 @@ def _vectors(terms: Sequence[Term], how: Notation) -> str:
 
 def _vector(term: Term, how: Notation) -> str:
     angle = sum_written(term.angle, how, how.angle)
-    if isinstance(term, Curved):
+    if isinstance(term, ProfileVector):
         return how.turned(how.known(term.symbol), angle if angle != "0" else "")
     length = how.known(term.symbol) if term.symbol else sum_written(term.length, how, plain)
     return how.turned(length, angle if angle != "0" else "")

@@ -12,12 +12,13 @@ import numpy as np
 from compoundkin.analysis.interference.compared_bodies import ComparedBodies, OutlineComparison
 from compoundkin.analysis.interference.outline_places import between_outlines, clearance, core_at
 from compoundkin.analysis.interference.shape_pairs import ShapePairs, pairs_alike
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
-from compoundkin.model.outlines.outline_shapes import OutlineShape
+from compoundkin.model.outline_shapes import OutlineShape
 
 # The way of a point between two poses is at most so many times its chord: half a circle is 1.57 times its diameter.
 LONGER = 1.6
@@ -27,7 +28,7 @@ Placed: TypeAlias = Mapping[str, tuple[Number, Number]]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ClearanceCourse(PrintsShort):
+class ClearanceCourse(ShortRepr):
     """The clearances of one design.
 
     Arrays over the poses are of the assembled ones, whose indices are `known`.

@@ -9,16 +9,16 @@ from typing import Any
 
 from compoundkin.analysis.interference.outline_places import core_at
 from compoundkin.analysis.interference.shapely_library import shapely
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.outlines.outline_shapes import OutlineShape, Points
+from compoundkin.model.outline_shapes import OutlineShape, Points
 
 # A point that is farther outside of a shape than this part of the size is not within it.
 WITHIN = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ComparedBodies(PrintsShort):
+class ComparedBodies(ShortRepr):
     """Two bodies, links or pins, and shapes that share a layer."""
 
     one: str
@@ -32,7 +32,7 @@ class ComparedBodies(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class OutlineComparison(PrintsShort):
+class OutlineComparison(ShortRepr):
     """All that is compared of one design.
 
     `neighbours` are not: shapes about their common joints.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compoundkin.base.display import Shows, counted
+from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.kinematics import Motion
 
 
@@ -53,7 +53,7 @@ class LinkClearance:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Interference(Shows):
+class Interference(DisplaysHtml):
     """Which outlines touch along a motion, and how near the others come.
 
     `clearances` are those of two links each that never touch, the least first, design by design. `neighbours` are
@@ -95,14 +95,14 @@ class Interference(Shows):
         if not self.touches and not self.clearances:
             return "no two links share a layer but neighbours"
         if self.touches:
-            return f"{counted(len(self.touching), 'pair')} of links touch"
+            return f"{count_phrase(len(self.touching), 'pair')} of links touch"
         least = self.least
         unit = f" {self.motion.mechanism.unit}".rstrip()
         told = "" if least is None else f"; the least clearance is {least.clearance:.6g}{unit}"
         return f"no links touch{told}"
 
     def __repr__(self) -> str:
-        return f"Interference({self.motion.mechanism.title!r} at {counted(self.poses, 'pose')}: {self.verdict})"
+        return f"Interference({self.motion.mechanism.title!r} at {count_phrase(self.poses, 'pose')}: {self.verdict})"
 
 
 def _within(one: LinkTouch, place: float) -> bool:

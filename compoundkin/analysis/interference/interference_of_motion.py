@@ -12,12 +12,12 @@ from compoundkin.analysis.interference.interference_findings import Interference
 from compoundkin.analysis.interference.shapely_library import shapely
 from compoundkin.analysis.interference.touch_search import TouchSearch
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Places, closed_cycles
-from compoundkin.model.design_numbers import number_of_design
-from compoundkin.model.outlines.outline_shapes import outline_shapes
+from compoundkin.model.mechanism import values_of_design
+from compoundkin.model.outline_shapes import outline_shapes
 
 # Runs that end nearer than this to a pose (in poses) end at it.
 SAME = 1e-7
@@ -67,7 +67,7 @@ def interference(motion: Motion) -> Interference:
 
 def _course(motion: Motion, design: int) -> ClearanceCourse:
     """Return the clearances of a design."""
-    points = number_of_design(motion.mechanism.geometry.points, motion.shape, design)
+    points = values_of_design(motion.mechanism.geometry.points, motion.shape, design)
     for link, own in points.items():
         for letter, place in own.items():
             if np.ndim(place):

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.interference.shapely_library import shapely
-from compoundkin.base.series import Number
-from compoundkin.model.outlines.outline_shapes import OutlineShape
+from compoundkin.base.arrays import Number
+from compoundkin.model.outline_shapes import OutlineShape
 
 
 def core_at(shape: OutlineShape, z: Number = 0j, u: Number = 1 + 0j) -> Any:

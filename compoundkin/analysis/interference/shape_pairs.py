@@ -10,13 +10,13 @@ import numpy as np
 from compoundkin.analysis.interference.compared_bodies import ComparedBodies
 from compoundkin.analysis.interference.outline_places import geometries
 from compoundkin.analysis.interference.shapely_library import shapely
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
-from compoundkin.model.outlines.outline_shapes import OutlineShape
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.model.outline_shapes import OutlineShape
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ShapePairs(PrintsShort):
+class ShapePairs(ShortRepr):
     """Pairs of shapes, (pairs,), in order of the bodies that they belong to.
 
     `cores` and `closed` are of the first and of the second ones, `links` the rows of their links.

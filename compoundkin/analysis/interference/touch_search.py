@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.analysis.interference.clearance_course import ClearanceCourse
-from compoundkin.base.bracketing import bisected, least
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.bracketing import bisect_brackets, golden_section_minimum
+from compoundkin.base.display import ShortRepr
 
 # Halvings of the distance of two poses, to 1e-8 of it.
 HALVINGS = 27
@@ -36,7 +36,7 @@ class FoundLeast(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TouchSearch(PrintsShort):
+class TouchSearch(ShortRepr):
     """What is searched for touches: the clearances of a design."""
 
     course: ClearanceCourse
@@ -83,7 +83,7 @@ class TouchSearch(PrintsShort):
             # a clearance changes no faster than its bodies move
             return (values > 0.0 if sign > 0 else values >= 0.0) & (values - ways * widths <= best[which])
 
-        place, found = least(value, low, low + 1.0, STEPS, going)
+        place, found = golden_section_minimum(value, low, low + 1.0, STEPS, going)
         return which, place, sign * found
 
     def touches(self) -> FoundTouches:
@@ -94,7 +94,7 @@ class TouchSearch(PrintsShort):
         inside = np.where(is_touching[k], place[k], place[k + 1])
         outside = np.where(is_touching[k], place[k + 1], place[k])
         edge = np.full(len(place) + 1, np.nan)
-        edge[k + 1] = bisected(lambda s: self.course.between(which[k], s) <= 0.0, inside, outside, HALVINGS)[0]
+        edge[k + 1] = bisect_brackets(lambda s: self.course.between(which[k], s) <= 0.0, inside, outside, HALVINGS)[0]
         first = is_touching & np.append(True, ~same | ~is_touching[:-1])
         last = is_touching & np.append(~same | ~is_touching[1:], True)
         begin = np.where(np.isnan(edge[:-1][first]), place[first], edge[:-1][first])

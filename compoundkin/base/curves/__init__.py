@@ -5,8 +5,7 @@ of a point, the point a flat face touches and parallel curves follow from that.
 """
 
 from compoundkin.base.curves.curve import Analytic, Curve
-from compoundkin.base.curves.function import Function
-from compoundkin.base.curves.self_crossings import Crossing
-from compoundkin.base.curves.spline import Spline
+from compoundkin.base.curves.samples import Crossing
+from compoundkin.base.curves.spline import Function, Spline
 
 __all__ = ["Analytic", "Crossing", "Curve", "Function", "Spline"]

@@ -1,4 +1,4 @@
-"""`Curve`: a smooth plane curve with all that cams and curved slots ask of it, from its Taylor expansion alone."""
+"""`Curve`: a smooth plane curve with its contacts, offsets and arc length, from its Taylor expansion alone."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from math import factorial
 import numpy as np
 
 from compoundkin.base.arrays import Number, cross, dot, turns_above
-from compoundkin.base.composition import composed, differentiated
-from compoundkin.base.curves.samples import Samples, check_points, checked_range, spans
-from compoundkin.base.curves.self_crossings import Crossing, crossings
-from compoundkin.base.curves.touch_points import farthest, foot, held
-from compoundkin.base.series import Series, as_series
+from compoundkin.base.curves.samples import Crossing, Samples, check_points, check_range, crossings, spans
+from compoundkin.base.curves.touch_points import farthest, foot, rests_at_end
+from compoundkin.base.series import Series, as_series, compose_series, derivative_coefficients, implicit_series
 
 # Two places of a curve whose distances from a point differ by less than the square of this part of the curve cannot
 # be distinguished by samples; Newton starts this close to its answer.
 SAMPLES = 2048
+
+
 # Places where what is given as a curve is tried.
 TRIED = 7
 
@@ -56,12 +56,12 @@ class Curve(ABC):
     def at(self, s: Series | Number) -> Series:
         """Return the point of the curve at a parameter that changes in time."""
         s = as_series(s)
-        return composed(self.expansion(s.c[0], s.order), s)
+        return compose_series(self.expansion(s.c[0], s.order), s)
 
     def tangent(self, s: Series | Number) -> Series:
         """Return the unit vector along the curve, towards greater s."""
         s = as_series(s)
-        return composed(differentiated(self.expansion(s.c[0], s.order + 1)), s).unit()
+        return compose_series(derivative_coefficients(self.expansion(s.c[0], s.order + 1)), s).unit()
 
     def normal(self, s: Series | Number) -> Series:
         """Return the unit vector to the right of the tangent. It points outward on a counterclockwise curve."""
@@ -152,7 +152,7 @@ class Curve(ABC):
         p = as_series(p).c[0]
         s = (self.foot(p) if known is None else known).c[0]
         place, along = self.expansion(s, 1)
-        return held(self, s, dot(p - place, along) / np.abs(along) / self.size)
+        return rests_at_end(self, s, dot(p - place, along) / np.abs(along) / self.size)
 
     def offset(self, distance: float) -> Analytic:
         """Return the parallel curve at a distance along the normal. It is outside a counterclockwise one if positive.
@@ -166,8 +166,8 @@ class Curve(ABC):
 
         def parallel(s: Series) -> Series:
             coefficients = self.expansion(s.c[0], s.order + 1)
-            along = composed(differentiated(coefficients), s)
-            return composed(coefficients, s) + along.unit() * (-1j * distance)
+            along = compose_series(derivative_coefficients(coefficients), s)
+            return compose_series(coefficients, s) + along.unit() * (-1j * distance)
 
         return Analytic(parallel, self.low, self.high, self.closed, self.breaks)
 
@@ -199,7 +199,7 @@ class Analytic(Curve):
     breaks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        checked_range(self.low, self.high)
+        check_range(self.low, self.high)
         s = np.linspace(self.low, self.high, TRIED)
         points = self._expansion(s, 1)[0]
         check_points(s, points, float(np.max(np.abs(points - points[0]))), self.closed)
@@ -210,3 +210,69 @@ class Analytic(Curve):
         shape = np.shape(s)
         full = [np.broadcast_to(c, shape)[()] + 0j for c in found]
         return (*full, *[np.zeros(shape, dtype=complex)[()]] * (order + 1 - len(found)))
+
+
+# Gauss's rule with this many points measures the arc between two samples to rounding.
+GAUSS = 8
+
+
+# Newton's steps from a place interpolated between two samples to rounding: each doubles its digits.
+STEPS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class ArcLength:
+    """The lengths of arc along a curve. A closed curve goes on round and round."""
+
+    curve: Curve
+
+    @cached_property
+    def _marks(self) -> tuple[Number, Number]:
+        """The parameters of samples to the end of the curve, and the lengths up to them."""
+        s = self.curve.samples.s
+        s = np.append(s, self.curve.high) if self.curve.closed else s
+        return s, np.append(0.0, np.cumsum(self._between(s[:-1], s[1:])))
+
+    @property
+    def whole(self) -> float:
+        """The length of the whole curve."""
+        return float(self._marks[1][-1])
+
+    def _between(self, start: Number, end: Number) -> Number:
+        """Measure the arcs between parameters."""
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
+        half = 0.5 * (end - start)[..., None]
+        places = start[..., None] + half * (nodes + 1.0)
+        return (np.abs(self.curve.expansion(places, 1)[1]) * half) @ weights
+
+    def parameter(self, length: Series) -> Series:
+        """Return the parameter at a length of arc that changes in time.
+
+        >>> from compoundkin.base.curves.curve import Analytic
+        >>> circle = Analytic(lambda s: s.turn() * 2.0, 0.0, 2 * np.pi, closed=True)
+        >>> [round(float(c), 12) for c in ArcLength(circle).parameter(Series((3.0, 1.0))).c]
+        [1.5, 0.5]
+        """
+        s, marks = self._marks
+        d = np.asarray(length.c[0], dtype=float)
+        if self.curve.closed:
+            d = np.mod(d, self.whole)
+        cell = np.clip(np.searchsorted(marks, d, side="right") - 1, 0, len(marks) - 2)
+        found = s[cell] + (d - marks[cell]) * (s[cell + 1] - s[cell]) / (marks[cell + 1] - marks[cell])
+        for _ in range(STEPS):
+            off = marks[cell] + self._between(s[cell], found) - d
+            found = found - off / np.abs(self.curve.expansion(found, 1)[1])
+        along = Series(derivative_coefficients(self.curve.expansion(found, length.order + 1)))
+        pace = along.abs2().sqrt().c
+        arc = (length.c[0], *(c / k for k, c in enumerate(pace[: length.order], 1)))
+        return implicit_series(
+            found, length.order, pace[0], lambda moved: compose_series(arc, moved) - _upto(length, moved.order)
+        )
+
+    def place(self, length: Series) -> Series:
+        """Return the point at a length of arc that changes in time."""
+        return self.curve.at(self.parameter(length))
+
+
+def _upto(series: Series, order: int) -> Series:
+    return Series(series.c[: order + 1])

@@ -1,23 +1,28 @@
-"""Samples of a curve: what they must satisfy, which is nearest or farthest out, where a function has one sign."""
+"""Samples of a curve: the nearest, the outermost, spans of one sign, convex hulls, self-crossings."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import LONGEST, Number
-from compoundkin.base.bracketing import bisected
+from compoundkin.base.arrays import LONGEST, Number, cross
+from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.newton import newton
 
 # Gauss's rule with this many points between two samples has the length to rounding.
 GAUSS = 3
+
+
 # Halvings of the distance of two samples until rounding.
 HALVINGS = 45
+
+
 # A closed curve may miss its own beginning by rounding of what computes it: this part of its size.
 CLOSES = 1e-9
 
@@ -80,27 +85,27 @@ class Samples:
     @cached_property
     def _hull(self) -> tuple[Number, Number]:
         """The corners of the convex hull and the angles, sorted, of the normals of the sides that begin there."""
-        corners = convex_hull(self.points)
+        corners = hull_indices(self.points)
         sides = np.roll(self.points[corners], -1) - self.points[corners]
         normals = np.angle(sides * -1j)
         order = np.argsort(normals, kind="stable")
         return corners[order], normals[order]
 
 
-def convex_hull(points: Number) -> Number:
+def hull_indices(points: Number) -> Number:
     """Find the corners of the convex hull, counterclockwise. There are two if all points lie on a line.
 
     Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979.
 
-    >>> convex_hull(np.array([0j, 1, 2, 1 + 1j, 2 + 2j, 2j]))
+    >>> hull_indices(np.array([0j, 1, 2, 1 + 1j, 2 + 2j, 2j]))
     array([0, 2, 4, 5])
     """
     order = [int(k) for k in np.lexsort((points.imag, points.real))]
     plain = points.tolist()
-    return np.array(_chain(order, plain)[:-1] + _chain(order[::-1], plain)[:-1])
+    return np.array(_hull_chain(order, plain)[:-1] + _hull_chain(order[::-1], plain)[:-1])
 
 
-def _chain(order: list[int], points: list[complex]) -> list[int]:
+def _hull_chain(order: list[int], points: list[complex]) -> list[int]:
     chain: list[int] = []
     for k in order:
         while len(chain) > 1 and not _turns_left(points[chain[-2]], points[chain[-1]], points[k]):
@@ -141,10 +146,10 @@ def _edge(samples: Samples, inside: Number, step: float, margin: Callable[[Numbe
     outside = inside + step
     if not samples.closed:
         outside = np.clip(outside, samples.s[0], samples.s[-1])
-    return bisected(lambda s: ~(margin(s) > 0.0), inside, outside, HALVINGS)[0]
+    return bisect_brackets(lambda s: ~(margin(s) > 0.0), inside, outside, HALVINGS)[0]
 
 
-def checked_range(low: float, high: float) -> None:
+def check_range(low: float, high: float) -> None:
     """Raise `InvalidMechanism` unless a range of parameters is finite and not empty."""
     if not (isfinite(low) and isfinite(high) and low < high):
         what = f"the parameter of a curve cannot run from {low} to {high}"
@@ -165,3 +170,125 @@ def check_points(s: Number, points: Number, size: float, closed: bool) -> None:
     if closed and gap > CLOSES * size:
         what = f"the curve ends {gap:g} away from where it begins"
         raise InvalidMechanism(Problem("closed", what, "say it is open, or let it run one period"))
+
+
+# Sides of the sampled polygon that meet in a corner of it may miss each other by rounding: this part of a side.
+ROUNDING = 1e-9
+
+
+# Newton from the crossing of two sides of the polygon: their error is squared with every step.
+STEPS = 6
+
+
+class Crossing(NamedTuple):
+    """A point that a curve passes twice, and the parameters of both."""
+
+    point: complex
+    first: float
+    second: float
+
+
+def crossings(samples: Samples, expansion: Callable[[Number, int], tuple[Number, ...]]) -> tuple[Crossing, ...]:
+    """Find every crossing of a curve with itself, in the order of the parameters.
+
+    Loops smaller than the distance of two samples are not seen.
+    """
+    starts, sides = _sides(samples)
+    one, other, along, across = _meeting(starts, sides, samples.closed)
+    first = samples.s[one] + along * samples.step
+    second = samples.s[other] + across * samples.step
+    first, second = _refined(first, second, expansion, samples.step)
+    points = expansion(first, 0)[0]
+    found: list[Crossing] = []
+    for k in np.lexsort((second, first)):
+        crossing = Crossing(complex(points[k]), float(first[k]), float(second[k]))
+        # a crossing at a corner of the polygon belongs to two sides
+        if not found or abs(crossing.first - found[-1].first) + abs(crossing.second - found[-1].second) > samples.step:
+            found.append(crossing)
+    return tuple(found)
+
+
+def _sides(samples: Samples) -> tuple[Number, Number]:
+    sides = np.roll(samples.points, -1) - samples.points
+    return (samples.points, sides) if samples.closed else (samples.points[:-1], sides[:-1])
+
+
+def _meeting(starts: Number, sides: Number, closed: bool) -> tuple[Number, Number, Number, Number]:
+    """Find the pairs of sides (the earlier first) that cross, and where on each, 0 to 1."""
+    one, other = _overlapping(starts, sides)
+    apart = other - one
+    neighbours = (apart == 1) | (closed & (apart == starts.size - 1))
+    one, other = one[~neighbours], other[~neighbours]
+    between = starts[other] - starts[one]
+    turn = cross(sides[one], sides[other])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = cross(between, sides[other]) / turn
+        across = cross(between, sides[one]) / turn
+    inside = np.abs(along - 0.5) <= 0.5 + ROUNDING
+    inside &= np.abs(across - 0.5) <= 0.5 + ROUNDING
+    return one[inside], other[inside], along[inside], across[inside]
+
+
+def _overlapping(starts: Number, sides: Number) -> tuple[Number, Number]:
+    """Find the pairs of sides (the earlier first) whose boxes overlap."""
+    ends = starts + sides
+    if np.ptp(starts.imag) > np.ptp(starts.real):
+        starts, ends = starts * -1j, ends * -1j
+    left, right = np.minimum(starts.real, ends.real), np.maximum(starts.real, ends.real)
+    below, above = np.minimum(starts.imag, ends.imag), np.maximum(starts.imag, ends.imag)
+    order = np.argsort(left, kind="stable")
+    place = np.arange(order.size)
+    # in the sorted order a side overlaps those that begin after it does and before it ends
+    count = np.searchsorted(left[order], right[order], side="right") - place - 1
+    one = np.repeat(place, count)
+    other = one + 1 + np.arange(one.size) - np.repeat(np.cumsum(count) - count, count)
+    one, other = order[one], order[other]
+    overlap = (below[one] <= above[other]) & (below[other] <= above[one])
+    one, other = one[overlap], other[overlap]
+    return np.minimum(one, other), np.maximum(one, other)
+
+
+def _refined(
+    first: Number, second: Number, expansion: Callable[[Number, int], tuple[Number, ...]], step: float
+) -> tuple[Number, Number]:
+    """Solve C(first) = C(second) from there; keep the parameters where branches touch without crossing."""
+
+    def apart(both: Number) -> tuple[Number, Number]:
+        (p, v), (q, w) = expansion(both[:, 0], 1), expansion(both[:, 1], 1)
+        return _parts(p - q), np.stack((_parts(v), _parts(-w)), axis=-1)
+
+    def within(change: Number) -> Number:
+        # none where it leaves the two sides or the branches are parallel
+        return np.where(np.abs(change) < step, change, 0.0)
+
+    start = np.stack((first, second), axis=-1)
+    found = newton(apart, start, 0.0, STEPS, limited=within).x
+    good = (np.abs(found - start) < step).all(axis=-1)
+    return np.where(good, found[:, 0], first), np.where(good, found[:, 1], second)
+
+
+def _parts(z: Number) -> Number:
+    return np.stack((z.real, z.imag), axis=-1)
+
+
+def convex_hull(points: Iterable[complex]) -> list[complex]:
+    """Return the corners around points, counterclockwise; both ends of points on a line.
+
+    Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, Information Processing
+    Letters 9 (1979) 216-219.
+
+    >>> convex_hull([0j, 1 + 0j, 0.5 + 0.2j, 1j])
+    [0j, (1+0j), 1j]
+    """
+    ordered = sorted(dict.fromkeys(points), key=lambda p: (p.real, p.imag))
+    return ordered if len(ordered) < 3 else _half(ordered) + _half(ordered[::-1])
+
+
+def _half(run: Sequence[complex]) -> list[complex]:
+    """Return the corners below a run of points, without the last one."""
+    chain: list[complex] = []
+    for p in run:
+        while len(chain) > 1 and (np.conjugate(chain[-1] - chain[-2]) * (p - chain[-1])).imag <= 0:
+            chain.pop()
+        chain.append(p)
+    return chain[:-1]

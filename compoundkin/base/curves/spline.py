@@ -1,9 +1,9 @@
-"""Splines: piecewise polynomials with all derivatives, and the curve through given points."""
+"""Splines: piecewise polynomials, the curve through given points, and the curve of a Python function."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import factorial
@@ -12,19 +12,30 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.curves.curve import SAMPLES, Curve
+from compoundkin.base.curves.samples import check_points, check_range
 from compoundkin.base.errors import InvalidMechanism, Problem
 
 FEWEST = 4
+
+
 # Through fewer points than this goes a cubic spline, through more one of degree five, whose third derivative (the jerk
 # of what follows it) is smooth.
 FEWEST_QUINTIC = 6
+
+
 # Points nearer than this part of the profile's size are one point twice.
 SAME = 1e-12
+
+
 # Lengths of arc measured on the spline before and used for the next one; the first uses chords. Two are enough for the
 # full order of a quintic.
 ROUNDS = 2
+
+
 # Gauss points to measure a piece of arc.
 GAUSS = 8
+
+
 # Samples for each piece of the spline.
 SAMPLES_PER_PIECE = 4
 
@@ -101,7 +112,7 @@ class Spline(Curve):
     high: float = field(init=False, default=0.0, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        points = checked_points(self.points, self.closed)
+        points = spline_points(self.points, self.closed)
         object.__setattr__(self, "points", tuple(points.tolist()))
         object.__setattr__(self, "high", float(self._pieces.breaks[-1]))
 
@@ -111,9 +122,9 @@ class Spline(Curve):
         degree = 5 if points.size >= FEWEST_QUINTIC else 3
         if self.closed:
             points = np.append(points, points[0])
-        s = _summed(np.abs(np.diff(points)))
+        s = _cumulative(np.abs(np.diff(points)))
         for _ in range(ROUNDS):
-            s = _summed(_arcs(interpolated(s, points, degree, self.closed), s))
+            s = _cumulative(_arcs(interpolated(s, points, degree, self.closed), s))
         return interpolated(s, points, degree, self.closed)
 
     @property
@@ -129,7 +140,7 @@ class Spline(Curve):
         return self._pieces.taylor(s, order)
 
 
-def checked_points(given: Sequence[complex] | Number, closed: bool) -> Number:
+def spline_points(given: Sequence[complex] | Number, closed: bool) -> Number:
     """Return the points as an array, the first not repeated at the end. Raise `InvalidMechanism` for wrong ones."""
     try:
         points = np.array(given, dtype=complex)
@@ -158,7 +169,7 @@ def checked_points(given: Sequence[complex] | Number, closed: bool) -> Number:
     return points
 
 
-def _summed(lengths: Number) -> Number:
+def _cumulative(lengths: Number) -> Number:
     return np.append(0.0, np.cumsum(lengths))
 
 
@@ -167,3 +178,81 @@ def _arcs(pieces: SplinePieces, s: Number) -> Number:
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
     half = 0.5 * np.diff(s)[:, None]
     return (np.abs(pieces.taylor(s[:-1, None] + half * (nodes + 1.0), 1)[1]) * half) @ weights
+
+
+# High enough that derivatives of order four keep most digits, low enough for a few hundred pieces to be evaluated fast.
+DEGREE = 9
+
+
+# The spline may miss the function by this part of the curve's size: above rounding of the function, below any drawing.
+ACCURACY = 1e-11
+
+
+FEWEST_PIECES, MOST_PIECES = 32, 16384
+
+
+@dataclass(frozen=True)
+class Function(Curve):
+    """The curve that a function gives. `function` takes an array of parameters and gives complex points.
+
+    It is called at once, for as many parameters as a spline needs to follow it within 1e-11 of its size. Raises
+    `InvalidMechanism` if the function does not take arrays or gives another shape, points are not finite, a closed
+    curve does not close, or the function is not smooth enough (a corner, a jump of a low derivative, noise).
+
+    >>> circle = Function(lambda s: 2.0 * np.exp(1j * s), 0.0, 2 * np.pi, closed=True)
+    >>> round(float(circle.curvature(1.0)), 9), round(circle.length / np.pi, 9)
+    (0.5, 4.0)
+    """
+
+    function: Callable[[Number], Number]
+    low: float
+    high: float
+    closed: bool
+
+    def __post_init__(self) -> None:
+        check_range(self.low, self.high)
+        self._pieces.taylor(self.low, 0)
+
+    @cached_property
+    def _pieces(self) -> SplinePieces:
+        pieces = FEWEST_PIECES
+        s, points = self._points(np.linspace(self.low, self.high, pieces + 1))
+        size = float(np.hypot(np.ptp(points.real), np.ptp(points.imag)))
+        while pieces <= MOST_PIECES:
+            check_points(s, points, size, self.closed)
+            if self.closed:
+                points[-1] = points[0]
+            spline = interpolated(s, points, DEGREE, self.closed)
+            middles, between = self._points(0.5 * (s[1:] + s[:-1]))
+            missed = np.abs(spline.taylor(middles, 0)[0] - between)
+            s, points = _merged(s, middles), _merged(points, between)
+            if np.max(missed) <= ACCURACY * size:
+                # half the pieces give the points; these give derivatives of order four nearly as well
+                return interpolated(s, points, DEGREE, self.closed)
+            pieces *= 2
+        worst = middles[np.argmax(missed)]
+        what = f"the function is not smooth: {MOST_PIECES} pieces miss it by {np.max(missed):g}"
+        raise InvalidMechanism(
+            Problem(f"s = {worst:g}", what, "look for a corner or a jump of its curvature there, or give points")
+        )
+
+    def _points(self, s: Number) -> tuple[Number, Number]:
+        try:
+            points = np.array(self.function(s), dtype=complex)
+        except Exception as error:
+            what = f"the function does not take an array of parameters ({error})"
+            raise InvalidMechanism(Problem("function", what, "use functions of NumPy")) from error
+        if points.shape != s.shape:
+            what = f"the function gives the shape {points.shape} for parameters of the shape {s.shape}"
+            raise InvalidMechanism(Problem("function", what, "return one complex number for each parameter"))
+        return s, points
+
+    def _expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        return self._pieces.taylor(s, order)
+
+
+def _merged(a: Number, b: Number) -> Number:
+    """Merge the values of `a` with those of `b` between them."""
+    merged = np.empty(a.size + b.size, dtype=a.dtype)
+    merged[::2], merged[1::2] = a, b
+    return merged

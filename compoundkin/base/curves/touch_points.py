@@ -8,10 +8,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from compoundkin.base.arrays import Number, dot
-from compoundkin.base.bracketing import greatest
-from compoundkin.base.composition import composed, differentiated, implicit
+from compoundkin.base.bracketing import newton_maximum
 from compoundkin.base.curves.samples import Samples
-from compoundkin.base.series import Series
+from compoundkin.base.series import Series, compose_series, derivative_coefficients, implicit_series
 
 # Seen from an end, a point is beyond it if it is in front of it by this part of the curve's size, a direction if it
 # leans forward by this angle: what touches the very end moves on like its neighbours.
@@ -23,7 +22,7 @@ LAST_STEP = 1e-8
 STEPS = 60
 
 
-class Searched(Protocol):
+class SearchableCurve(Protocol):
     """What a search needs of a curve."""
 
     low: float
@@ -48,7 +47,7 @@ class Searched(Protocol):
         """Return the parameters within the period."""
 
 
-def foot(curve: Searched, p: Series, near: Number = None) -> Series:
+def foot(curve: SearchableCurve, p: Series, near: Number = None) -> Series:
     """Find the parameter of the curve's point nearest to a moving point.
 
     Where one `near` it is known, one step of Newton goes from there.
@@ -58,15 +57,15 @@ def foot(curve: Searched, p: Series, near: Number = None) -> Series:
         place, first, second = curve.derivatives(s, 2)
         return dot(point - place, first), dot(point - place, second) - dot(first, first)
 
-    return _touching(
+    return _touch_parameter(
         curve,
         p,
-        _Aim(curve.size, rise, curve.samples.nearest, lambda place, along, point: (point - place).dot(along)),
+        _Target(curve.size, rise, curve.samples.nearest, lambda place, along, point: (point - place).dot(along)),
         near,
     )
 
 
-def farthest(curve: Searched, n: Series, near: Number = None) -> Series:
+def farthest(curve: SearchableCurve, n: Series, near: Number = None) -> Series:
     """Find the parameter of the curve's point farthest in a turning direction.
 
     Where one `near` it is known, one step of Newton goes from there.
@@ -76,11 +75,11 @@ def farthest(curve: Searched, n: Series, near: Number = None) -> Series:
         _, first, second = curve.derivatives(s, 2)
         return dot(direction, first), dot(direction, second)
 
-    aim = _Aim(np.abs(n.c[0]), rise, curve.samples.outermost, lambda _, along, direction: direction.dot(along))
-    return _touching(curve, n, aim, near)
+    aim = _Target(np.abs(n.c[0]), rise, curve.samples.outermost, lambda _, along, direction: direction.dot(along))
+    return _touch_parameter(curve, n, aim, near)
 
 
-class _Aim(NamedTuple):
+class _Target(NamedTuple):
     """What is sought of a curve. Its scale, the slope of what is greatest there with its own, the best sample of some
     targets, and the condition that is kept in time."""
 
@@ -90,19 +89,19 @@ class _Aim(NamedTuple):
     condition: Callable[[Series, Series, Series], Series]
 
 
-def _touching(curve: Searched, given: Series, aim: _Aim, near: Number) -> Series:
+def _touch_parameter(curve: SearchableCurve, given: Series, aim: _Target, near: Number) -> Series:
     """Find the parameter that belongs to `given`: the best sample, Newton, then order by order."""
-    s = _found(curve, given.c[0], aim) if near is None else _stepped(curve, given.c[0], aim, near)
+    s = _search(curve, given.c[0], aim) if near is None else _newton_step(curve, given.c[0], aim, near)
     if given.order == 0:
         return Series((curve.wrapped(s),))
     coefficients = curve.expansion(s, given.order + 1)
     first, slope = aim.rise(s, given.c[0])
-    stays = held(curve, s, first / np.abs(coefficients[1]) / aim.scale)
+    stays = rests_at_end(curve, s, first / np.abs(coefficients[1]) / aim.scale)
     rates = _rates(given, s, slope, coefficients, aim.condition)
     return Series((curve.wrapped(s), *[np.where(stays, 0.0, rate)[()] for rate in rates]))
 
 
-def _found(curve: Searched, given: Number, aim: _Aim) -> Number:
+def _search(curve: SearchableCurve, given: Number, aim: _Target) -> Number:
     """Search the parameter from the best sample."""
     lead = np.asarray(given, dtype=complex)
     flat = lead.ravel()
@@ -111,18 +110,18 @@ def _found(curve: Searched, given: Number, aim: _Aim) -> Number:
     targets = flat[known]
     if targets.size:
         bounds = curve.samples.around(aim.best(targets))
-        found[known] = greatest(lambda s, which: aim.rise(s, targets[which]), bounds, LAST_STEP, STEPS)
+        found[known] = newton_maximum(lambda s, which: aim.rise(s, targets[which]), bounds, LAST_STEP, STEPS)
     return found.reshape(lead.shape)[()]
 
 
-def _stepped(curve: Searched, given: Number, aim: _Aim, near: Number) -> Number:
+def _newton_step(curve: SearchableCurve, given: Number, aim: _Target, near: Number) -> Number:
     """Go one step from a parameter nearby; none at an end that holds it."""
     first, slope = aim.rise(near, given)
-    stays = held(curve, near, first / np.abs(curve.expansion(near, 1)[1]) / aim.scale)
+    stays = rests_at_end(curve, near, first / np.abs(curve.expansion(near, 1)[1]) / aim.scale)
     return np.where(stays, near, near - first / slope)
 
 
-def held(curve: Searched, s: Number, ahead: Number) -> Number:
+def rests_at_end(curve: SearchableCurve, s: Number, ahead: Number) -> Number:
     """Tell where a search ended at an end of the curve. Its aim is this far ahead (a pure number)."""
     if curve.closed:
         return np.zeros(np.shape(s), dtype=bool)[()]
@@ -137,10 +136,10 @@ def _rates(
     condition: Callable[[Series, Series, Series], Series],
 ) -> tuple[Number, ...]:
     """Return the parameter's coefficients after the first that keep a condition of point, derivative and `given`."""
-    along = differentiated(coefficients)
+    along = derivative_coefficients(coefficients)
 
     def residual(trial: Series) -> Series:
         cut = Series(given.c[: trial.order + 1])
-        return condition(composed(coefficients, trial), composed(along, trial), cut)
+        return condition(compose_series(coefficients, trial), compose_series(along, trial), cut)
 
-    return implicit(s, given.order, slope, residual).c[1:]
+    return implicit_series(s, given.order, slope, residual).c[1:]

@@ -8,9 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from compoundkin.base.arrays import cross
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, cross
+from compoundkin.base.display import ShortRepr
 from compoundkin.dynamics.drives.course_quadrature import nodes, smooth_pieces
 from compoundkin.dynamics.work.mass_motion import mass_motions
 from compoundkin.kinematics.extremes import Measure, between, extremes
@@ -29,7 +28,7 @@ class BalanceFigure:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class InertiaAlone(PrintsShort):
+class InertiaAlone(ShortRepr):
     """What masses alone do, without weights and loads. The shaking moment is about a place of the world."""
 
     about: complex

@@ -8,9 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.balance.pin_ways import PinWays
 from compoundkin.dynamics.work.mass_motion import place_of
 from compoundkin.kinematics.motion import Motion
@@ -111,7 +110,7 @@ def _by_link(ways: PinWays, where: str, given: Any, least_is_zero: bool = False)
     found = dict(given) if isinstance(given, Mapping) else dict.fromkeys(known, given)
     for name, value in found.items():
         if name not in ways.motion.links:
-            raise UnknownName(Problem(where, f"there is no link {name!r}", nearest(str(name), known)))
+            raise UnknownName(Problem(where, f"there is no link {name!r}", suggestion(str(name), known)))
         number = np.empty(0) if value is None else np.ravel(real(where, value))
         if len(number) != 1 or number[0] < 0 or (number[0] == 0 and not least_is_zero):
             raise InvalidInput(Problem(where, f"{value!r} is no {where} of a counterweight", "a number above 0"))

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort, counted
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.display import ShortRepr, count_phrase
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.balance.balance_figures import BalanceFigure, balance_figures
 from compoundkin.dynamics.balance.counterweight_masses import Counterweight, CounterweightSizes, with_counterweights
 from compoundkin.dynamics.balance.force_balance import BALANCED, BalanceConditions
@@ -20,13 +20,12 @@ from compoundkin.dynamics.work.mass_motion import units_of_masses
 from compoundkin.kinematics.extremes import closed_cycles
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
-from compoundkin.model.elements import FRAME
-from compoundkin.model.geometry import vector
+from compoundkin.model.geometry import FRAME, vector
 from compoundkin.model.mechanism import Mechanism
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ForceBalance(PrintsShort):
+class ForceBalance(ShortRepr):
     """A mechanism with counterweights, and what they change.
 
     `is_full` tells whether its shaking force is zero at every pose. Where that cannot be, `unreached` are the links
@@ -49,9 +48,9 @@ class ForceBalance(PrintsShort):
     @property
     def _headline(self) -> str:
         if self.is_full:
-            return f"Full force balance by {counted(len(self.counterweights), 'counterweight')}."
+            return f"Full force balance by {count_phrase(len(self.counterweights), 'counterweight')}."
         if not self.unreached:
-            return f"Partial force balance by {counted(len(self.counterweights), 'counterweight')}."
+            return f"Partial force balance by {count_phrase(len(self.counterweights), 'counterweight')}."
         links = ", ".join(self.unreached)
         why = f"no way of pins alone leads from {links} to the frame"
         best = "The best there is:" if self.counterweights else "No link that turns is pinned to the frame."
@@ -69,7 +68,7 @@ class ForceBalance(PrintsShort):
 
     def __repr__(self) -> str:
         kind = "full" if self.is_full else "partial"
-        return f"ForceBalance({kind}, {counted(len(self.counterweights), 'counterweight')}: {self.mechanism!r})"
+        return f"ForceBalance({kind}, {count_phrase(len(self.counterweights), 'counterweight')}: {self.mechanism!r})"
 
 
 @checked
@@ -157,7 +156,7 @@ def _links(ways: PinWays, links: str | Sequence[str]) -> tuple[str, ...]:
     known = [name for name in ways.reached if name != FRAME]
     for name in names:
         if name not in ways.motion.links or name == FRAME:
-            raise UnknownName(Problem("links", f"there is no moving link {name!r}", nearest(str(name), known)))
+            raise UnknownName(Problem("links", f"there is no moving link {name!r}", suggestion(str(name), known)))
         if name not in known:
             remedy = f"known: {', '.join(known)}"
             raise InvalidInput(Problem("links", f"no way of pins leads from {name} to the frame", remedy))
@@ -172,7 +171,7 @@ def _place(motion: Motion, about: Any) -> complex:
         about = next((letter for letter in first.letters if letter in fixed), 0j)
     if isinstance(about, str):
         if about not in fixed:
-            raise UnknownName(Problem("about", f"the frame has no point {about!r}", nearest(about, list(fixed))))
+            raise UnknownName(Problem("about", f"the frame has no point {about!r}", suggestion(about, list(fixed))))
         about = fixed[about]
     found = np.ravel(vector("about", about))
     if len(found) != 1:

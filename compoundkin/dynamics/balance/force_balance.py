@@ -10,11 +10,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, first_entry
 from compoundkin.dynamics.balance.pin_ways import PinWays, dependent_rows
 from compoundkin.dynamics.work.mass_motion import place_of
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # What is left of the mass centre's way is nothing below this part of what the masses do.
 BALANCED = 1e-9

@@ -6,14 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.balance.pin_ways import PinWays
 from compoundkin.dynamics.drives.course_quadrature import nodes, smooth_pieces
 from compoundkin.dynamics.work.mass_motion import mass_motions, place_of
 from compoundkin.kinematics.extremes import between
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 class ShakingSamples:

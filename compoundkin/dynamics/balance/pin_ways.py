@@ -15,10 +15,10 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.cycles import find
 
@@ -39,7 +39,7 @@ class Reached:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PinWays(PrintsShort):
+class PinWays(ShortRepr):
     """The ways through pins of one design of a motion.
 
     Rows are over `turning`, classes of links that turn alike: a row times their unit vectors is a place, but for

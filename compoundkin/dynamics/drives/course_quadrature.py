@@ -8,8 +8,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes import Places
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.motion import Motion
@@ -25,7 +25,7 @@ HALVINGS = 12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Pieces(PrintsShort):
+class Pieces(ShortRepr):
     """Smooth pieces of a motion, in order along each design.
 
     They go from `low` to `high` in places; arrays (n,).

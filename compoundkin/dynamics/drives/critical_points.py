@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import NotAssembled
-from compoundkin.base.series import Number
 from compoundkin.dynamics.drives.equilibrium_kind import EquilibriumPosition, kind_of
 from compoundkin.dynamics.work.held_efforts import HeldEfforts
 from compoundkin.kinematics.motion import Motion
@@ -23,7 +23,7 @@ LEFT = 1e3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CriticalPoints(PrintsShort):
+class CriticalPoints(ShortRepr):
     """Critical points in a range, or that it is indifferent throughout."""
 
     positions: tuple[EquilibriumPosition, ...]

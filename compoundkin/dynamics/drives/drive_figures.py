@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.dynamics.drives.driver_course import course_of
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics.extremes import Extremes, extremes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DriveFigures(PrintsShort):
+class DriveFigures(ShortRepr):
     """A driver's effort and power over a motion; arrays of shape (designs,).
 
     Means and effective values (`rms`) are over the time, of a motion that is not in time over the driver's way.

@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.drives.course_quadrature import Integrand, Pieces, integrals, smooth_pieces
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
@@ -21,7 +21,7 @@ from compoundkin.model.units import Units
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DriverCourse(PrintsShort):
+class DriverCourse(ShortRepr):
     """A driver's effort along a motion, with its way."""
 
     forces: Forces
@@ -174,5 +174,5 @@ def driver_named(motion: Motion, driver: str | None) -> str:
     if driver is None and len(names) != 1:
         raise InvalidInput(Problem("driver", f"there are {len(names)}: {', '.join(names)}", "name one"))
     if driver is not None and driver not in names:
-        raise UnknownName(Problem("driver", f"there is no driver {driver!r}", nearest(driver, names)))
+        raise UnknownName(Problem("driver", f"there is no driver {driver!r}", suggestion(driver, names)))
     return names[0] if driver is None else driver

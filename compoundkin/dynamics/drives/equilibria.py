@@ -10,10 +10,9 @@ from typing import Any, overload
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import degrees
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number, degrees
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
-from compoundkin.base.series import Number
 from compoundkin.dynamics.drives.critical_points import critical_points
 from compoundkin.dynamics.drives.equilibrium_kind import EquilibriumPosition, kind_of
 from compoundkin.dynamics.work.held_efforts import HeldEfforts
@@ -33,7 +32,7 @@ FEW, MANY = 9, 300
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EquilibriumPositions(Sequence[EquilibriumPosition], PrintsShort):
+class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
     """The equilibrium positions of a mechanism in a range, in order.
 
     `free` are the drivers that were let go. Where it is `indifferent` it stays at every place of the range, as a lamp

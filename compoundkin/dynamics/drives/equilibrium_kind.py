@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 
 STABLE, UNSTABLE, SADDLE, INDIFFERENT = "stable", "unstable", "saddle", "indifferent"
 # To one side it returns, to the other it goes on.
@@ -19,7 +19,7 @@ NONE = 1e-8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EquilibriumPosition(PrintsShort):
+class EquilibriumPosition(ShortRepr):
     """An equilibrium position: the drivers' values and its kind.
 
     It is "stable", "unstable", of several drivers a "saddle", "indifferent" where it stays beside as well, or

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.drives.course_quadrature import integrals, smooth_pieces
 from compoundkin.dynamics.drives.driver_course import DriverCourse, course_of
 from compoundkin.dynamics.drives.speed_fluctuation import SpeedFluctuation
@@ -23,7 +23,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Flywheel(PrintsShort):
+class Flywheel(ShortRepr):
     """A flywheel on a driver; arrays of shape (designs,).
 
     `mean` is the mean effort, `speed` the mean speed, `fluctuation` the greatest fluctuation of energy, `inertia` the

@@ -9,13 +9,18 @@ import numpy as np
 
 from compoundkin.analysis.mechanical_advantage import ForcePort, Port, TorquePort, mechanical_advantage
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.drives.driver_course import driver_named
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import FRAME, Expectation, Gravity, Item, Load, Mass, Pretension
+from compoundkin.model.elements import Expectation, Item
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads import effort, force, torque
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.gravity import Gravity
+from compoundkin.model.loads.mass import Mass
+from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import Units
 

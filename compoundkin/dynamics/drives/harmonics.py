@@ -7,17 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import TURN
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.drives.driver_course import driver_named
 from compoundkin.dynamics.forces import Forces, moved
 from compoundkin.kinematics.extremes import between, closed_cycles
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import SHAKING_FORCE
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 SHAKING = f"{FRAME}.{SHAKING_FORCE}"
 # A driver whose way differs from a full turn by so many radians makes one: sums of steps round.
@@ -27,7 +26,7 @@ SETTLED, FEWEST, MOST = 1e-12, 64, 4096
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Harmonics(PrintsShort):
+class Harmonics(ShortRepr):
     """The harmonics of a quantity; arrays (designs, orders + 1).
 
     The mean is first. A number is the sum of amplitude x cos(order x angle + phase). A vector is the sum of `forward` x

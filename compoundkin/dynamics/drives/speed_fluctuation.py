@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.dynamics.drives.course_quadrature import Pieces, integrals
 from compoundkin.dynamics.drives.driver_course import DriverCourse
 from compoundkin.dynamics.work.equivalent_inertia import equivalent_inertia

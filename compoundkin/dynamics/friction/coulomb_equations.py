@@ -88,16 +88,16 @@ def _iterated(influence: PressInfluence, signs: Number) -> tuple[Number, Number]
 
 def _steps(influence: PressInfluence, signs: Number, sums: Number) -> tuple[Number, Number]:
     """Return the image of some sums, and what Newton makes of them."""
-    presses = influence.presses(-signs * sums)
+    presses = influence.normal_forces(-signs * sums)
     sizes = np.abs(presses)
     image = influence.sums(sizes)
     matrix = _matrix(influence, signs, _directions(presses, sizes, 0.0))
     return image, sums - solve(matrix, (sums - image).T).T
 
 
-def _directions(presses: Number, sizes: Number, otherwise: Number) -> Number:
+def _directions(normal_forces: Number, sizes: Number, otherwise: Number) -> Number:
     """Return the directions of presses, something else where there are none."""
-    return np.where(sizes > 0.0, presses / np.where(sizes > 0.0, sizes, 1.0), otherwise)
+    return np.where(sizes > 0.0, normal_forces / np.where(sizes > 0.0, sizes, 1.0), otherwise)
 
 
 def _matrix(influence: PressInfluence, signs: Number, toward: Number) -> Number:
@@ -108,7 +108,7 @@ def _matrix(influence: PressInfluence, signs: Number, toward: Number) -> Number:
 
 def _gap(influence: PressInfluence, signs: Number, sums: Number) -> Number:
     """Return how far sums are from their image."""
-    found: Number = np.abs(sums - influence.sums(np.abs(influence.presses(-signs * sums)))).max(axis=0)
+    found: Number = np.abs(sums - influence.sums(np.abs(influence.normal_forces(-signs * sums)))).max(axis=0)
     return found
 
 
@@ -129,7 +129,7 @@ def _from_directions(influence: PressInfluence, signs: Number, toward: Number) -
     for _ in range(STEPS):
         right = influence.sums((np.conjugate(toward) * influence.own).real)
         sums = solve(_matrix(influence, signs, toward), right.T).T
-        presses = influence.presses(-signs * sums)
+        presses = influence.normal_forces(-signs * sums)
         before, toward = toward, _directions(presses, np.abs(presses), toward)
         if not np.any(np.abs(toward - before) > EXACT):
             break
@@ -144,7 +144,7 @@ def _starts(influence: PressInfluence, signs: Number) -> Iterator[Number]:
     themselves, which solutions of large forces have. Forces of pins may point anywhere: some are turned at random.
     """
     own = _directions(influence.own, np.abs(influence.own), 1.0)
-    alone = influence.presses(-signs * influence.feeding(signs).T) - influence.own
+    alone = influence.normal_forces(-signs * influence.feeding(signs).T) - influence.own
     fed = _directions(alone, np.abs(alone), 1.0)
     yield from (own * pattern[:, None] for pattern in _patterns(len(own)))
     yield from (fed, -fed)
@@ -154,9 +154,9 @@ def _starts(influence: PressInfluence, signs: Number) -> Iterator[Number]:
         yield from (around * turn[:, None] for turn in turns for around in (own, fed))
 
 
-def _patterns(presses: int) -> Number:
+def _patterns(normal_forces: int) -> Number:
     """Return patterns of signs, (patterns, presses)."""
-    if presses <= ALL_DIRECTIONS:
-        return np.array(list(product((1.0, -1.0), repeat=presses)))
-    drawn = np.random.default_rng(1).choice([1.0, -1.0], (PATTERNS - 1, presses))
-    return np.concatenate([np.ones((1, presses)), drawn])
+    if normal_forces <= ALL_DIRECTIONS:
+        return np.array(list(product((1.0, -1.0), repeat=normal_forces)))
+    drawn = np.random.default_rng(1).choice([1.0, -1.0], (PATTERNS - 1, normal_forces))
+    return np.concatenate([np.ones((1, normal_forces)), drawn])

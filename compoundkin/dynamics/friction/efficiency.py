@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.dynamics.friction.pose_stretches import PoseStretch, stretches_where
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ NOTHING = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Efficiency(PrintsShort):
+class Efficiency(ShortRepr):
     """How much of the power put in comes out. The rest is lost, by friction.
 
     What gives power at a pose puts it in, be it a driver, a load, weight or inertia; what takes it, takes it out.

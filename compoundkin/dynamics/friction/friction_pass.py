@@ -19,7 +19,7 @@ from compoundkin.dynamics.friction.rubs import Rub, flat, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reactions.reverse_pass import Reactions, found_reactions, reverse_pass
-from compoundkin.model.pairs.optional_answers import as_accompanied
+from compoundkin.model.pairs.contract import as_transmitting_pair
 
 # So often at most is what parts gears found again: each time its change is a friction's part of the one before.
 ROUNDS = 60
@@ -52,7 +52,7 @@ class RubbedBlock:
         nothing changes.
         """
         found = frictions(self.influence, signs)
-        gears = any(as_accompanied(self.at.motion.solving_order.pairs[name]) for name in self.dry.pairs)
+        gears = any(as_transmitting_pair(self.at.motion.solving_order.pairs[name]) for name in self.dry.pairs)
         for _ in range(ROUNDS if gears else 0):
             before, found = found, frictions(self._parted(found.sizes), signs)
             change = np.abs(found.sizes - before.sizes)
@@ -64,8 +64,8 @@ class RubbedBlock:
         """Return the influence of frictions, what comes with these sizes being given."""
         known = np.nan_to_num(sizes)
         pairs = _of_pairs(self.at, self.with_friction(known))
-        presses = [flat(press, self.at) for rub in self.rubs for press in rub.presses(self.at, pairs[rub.name])]
-        by_frictions = self.influence.presses(known) - self.influence.own
+        presses = [flat(press, self.at) for rub in self.rubs for press in rub.normal_forces(self.at, pairs[rub.name])]
+        by_frictions = self.influence.normal_forces(known) - self.influence.own
         return replace(self.influence, own=np.array(presses, dtype=complex) - by_frictions)
 
     def effort(self, driver: str, sizes: Number) -> Number:
@@ -109,9 +109,9 @@ def _influence(at: LoadedBlock, rubs: tuple[Rub, ...], dry: Reactions, alone: tu
     unrubbed, *each = (_of_pairs(at, reactions) for reactions in (dry, *alone))
     for rub in rubs:
         starts.append(len(own))
-        own += [flat(press, at) for press in rub.presses(at, unrubbed[rub.name])]
+        own += [flat(press, at) for press in rub.normal_forces(at, unrubbed[rub.name])]
         for column, wrenches in zip(by, each, strict=True):
-            column += [flat(press, at) for press in rub.presses(at, wrenches[rub.name])]
+            column += [flat(press, at) for press in rub.normal_forces(at, wrenches[rub.name])]
     return PressInfluence(np.array(own, dtype=complex), np.array(by, dtype=complex), np.array(starts))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.attributes import after_number
+from compoundkin.model.attributes import unit_suffix
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,6 @@ def stretches_where(motion: Motion, labels: Number) -> Iterator[tuple[int, PoseS
 
 def _told(motion: Motion, driver: str, ends: tuple[float, float], poses: int) -> str:
     is_angle = motion.structure.driven_angles[driver]
-    unit = after_number(is_angle, motion.mechanism.unit)
+    unit = unit_suffix(is_angle, motion.mechanism.unit)
     low, high = (f"{np.rad2deg(end) if is_angle else end:.6g}" for end in ends)
     return f"{driver} at {low}{unit}" if poses == 1 else f"{driver} from {low} to {high}{unit}"

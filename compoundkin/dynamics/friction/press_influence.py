@@ -33,7 +33,7 @@ class PressInfluence:
         """Return those of some poses."""
         return PressInfluence(self.own[:, which], self.by[..., which], self.starts)
 
-    def presses(self, sizes: Number) -> Number:
+    def normal_forces(self, sizes: Number) -> Number:
         """Return the forces (presses, poses) under frictions of these sizes (frictions, poses)."""
         total = self.own
         for one, size in zip(self.by, sizes, strict=True):

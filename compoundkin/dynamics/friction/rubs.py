@@ -13,10 +13,11 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import FRAME, Friction
+from compoundkin.model.definition import matching_pairs, pair_by_name
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.pairs.contact import FrictionPair, as_friction_pair
 from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.dry_contacts import Rubbing, as_rubbing
-from compoundkin.model.pin_pairs import meant_pair, pairs_like
 
 # What rubs slower than this part of the fastest link rests in its pair: rounding of a rate that is zero.
 AT_REST = 1e-12
@@ -28,7 +29,7 @@ STEP, STEP_AT_REST = 1e-6, 1e-10
 class Rub:
     """A pair with its friction as written. At a multiple pin each of its pairs is one."""
 
-    pair: Rubbing
+    pair: FrictionPair
     friction: Friction
 
     @property
@@ -48,10 +49,10 @@ class Rub:
         radius = 0.0 if self.friction.radius is None else at.fitted(self.friction.radius)
         return self.pair.rubbed(*self.sides(at), radius).times(at.fitted(self.friction.coefficient))
 
-    def presses(self, at: LoadedBlock, wrench: Wrench) -> tuple[Number, ...]:
+    def normal_forces(self, at: LoadedBlock, wrench: Wrench) -> tuple[Number, ...]:
         """Return the forces that press its links together, of the wrench of the pair."""
         length = None if self.friction.length is None else at.fitted(self.friction.length)
-        return self.pair.presses(*self.sides(at), wrench, length)
+        return self.pair.normal_forces(*self.sides(at), wrench, length)
 
     def on_links(self, wrench: Wrench) -> dict[str, Wrench]:
         """Return what a wrench on the second member does to both links."""
@@ -76,7 +77,7 @@ def rubs_of(motion: Motion) -> tuple[Rub, ...]:
             if name in found:
                 what = f"{name} has a friction already, by the name {found[name].friction.pair!r}"
                 raise InvalidInput(Problem(f"frictions.{friction.pair}", what, "leave one of them out"))
-            if pair := as_rubbing(pairs[name]):
+            if pair := as_friction_pair(pairs[name]):
                 found[name] = Rub(pair, friction)
     return tuple(found.values())
 
@@ -90,8 +91,8 @@ def _named(motion: Motion, name: str) -> Iterator[str]:
     if name in pairs:
         yield name
         return
-    meant = meant_pair(mechanism, name)
-    own = pairs_like(pairs, meant[0]) if meant else (pair for pair in pairs.values() if pair.letters == (name,))
+    meant = pair_by_name(mechanism, name)
+    own = matching_pairs(pairs, meant[0]) if meant else (pair for pair in pairs.values() if pair.letters == (name,))
     found = [pair.name for pair in own]
     if not found:
         letter = name if meant is None else meant[0].letters[0]

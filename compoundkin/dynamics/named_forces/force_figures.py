@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.named_forces.force_parts import parts_of
 from compoundkin.kinematics.derived.contract import Figure, Lack
@@ -21,7 +21,7 @@ from compoundkin.model.attributes import (
     Dimension,
     Kind,
 )
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 Values = Callable[[Any, str], Number]
 

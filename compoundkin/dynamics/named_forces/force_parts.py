@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number, dot
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
@@ -26,9 +26,7 @@ from compoundkin.model.attributes import (
     TOOTH_FORCE,
 )
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.force_answers import as_strapped
-from compoundkin.model.pairs.optional_answers import as_accompanied
+from compoundkin.model.pairs.contract import Ends, as_belt_drive, as_transmitting_pair
 
 # A force below this part of itself and what it is a part of is rounding.
 ROUNDING = 1e-12
@@ -45,7 +43,7 @@ class GuideContacts(NamedTuple):
     second: Number
 
 
-class ForceParts(PrintsShort):
+class ForceParts(ShortRepr):
     """The parts of a pair's force that its kind has, on its second link."""
 
     forces: FoundForces
@@ -152,9 +150,9 @@ def parts_of(pair: Pair) -> tuple[str, ...]:
         words.append(NEEDED_FRICTION)
     elif NORMAL in words and pair.is_simple:
         words.append(ECCENTRICITY)
-    if TANGENTIAL in words and as_accompanied(pair):
+    if TANGENTIAL in words and as_transmitting_pair(pair):
         words += [SEPARATING, TOOTH_FORCE, FLANK]
-    return (*words, FIRST_PULL, SECOND_PULL) if as_strapped(pair) else tuple(words)
+    return (*words, FIRST_PULL, SECOND_PULL) if as_belt_drive(pair) else tuple(words)
 
 
 def _component(word: str, of: ForceParts) -> Number:
@@ -173,7 +171,7 @@ def _needed(of: ForceParts) -> Number:
 
 
 def _separating(of: ForceParts) -> Number:
-    pair = as_accompanied(of.pair)
+    pair = as_transmitting_pair(of.pair)
     assert pair is not None
     apart = pair.accompanying(of.ends, of.poses, 1.0).force
     return dot(apart / np.abs(apart), of.own.force)
@@ -186,7 +184,7 @@ def _flank(of: ForceParts) -> Number:
 
 def _pull(side: float, of: ForceParts) -> Number:
     """Return the pull of a strand, from the sum of both, which the force tells, and their difference."""
-    pair = as_strapped(of.pair)
+    pair = as_belt_drive(of.pair)
     assert pair is not None
     one, two = pair.strands(of.ends, of.poses)
     both = one.force + two.force

@@ -13,7 +13,7 @@ from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.named_forces.link_forces import link_forces
 from compoundkin.dynamics.named_forces.link_wrench import DRIVER, PAIR, LinkWrench, as_vectors, moment_about
 from compoundkin.kinematics.results import told
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.arrays import Number, dot
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
@@ -25,13 +25,13 @@ from compoundkin.model.attributes import NORMAL
 from compoundkin.model.loads.spring import PairSpring, Spring, as_spring
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contact import as_contact
-from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 Loads = Callable[[LoadedBlock], Mapping[str, Wrench]]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LiftOffSpeed(PrintsShort):
+class LiftOffSpeed(ShortRepr):
     """The speed of the driver at which a contact first lets go, and where.
 
     It is that of each design, infinite where no speed does it, zero where it is not pressed at rest.
@@ -42,7 +42,7 @@ class LiftOffSpeed(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LiftOff(PrintsShort):
+class LiftOff(ShortRepr):
     """Where a contact lets go, between the poses too.
 
     There the force along its normal passes through zero. A pin in a slot, or a roller in a groove, changes its flank
@@ -133,7 +133,7 @@ class LiftOff(PrintsShort):
 
     def _along(self, loaded: LoadedBlock) -> dict[str, Wrench]:
         """Return a unit force on the follower along its guide, toward the profile."""
-        pair = as_profiled(self._pair)
+        pair = as_profile_contact(self._pair)
         motion: HasQuantities = loaded.motion
         if pair is None:
             raise InvalidInput(Problem(self.name, "it has no follower", "name a spring: preload('spring')"))
@@ -180,7 +180,7 @@ def _spring(motion: Motion, name: str) -> Spring | PairSpring:
     """Return a spring by its name, as one that acts both ways. Raises UnknownName for what has no preload."""
     known = {key: spring for key, load in motion.mechanism.loads.items() if (spring := as_spring(load))}
     if name not in known:
-        raise UnknownName(Problem(name, "there is no such spring", nearest(name, list(known))))
+        raise UnknownName(Problem(name, "there is no such spring", suggestion(name, list(known))))
     return replace(known[name], only=None)
 
 

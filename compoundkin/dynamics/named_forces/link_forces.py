@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from compoundkin.base.arrays import Number, Vectors
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.loaded_block import loaded_blocks
@@ -24,7 +24,8 @@ from compoundkin.dynamics.named_forces.link_wrench import (
 )
 from compoundkin.dynamics.named_forces.pair_forces import PairForce
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
-from compoundkin.model.elements import Load, Mass
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.mass import Mass
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,7 +50,7 @@ class LinkForces(Sequence[LinkWrench]):
         names = [one.name for one in self.entries]
         if which not in names:
             what = f"nothing of this name acts on {self.link!r}"
-            raise UnknownName(Problem(which, what, nearest(which, names)))
+            raise UnknownName(Problem(which, what, suggestion(which, names)))
         return self.entries[names.index(which)]
 
     def __len__(self) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import Number, Vectors, cross
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.reactions.self_stresses import Open
 from compoundkin.kinematics.extremes import given_over
@@ -22,7 +22,7 @@ NOTHING = complex(np.nan, np.nan)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LinkWrench(PrintsShort):
+class LinkWrench(ShortRepr):
     """A wrench on a link, in the mechanism's units.
 
     Arrays have the motion's shape, NaN where not assembled. `kind` is "pair", "driver", "weight", "inertia",

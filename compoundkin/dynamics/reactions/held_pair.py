@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.named_forces.link_wrench import DRIVER, LinkWrench
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
@@ -17,14 +17,14 @@ from compoundkin.dynamics.work.virtual_work import virtual_efforts
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone
-from compoundkin.model.pin_pairs import meant_pair
+from compoundkin.model.definition import pair_by_name
 
 # A pair that moves by less than this part of its fastest, as the driver moves at unit rate, rests but for rounding.
 RESTS = 1e-10
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class HoldingEffort(PrintsShort):
+class HoldingEffort(ShortRepr):
     """The effort of a pair that holds in the place of a driver.
 
     That is `instead_of`, whose own effort is zero. It is infinite where the pair rests while the driver moves: nothing
@@ -69,7 +69,7 @@ def holding_effort(motion: Motion, inertia: bool, name: str) -> HoldingEffort:
     """
     _hold(motion, name)
     driver = moving_driver(motion) if len(motion.inputs.drives) > 1 else next(iter(motion.inputs.drives))
-    meant = meant_pair(motion.mechanism, name)
+    meant = pair_by_name(motion.mechanism, name)
     assert meant is not None
     rate = np.zeros(motion.failed.shape)
     with np.errstate(all="ignore"):
@@ -89,7 +89,7 @@ def held_wrenches(motion: Motion, held: HoldingEffort) -> Iterator[LinkWrench]:
             part = unit.times(held.whole[at.designs, at.poses])
             for key, wrench in (((one, other), part), ((other, one), -part)):
                 store.take(key, wrench, at.designs, at.poses)
-    meant = meant_pair(motion.mechanism, held.name)
+    meant = pair_by_name(motion.mechanism, held.name)
     letter = "" if meant is None else meant[0].letters[0]
     place = np.asarray(motion.points[letter].position).reshape(motion.failed.shape)
     for (link, by), wrench in store.wrenches().items():
@@ -98,10 +98,10 @@ def held_wrenches(motion: Motion, held: HoldingEffort) -> Iterator[LinkWrench]:
 
 def _hold(motion: Motion, name: str) -> None:
     """Raise UnknownName or InvalidInput for a pair that cannot hold."""
-    mechanism, meant = motion.mechanism, meant_pair(motion.mechanism, name)
+    mechanism, meant = motion.mechanism, pair_by_name(motion.mechanism, name)
     if meant is None:
         known = [*motion.drives, *motion.pairs]
-        raise UnknownName(Problem(name, "there is no pair, pin or driver of this name", nearest(name, known)))
+        raise UnknownName(Problem(name, "there is no pair, pin or driver of this name", suggestion(name, known)))
     if "effort" not in meant[0].takes:
         what = f"nothing acts along a {meant[0].title}"
         raise InvalidInput(Problem(name, what, "hold by a pin, a slide or a driver"))

@@ -16,9 +16,9 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import LoadedBlock, freed
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_accompanied
+from compoundkin.model.pairs.contract import as_transmitting_pair
 from compoundkin.structure.parts import Body
 
 
@@ -53,7 +53,7 @@ def accompanying(at: LoadedBlock, found: Reactions) -> dict[str, Wrench]:
     beside: dict[str, Wrench] = {}
     pretensions = at.motion.mechanism.pretensions
     for name, wrench in found.pairs.items():
-        if pair := as_accompanied(at.motion.solving_order.pairs[name]):
+        if pair := as_transmitting_pair(at.motion.solving_order.pairs[name]):
             ends, poses = at.block.ends[name], tuple(at.block.world[link].trimmed(0) for link in pair.members)
             written = pretensions.get(name)
             tension = None if written is None else at.fitted(written.force, f"pretensions.{name}")

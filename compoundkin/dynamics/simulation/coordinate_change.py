@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, FewDigits, InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState
 from compoundkin.dynamics.simulation.rubbed_chart import RubbedChart
@@ -22,11 +22,10 @@ from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Drive, Expectation, Item, Mode
-from compoundkin.model.kept_outputs import kept_outputs
 from compoundkin.model.laws import Law
-from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.mechanism import Mechanism, available_outputs
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import Drivable, as_accompanied, as_drivable
+from compoundkin.model.pairs.contract import Drivable, as_drivable, as_transmitting_pair
 
 # So many pairs are tried in a driver's place.
 TRIED = 4
@@ -108,7 +107,7 @@ def _here(state: DriverState, values: dict[str, float]) -> Configuration:
 def _written(mechanism: Mechanism, items: list[Item]) -> Mechanism:
     """Return a mechanism driven elsewhere, without what was said of the old driver."""
     kept = [item for item in items if not isinstance(item, Mode | Expectation)]
-    outputs = kept_outputs(mechanism, [item.name for item in kept if isinstance(item, Drive)])
+    outputs = available_outputs(mechanism, [item.name for item in kept if isinstance(item, Drive)])
     return Mechanism(mechanism.title, *kept, units=mechanism.units, outputs=outputs, source=mechanism.source)
 
 
@@ -127,7 +126,7 @@ def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> D
     frictions, only = start.mechanism.frictions, len(free) + len(laws) == 1
     if not frictions:
         return TabulatedChart(start, free, laws) if only else DriverChart(start, free, laws)
-    geared = any(as_accompanied(pair) for pair in start.solving_order.pairs.values())
+    geared = any(as_transmitting_pair(pair) for pair in start.solving_order.pairs.values())
     if geared or not only:
         what = f"friction ({', '.join(frictions)}) is followed in mechanisms of one driver and without gears"
         raise InvalidInput(Problem("frictions", what, "leave it out, or write dampers"))

@@ -16,9 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import CompoundkinError
-from compoundkin.base.series import Number
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.simulation.table_bridge import with_bridges
 from compoundkin.dynamics.simulation.table_piece import NODES, POINTS, TO_COEFFICIENTS, TablePiece
@@ -27,7 +26,7 @@ from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Load
+from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 
 # Pieces of a table to begin with, and how often they are halved.

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry, whole_turns
+from compoundkin.base.arrays import Number, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
 from compoundkin.dynamics.work.moving_masses import moving_masses
@@ -22,7 +21,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.laws import Law
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_drivable
+from compoundkin.model.pairs.contract import as_drivable
 
 
 @dataclass(eq=False)

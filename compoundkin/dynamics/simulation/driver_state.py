@@ -8,13 +8,13 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.dynamics.simulation.loaded_state import LoadedState, loaded_state
 from compoundkin.dynamics.work.moving_masses import InertiaTerms, MovingMass, inertia_terms
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import Load
+from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 
 

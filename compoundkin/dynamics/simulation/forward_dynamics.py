@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
+from compoundkin.base.arguments import checked, real_numbers
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import FewDigits, InvalidInput, Problem, warn
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, integrate

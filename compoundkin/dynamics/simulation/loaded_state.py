@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Load
+from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 
 ONLY = slice(0, 1)

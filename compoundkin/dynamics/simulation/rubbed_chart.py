@@ -12,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.friction.coulomb_equations import ONE, frictions
 from compoundkin.dynamics.friction.friction_pass import rubbed_block
 from compoundkin.dynamics.friction.press_influence import PressInfluence

@@ -6,20 +6,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import dot, first_entry
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, dot, first_entry
+from compoundkin.base.display import ShortRepr
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.work.mass_motion import mass_motions
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Load
+from compoundkin.model.loads.contract import Load
 
 # So large a part of the total energy is lost in its sums.
 ROUNDING = 64.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SimulatedEnergy(PrintsShort):
+class SimulatedEnergy(ShortRepr):
     """Energies at the times of a simulation, in units of force times length.
 
     `work` is that of loads without a potential and of prescribed drivers since the start.

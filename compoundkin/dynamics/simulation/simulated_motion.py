@@ -8,17 +8,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.simulated_course import ChartStretch
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration
-from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.elements import Drive
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import motion_table
 
 # Accelerations are what forces take.

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import Shows, counted
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
@@ -17,7 +17,7 @@ from compoundkin.kinematics.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation(Shows):
+class Simulation(DisplaysHtml):
     """A mechanism that moved under its loads. `motion` is a motion in time, solved again at `times`.
 
     `events` are in the order of time. `steps` and `evaluations` count those of the integration.
@@ -42,5 +42,5 @@ class Simulation(Shows):
 
     def __repr__(self) -> str:
         title, last = self.motion.mechanism.title, float(np.ravel(self.times)[-1])
-        told = f", {counted(len(self.events), 'event')}" if self.events else ""
-        return f"Simulation({title!r} over {last:.6g} s in {counted(self.steps, 'step')}{told})"
+        told = f", {count_phrase(len(self.events), 'event')}" if self.events else ""
+        return f"Simulation({title!r} over {last:.6g} s in {count_phrase(self.steps, 'step')}{told})"

@@ -8,16 +8,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.state_motion import SimulatedState
 from compoundkin.kinematics.passed_ends import AT_END
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.guide_ends import as_ended
-from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profile_contact
+from compoundkin.model.pairs.travel_limits import as_travel_limited
 
 # Within a step what is watched is looked at in so many places, so that what comes and goes is found as well.
 LOOKS = 4
@@ -106,10 +106,10 @@ def _speed(state: SimulatedState) -> float:
 
 
 def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:
-    if any(as_ended(pair) is not None for pair in mechanism.written_pairs):
+    if any(as_travel_limited(pair) is not None for pair in mechanism.written_pairs):
         yield Watch(END, _to_end, "a guide ends", True, True)
     for pair in mechanism.written_pairs:
-        contact = as_profiled(pair)
+        contact = as_profile_contact(pair)
         # in a groove the roller goes over to the other flank
         if contact is not None and not contact.has_ends:
             text = f"the contact at {pair.name} lets go"

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.argument_forms import is_finite_real
-from compoundkin.base.errors import FewDigits, InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.base.arguments import is_finite_real
+from compoundkin.base.errors import FewDigits, InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.chosen_modes import shown_by
@@ -53,7 +53,9 @@ def simulation_start(
     for where, given in (("start", told), ("prescribed", prescribed)):
         for name in given:
             if name not in names:
-                raise UnknownName(Problem(f"{where}.{name}", f"there is no driver {name!r}", nearest(str(name), names)))
+                raise UnknownName(
+                    Problem(f"{where}.{name}", f"there is no driver {name!r}", suggestion(str(name), names))
+                )
     laws = _laws(mechanism, told, prescribed)
     free = {name: _pair(f"start.{name}", told[name]) if name in told else (None, 0.0)
             for name in names if name not in laws}  # fmt: skip

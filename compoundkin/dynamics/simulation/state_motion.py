@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.dynamics.simulation.driver_state import DriverState, by_drivers
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.dynamics.simulation.table_piece import NODES, POINTS, TO_COEFFICIENTS, TablePiece
 
 # A bridge rests on so many widths of the gap to both sides, and its polynomial is of this degree.

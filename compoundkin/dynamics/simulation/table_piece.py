@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 
 # Points of a piece.
 POINTS = 24

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.simulation.drive_table import DriveTable, drive_table
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
@@ -20,7 +19,7 @@ from compoundkin.dynamics.simulation.loaded_state import loaded_state
 from compoundkin.dynamics.simulation.table_piece import TablePiece
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
-from compoundkin.model.elements import Load
+from compoundkin.model.loads.contract import Load
 
 # A pair that moves so many times as fast as a driver (each by its scale) is better to go on with: squares of this enter
 # the equation of motion, and twice as many of its digits are lost.

@@ -17,7 +17,8 @@ from compoundkin.dynamics.named_forces.pair_forces import PairForce
 from compoundkin.dynamics.named_forces.pin_forces import PinForces
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
 from compoundkin.kinematics.extremes import given_over
-from compoundkin.model.elements import FRAME, Mass
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.mass import Mass
 
 
 def link_balances(forces: FoundForces) -> Iterator[tuple[str, Wrench]]:

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, joined
+from compoundkin.base.arrays import Number, complex_of
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_accompanied
+from compoundkin.model.pairs.contract import as_transmitting_pair
 from compoundkin.structure.parts import LINK_FREEDOMS
 
 
@@ -30,10 +30,10 @@ def strays(forces: FoundForces) -> Iterator[tuple[str, Number]]:
         rows = pair.jacobian(forces.motion.inputs.ends[name], poses)[..., : pair.held, :]
         if len(pair.members) > 2:
             yield name, _of_wheels(forces, pair, rows, held, poses)
-        elif as_accompanied(pair):
+        elif as_transmitting_pair(pair):
             # a force that parts comes with the held one: together they go through the pitch point
             x, y, w = pair.centre(forces.motion.inputs.ends[name], poses)
-            yield name, np.abs(held.about(joined(x / w, y / w))) / forces.motion.size
+            yield name, np.abs(held.about(complex_of(x / w, y / w))) / forces.motion.size
         else:
             yield name, _of_two(rows[..., LINK_FREEDOMS:], held, poses[1], forces.motion.size)
 

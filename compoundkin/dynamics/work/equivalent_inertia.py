@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.work.mass_motion import MassMotion, mass_motions, units_of_masses
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_together
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EquivalentInertia(PrintsShort):
+class EquivalentInertia(ShortRepr):
     """The inertia that drivers feel at every pose, and its derivatives by their coordinates.
 
     `matrix` is (..., drivers, drivers) and `slopes` (..., drivers, drivers, drivers), the last axis the coordinate that

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.work.virtual_work import virtual_efforts
 from compoundkin.kinematics.motion import Motion
@@ -21,7 +21,7 @@ STENCIL = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class HeldEfforts(PrintsShort):
+class HeldEfforts(ShortRepr):
     """The efforts that hold some drivers, which are let go. Others stay where they are."""
 
     free: tuple[str, ...]

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from compoundkin.base.arrays import cross, dot
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number, cross, dot
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Mass
+from compoundkin.model.loads.mass import Mass
 from compoundkin.model.units import Units
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MassMotion(PrintsShort):
+class MassMotion(ShortRepr):
     """A mass with the derivatives of its centre and of its link's angle. Arrays are (designs, poses)."""
 
     link: str

@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import cross
+from compoundkin.base.arrays import Number, cross
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.structure.kinematic_structure import Structure
 
 # What is said of arrays.

@@ -8,10 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.arrays import cross
+from compoundkin.base.arrays import Number, cross
 from compoundkin.base.copies import CopiesFields
-from compoundkin.base.display import Shows
-from compoundkin.base.series import Number
+from compoundkin.base.display import DisplaysHtml
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
@@ -19,11 +18,11 @@ from compoundkin.dynamics.named_forces.link_wrench import FRICTION
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table, table_of
-from compoundkin.model.elements import Mass
+from compoundkin.model.loads.mass import Mass
 
 
 @dataclass(frozen=True, repr=False)
-class Powers(Shows, CopiesFields):
+class Powers(DisplaysHtml, CopiesFields):
     """The power of all that acts in a motion, and its energies.
 
     Powers are in the unit of force times length per second, energies in that of moments; arrays have the motion's

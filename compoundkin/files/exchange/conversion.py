@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.files.exchange.content import content_of
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.known_formats import readable_formats, writable_formats
@@ -30,7 +30,7 @@ def read(source: str | os.PathLike[str], form: str = "") -> Imported:
     content = content_of(source)
     known = readable_formats()
     if form and form not in known:
-        raise InvalidInput(Problem("form", f"no format {form!r} is read", nearest(form, list(known))))
+        raise InvalidInput(Problem("form", f"no format {form!r} is read", suggestion(form, list(known))))
     return recognised(content, known, form).read(content)
 
 
@@ -47,10 +47,10 @@ def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None
     """
     known = writable_formats()
     if form not in known:
-        raise InvalidInput(Problem("form", f"no format {form!r} is written", nearest(form, list(known))))
+        raise InvalidInput(Problem("form", f"no format {form!r} is written", suggestion(form, list(known))))
     target = known[form]
     unknown = [name for name in options if name not in target.options]
     if unknown:
-        remedy = nearest(unknown[0], list(target.options))
+        remedy = suggestion(unknown[0], list(target.options))
         raise InvalidInput(Problem(unknown[0], f"{form} is written without it", remedy))
     return target.write(shown_mechanism(mechanism, at), **options)

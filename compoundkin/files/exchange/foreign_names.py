@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import count
 
-from compoundkin.base.texts import printable
+from compoundkin.base.display import printable
 from compoundkin.model.geometry import FRAME
 
 # What names of other programs may hold and ours may not, and what stands for it.

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.problems import Problems
@@ -62,7 +62,7 @@ class JsonRecord:
         self.problems = problems
         self.given: Mapping[str, Any] = value if isinstance(value, Mapping) else {}
         if not isinstance(value, Mapping):
-            problems.add(where, f"{short(value)} is no JSON object")
+            problems.add(where, f"{short_repr(value)} is no JSON object")
 
     def wrong(self, what: str, remedy: str = "") -> None:
         """Note what is wrong with the record."""
@@ -76,7 +76,7 @@ class JsonRecord:
         if isinstance(value, int) and not isinstance(value, bool):
             return str(value)
         if not isinstance(value, str):
-            self.wrong(f"{key!r} is missing" if value is None else f"{key!r} is {short(value)}, which is no text")
+            self.wrong(f"{key!r} is missing" if value is None else f"{key!r} is {short_repr(value)}, which is no text")
             return otherwise or ""
         if len(value) > _LONGEST:
             self.wrong(f"{key!r} has {len(value):,} characters; a name has at most {_LONGEST:,}")
@@ -103,7 +103,7 @@ class JsonRecord:
         if value is None and otherwise is not None:
             return otherwise
         if not isinstance(value, list | tuple) or len(value) != 2:
-            self.wrong(f"{key!r} is missing" if value is None else f"{key!r} is {short(value)}, no two numbers")
+            self.wrong(f"{key!r} is missing" if value is None else f"{key!r} is {short_repr(value)}, no two numbers")
             return 0j
         return complex(self._number(key, value[0]), self._number(key, value[1]))
 
@@ -113,7 +113,7 @@ class JsonRecord:
         if value is None:
             return ()
         if not isinstance(value, list | tuple) or not all(isinstance(one, str | int) for one in value):
-            self.wrong(f"{key!r} is {short(value)}, no list of names")
+            self.wrong(f"{key!r} is {short_repr(value)}, no list of names")
             return ()
         return tuple(str(one)[:_LONGEST] for one in self._few(key, value))
 
@@ -129,16 +129,20 @@ class JsonRecord:
         elif isinstance(value, list | tuple):
             for k, one in enumerate(self._few(key, value)):
                 own = one.get("id", one.get("name", k)) if isinstance(one, Mapping) else k
-                yield JsonRecord(one, f"{called} {own[:80] if isinstance(own, str) else short(own)}", self.problems)
+                yield JsonRecord(
+                    one, f"{called} {own[:80] if isinstance(own, str) else short_repr(own)}", self.problems
+                )
         elif value is not None:
-            self.wrong(f"{key!r} is {short(value)}, no list of {called}s")
+            self.wrong(f"{key!r} is {short_repr(value)}, no list of {called}s")
 
     def _number(self, key: str, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            self.wrong(f"{key!r} is missing" if value is None else f"{key!r} is {short(value)}, which is no number")
+            self.wrong(
+                f"{key!r} is missing" if value is None else f"{key!r} is {short_repr(value)}, which is no number"
+            )
             return 0.0
         if not abs(value) <= LARGEST:
-            self.wrong(f"{key!r} is {short(value)}, which is no length, angle or rate")
+            self.wrong(f"{key!r} is {short_repr(value)}, which is no length, angle or rate")
             return 0.0
         return float(value)
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # The steps of a curve are halved so often at most: what turns back in one has no error by chords.
 HALVINGS = 12

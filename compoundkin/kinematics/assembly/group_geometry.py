@@ -13,7 +13,7 @@ from compoundkin.base.poses import End
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.model.pairs.contract import as_turn_counting
 from compoundkin.structure.parts import Group
 
 # Two points of a body nearer than this part of the size are one pin: rounding of a few additions.

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.continuation import StepLengths, Taken, follow, runge_kutta
+from compoundkin.base.continuation import StepLengths, StepResult, runge_kutta, trace_paths
 from compoundkin.base.linear import solve
 from compoundkin.base.newton import newton
 from compoundkin.kinematics.assembly.group_geometry import GroupGraph
@@ -183,7 +183,7 @@ def follow_paths(moving: MovingSystem, start: Number) -> Number:
     """Follow paths from `start` (paths, d) at t = 0 to t = 1. Those that do not arrive there are NaN."""
     x, t = np.array(start, dtype=complex), np.zeros(len(start))
 
-    def step(i: Number, longest: Number) -> Taken:
+    def step(i: Number, longest: Number) -> StepResult:
         h = np.minimum(longest, 1 - t[i])
         ahead = np.where(h == 1 - t[i], 1.0, t[i] + h)
         slope = partial(_slope, moving, i)
@@ -193,10 +193,10 @@ def follow_paths(moving: MovingSystem, start: Number) -> Number:
         )
         good = (found.longest < NEAR) & (found.last < ACCURATE)
         x[i[good]], t[i[good]] = found.x[good], ahead[good]
-        return Taken(h, good, t[i] >= 1)
+        return StepResult(h, good, t[i] >= 1)
 
     with np.errstate(all="ignore"):
-        arrived = follow(step, np.ones(len(start), dtype=bool), LENGTHS)
+        arrived = trace_paths(step, np.ones(len(start), dtype=bool), LENGTHS)
     return np.where(arrived[:, None], x, np.nan)
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, as_series
+from compoundkin.base.series import as_series
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 
 # Slower than this part of the fastest, a velocity has no direction but that of rounding.
 RESTS = 1e-9
@@ -21,7 +22,7 @@ def pressure_angle(motion: HasQuantities, name: str) -> Number:
     counterclockwise. Raises InvalidInput where a follower without a guide of its own takes velocities that were not
     solved for.
     """
-    pair = as_profiled(motion.solving_order.pairs[name])
+    pair = as_profile_contact(motion.solving_order.pairs[name])
     assert pair is not None
     touch = pair.touch(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
     along = direction_of(motion, pair, touch.place.c[0])[2]
@@ -32,12 +33,12 @@ def pressure_angle(motion: HasQuantities, name: str) -> Number:
 def no_pressure_angle(motion: HasQuantities, name: str) -> Lack | None:
     """Return why a pair has no pressure angle."""
     pair = motion.solving_order.pairs[name]
-    if as_profiled(pair):
+    if as_profile_contact(pair):
         return None
     return Lack(f"a {pair.title} has no profile", "links of dyads have transmission angles, 90 degrees less theirs")
 
 
-def direction_of(motion: HasQuantities, pair: Profiled, contact: Number) -> tuple[str, bool | None, Number]:
+def direction_of(motion: HasQuantities, pair: ProfileContact, contact: Number) -> tuple[str, bool | None, Number]:
     """Return the follower, whether it oscillates, and where its contact point can move.
 
     Where it has no single guide, the direction of its velocity.
@@ -59,7 +60,7 @@ def direction_of(motion: HasQuantities, pair: Profiled, contact: Number) -> tupl
     return name, None, np.where(speed > RESTS * fastest, velocity, np.nan)
 
 
-def _led(motion: HasQuantities, pair: Profiled) -> str:
+def _led(motion: HasQuantities, pair: ProfileContact) -> str:
     """Return the link that the contact moves. That of the profile where it is in the group which the contact closes."""
     for group in motion.solving_order.structure.groups:
         if pair in group.outer or pair in group.inner:

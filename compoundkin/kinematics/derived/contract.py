@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.inputs import Inputs, PoseGrid
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism

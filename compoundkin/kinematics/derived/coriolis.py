@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.derived.cam_follower import velocity_at
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
-from compoundkin.model.pairs.optional_answers import guided_point
+from compoundkin.model.pairs.contract import guided_point
 
 
 def coriolis(motion: HasQuantities, name: str) -> Number:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
-from compoundkin.base.display import way
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import display_function
 from compoundkin.kinematics.derived.contract import Figure, HasQuantities, Lack
 from compoundkin.model.attributes import FORCES, Kind
 
@@ -21,7 +21,7 @@ def _figure(kind: Kind, word: str) -> Figure:
     """Return a figure that is asked of forces. They are known when it is asked for."""
 
     def own() -> Figure:
-        found: Figure = way("force_figure")(kind, word)
+        found: Figure = display_function("force_figure")(kind, word)
         return found
 
     def values(motion: HasQuantities, name: str) -> Number:
@@ -51,7 +51,7 @@ class AsksForces:
     @cached_property
     def forces(self) -> Any:
         """Its forces, of `force_analysis` with what is in `loading`."""
-        return way("forces")(self, **self.loading)
+        return display_function("forces")(self, **self.loading)
 
 
 def forces_of(motion: HasQuantities) -> Any:

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.model.attributes import TRANSMISSION_INDEX
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 
 def solver_of_link(motion: HasQuantities, link: str) -> GroupSolver | None:

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.attributes import Dimension, Kind, coordinate_dimension, ratio_unit
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 
 # Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
 # carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:
@@ -26,7 +26,7 @@ UNTURNED = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Advantage(PrintsShort):
+class Advantage(ShortRepr):
     """Velocity ratio and mechanical advantage at every pose; real arrays of the motion's shape.
 
     `velocity_ratio` is output rate / input rate, `advantage` its reciprocal: the output force or torque that balances a

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.bracketing import false_position
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.inputs_between import times_of
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.laws.law_corners import corners
-from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
+from compoundkin.model.laws.law_numbers import derivative_jumps
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 
 # A contact is at a corner within this part of the way round its profile; found in so many trials at most.
 FLAT, TRIALS = 1e-13, 40
@@ -37,7 +36,7 @@ def _of_laws(motion: Motion) -> list[Number]:
         return []
     times = times_of(motion)
     low, high = float(np.min(times)), float(np.max(times))
-    at = np.unique(np.concatenate([corners(law, low, high) for law in laws]))
+    at = np.unique(np.concatenate([derivative_jumps(law, low, high) for law in laws]))
     slack = SAME * (high - low) / motion.inputs.poses
     at = at[(at >= low - slack) & (at <= high + slack)]
     found = []
@@ -51,14 +50,14 @@ def _of_laws(motion: Motion) -> list[Number]:
 
 def _of_profiles(motion: Motion, good: Number) -> list[Number]:
     """Return rows (design, place) where contacts pass from one smooth piece of their profile to the next."""
-    return [_passed(motion, pair, good) for pair in filter(None, map(as_profiled, motion.structure.pairs))]
+    return [_passed(motion, pair, good) for pair in filter(None, map(as_profile_contact, motion.structure.pairs))]
 
 
 @dataclass(frozen=True)
 class _Crossings:
     """Corners of a profile that its contact passes: designs, poses before, and the corners, (n,) each."""
 
-    pair: Profiled
+    pair: ProfileContact
     design: Number
     k: Number
     corner: Number
@@ -76,12 +75,12 @@ class _Crossings:
         return found + (whole_turns(before - found, self.period) if self.pair.curve.closed else 0.0)
 
 
-def _parameter(motion: Motion, pair: Profiled) -> Number:
+def _parameter(motion: Motion, pair: ProfileContact) -> Number:
     poses = tuple(motion.poses[name] for name in pair.members)
     return np.broadcast_to(pair.parameter(motion.inputs.ends[pair.name], poses), motion.failed.shape)
 
 
-def _passed(motion: Motion, pair: Profiled, good: Number) -> Number:
+def _passed(motion: Motion, pair: ProfileContact, good: Number) -> Number:
     """Return rows (design, place) where a contact passes corners of its profile, or leaps over a hollow."""
     curve = pair.curve
     known = np.array([*curve.breaks, *(0.5 * (a + b) for a, b in pair.bridged)])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.extremes_of_motion import Extremes, extremes
 from compoundkin.kinematics.extremes.measures import Measure, measure_of, values_at_poses

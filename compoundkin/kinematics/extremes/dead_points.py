@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.extremes_of_motion import pieces
 from compoundkin.kinematics.extremes.inputs_between import inputs_between
 from compoundkin.kinematics.extremes.measures import measure_of
@@ -19,11 +19,11 @@ from compoundkin.kinematics.extremes.windows import solved
 from compoundkin.kinematics.extremes.zeros_of_motion import zeros
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone, rows_of
-from compoundkin.model.attributes import order_of
+from compoundkin.model.attributes import derivative_order
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DeadPoints(PrintsShort):
+class DeadPoints(ShortRepr):
     """The dead points of an output: arrays (n,), in order along each design.
 
     There it has the `value` (radians or lengths) and turns back: `is_greatest` tells in which sense. It rests there
@@ -54,7 +54,7 @@ def dead_points(motion: Motion, quantity: str) -> DeadPoints:
     >>> np.rad2deg(found.at.drives["crank"]).round(6), found.is_greatest
     (array([165.522488, 352.819244]), array([False,  True]))
     """
-    if order_of(quantity):
+    if derivative_order(quantity):
         raise InvalidInput(Problem(quantity, "a rate has no dead points", "name the place or angle that it is of"))
     measure = measure_of(motion, quantity)
     (row,) = rows_of(motion, (quantity,))

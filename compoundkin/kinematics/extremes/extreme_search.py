@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
 from compoundkin.kinematics.extremes.peaks import (
     BOTH,
@@ -40,7 +40,7 @@ NEAR_LIMIT, GROWTH = np.array([1e-3, 1e-4]), 3.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ExtremeSearch(PrintsShort):
+class ExtremeSearch(ShortRepr):
     """What is searched: quantities over groups of the smooth stretches of a motion.
 
     `group` (n,) numbers them from 0.

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.extreme_search import ExtremeSearch
 from compoundkin.kinematics.extremes.measures import Measure, measures_of
 from compoundkin.kinematics.extremes.places import Places, closed_cycles
@@ -18,7 +18,7 @@ from compoundkin.kinematics.motion import Motion
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Extreme(PrintsShort):
+class Extreme(ShortRepr):
     """The least or greatest values of a quantity, one of each design or piece.
 
     Values are in the quantity's unit (radians), NaN where nothing is assembled, infinite where they grow without limit
@@ -31,7 +31,7 @@ class Extreme(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Extremes(PrintsShort):
+class Extremes(ShortRepr):
     """The least and greatest values of a quantity, of each design or piece."""
 
     name: str
@@ -47,7 +47,7 @@ class Extremes(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AssembledPieces(PrintsShort):
+class AssembledPieces(ShortRepr):
     """The assembled pieces of a motion, in order along each design; arrays (n,).
 
     Each goes from `begin` to `end`; `limits` (n, 2) tells at which ends it stops being assembled. A piece that goes on

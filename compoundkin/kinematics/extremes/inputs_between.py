@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import column
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, column
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import HIGHEST_ORDER

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity, whole_and_part
-from compoundkin.model.attributes import LENGTH, PARTS, SPEED, Dimension, order_of
+from compoundkin.model.attributes import LENGTH, PARTS, SPEED, Dimension, derivative_order
 
 # Values nearer than this part of what is natural for them differ by rounding.
 ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measure(PrintsShort):
+class Measure(ShortRepr):
     """A real quantity of any motion: its name and its function.
 
     `order` is how many time derivatives the motion must have. A length of a vector is `squared` to be smooth where it
@@ -46,7 +46,7 @@ def measure_of(motion: Motion, name: str) -> Measure:
 
     Raises UnknownName with the nearest known name, InvalidInput for a vector, which has extremes by its parts only.
     """
-    known = motion if order_of(name) <= motion.order else between(motion, 0, 0.0, order_of(name))
+    known = motion if derivative_order(name) <= motion.order else between(motion, 0, 0.0, derivative_order(name))
     whole, part = whole_and_part(known, name)
     if whole.is_vector and not part:
         parts = " or ".join(f"{name}.{word}" for word in PARTS)
@@ -60,7 +60,7 @@ def measure_of(motion: Motion, name: str) -> Measure:
         values = quantity(at, whole.name).values
         return PARTS[part](values) if part else values
 
-    return Measure(name, whole.unit, max(order_of(name), whole.order), of, is_length, scale, whole.dimension)
+    return Measure(name, whole.unit, max(derivative_order(name), whole.order), of, is_length, scale, whole.dimension)
 
 
 def measures_of(motion: Motion, asked: Sequence[str | Measure]) -> tuple[Measure, ...]:

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block, blocks, poses_at, with_poses
 from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
 from compoundkin.kinematics.extremes.near_change_points import (

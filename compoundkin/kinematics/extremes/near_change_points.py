@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from compoundkin.base.arrays import column
+from compoundkin.base.arrays import Number, column
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.double_roots import NEARLY, solved_near
 from compoundkin.kinematics.inputs import Inputs

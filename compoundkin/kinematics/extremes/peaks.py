@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes.stretches import SAME
 from compoundkin.kinematics.extremes.windows import FINE, SAMPLES, Windows, vertices
 

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.inputs_between import inputs_between, times_between
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.motion import Motion
@@ -21,7 +21,7 @@ SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Places(PrintsShort):
+class Places(ShortRepr):
     """Places along a motion, each of a design.
 
     `place` counts poses from 0, is fractional between them, and NaN for none.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.breaks import breaks_of
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.kinematics.motion import Motion
@@ -21,7 +21,7 @@ SAME = 2.0 * ASIDE
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Stretches(PrintsShort):
+class Stretches(ShortRepr):
     """Stretches of a motion on which everything is smooth; arrays of shape (n,).
 
     They are in order along each design. `low` and `high` are places; `first` and `last` the poses there, -1 where an

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.measures import ROUNDING, Measure
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.kinematics.extremes.stretches import Stretches
@@ -33,7 +33,7 @@ TRUSTED = 1e-10
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Windows(PrintsShort):
+class Windows(ShortRepr):
     """Windows of stretches with samples of quantities.
 
     They go from `low` to `high` in the stretches' own t. `values` (quantities, windows, samples) are NaN where there

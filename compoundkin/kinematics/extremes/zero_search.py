@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.bracketing import false_position
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
 from compoundkin.kinematics.extremes.stretches import ASIDE, Stretches
 from compoundkin.kinematics.extremes.windows import SAMPLES, Windows, sampled
@@ -48,7 +48,7 @@ class _Samples(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ZeroSearch(PrintsShort):
+class ZeroSearch(ShortRepr):
     """What is searched for zeros: a quantity over the smooth stretches of a motion."""
 
     motion: Motion

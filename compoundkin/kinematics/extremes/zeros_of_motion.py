@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.measures import Measure, measures_of
 from compoundkin.kinematics.extremes.places import SAME_PLACE, Places, closed_cycles
 from compoundkin.kinematics.extremes.stretches import stretches_of
@@ -18,7 +18,7 @@ from compoundkin.kinematics.motion import Motion
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Zeros(PrintsShort):
+class Zeros(ShortRepr):
     """Where a quantity is zero, or changes its sign at a jump; arrays (n,).
 
     They are in order along each design. It stays zero from `at` to the place `until`. `sense` is +1 where it grows

@@ -7,7 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from compoundkin.base.series import Number, as_series
+from compoundkin.base.arrays import Number
+from compoundkin.base.series import as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contract import Ends

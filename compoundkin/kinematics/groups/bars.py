@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.linear import Row
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
 

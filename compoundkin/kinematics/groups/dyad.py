@@ -13,8 +13,9 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations

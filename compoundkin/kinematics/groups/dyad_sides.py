@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series
 
 
 def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:

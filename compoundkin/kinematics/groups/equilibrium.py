@@ -16,8 +16,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.linear import Inverse, Row
-from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import Bar, BarPin, Member, bars_of

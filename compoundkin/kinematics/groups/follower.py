@@ -11,8 +11,9 @@ from typing import ClassVar, Self, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
@@ -21,9 +22,8 @@ from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
 from compoundkin.kinematics.groups.mounted_body import MountedBody
 from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.groups.transmission import contact_transmission
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
-from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
+from compoundkin.model.pairs.contract import Drivable, Ends, Poses, as_drivable, lower_equivalent
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 from compoundkin.structure.parts import Group
 
 # The members' poses where the body's coordinate is the one given.
@@ -49,7 +49,7 @@ class FollowerSolver(GroupSolver):
         "the follower is farther along its slide; on a pin, its roller is more clockwise, its face touches ahead of it"
     )
 
-    def __init__(self, index: int, group: Group, size: float, lower: Drivable, higher: Profiled) -> None:
+    def __init__(self, index: int, group: Group, size: float, lower: Drivable, higher: ProfileContact) -> None:
         super().__init__(index, group)
         self.size = size
         self.mounted = MountedBody(lower, higher, group.bodies[0])
@@ -63,7 +63,7 @@ class FollowerSolver(GroupSolver):
         if len(group.bodies) != 1 or len(group.outer) != 2:
             return None
         lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
-        mount, profiled = as_drivable(lower), as_profiled(higher)
+        mount, profiled = as_drivable(lower), as_profile_contact(higher)
         if not mount or not profiled or not lower.is_simple or lower_equivalent(higher, ends[higher.name]):
             return None
         solver = cls(index, group, size, mount, profiled)

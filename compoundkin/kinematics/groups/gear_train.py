@@ -7,17 +7,17 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.linear import Inverse
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import MountedBody
 from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.contract import Drivable, Ends, as_drivable, as_turn_counting, constraint_scales
 from compoundkin.model.pairs.geared import as_geared
-from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, as_turn_counting, held_scales
 from compoundkin.structure.parts import Body, Group
 
 # A higher pair whose closure a coordinate changes by less than this (both in parts of the size, or radians) does not
@@ -48,7 +48,7 @@ class GearTrainSolver(GroupSolver):
     ) -> None:
         super().__init__(index, group)
         # of several bodies all coordinates are angles
-        self.flat = FLAT * held_scales(highers[0], size)[0] / (1.0 if lowers[0][0].free_is_angle else size)
+        self.flat = FLAT * constraint_scales(highers[0], size)[0] / (1.0 if lowers[0][0].free_is_angle else size)
         self.mounted = tuple(MountedBody(pair, highers[0], body) for pair, body in lowers)
         self.highers = highers
         self.counted_from = tuple(mounted.side.other for mounted in self.mounted)

@@ -8,9 +8,10 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations, state_distance
@@ -22,7 +23,7 @@ from compoundkin.kinematics.groups.newton_steps import NewtonSteps
 from compoundkin.kinematics.groups.reasons import Reason, alone
 from compoundkin.kinematics.groups.transmission import PassedForce, forces_of, worst_transmission
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.structure.parts import Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
@@ -115,7 +116,7 @@ class GeneralSolver(GroupSolver):
     def reasons(self, block: Block) -> tuple[Reason, ...]:
         """Return that its path came to a limit, or a pair to its end. The limit is a limit position."""
         limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
-        profiled = (pair for pair in map(as_profiled, self.pairs) if pair and pair.has_ends)
+        profiled = (pair for pair in map(as_profile_contact, self.pairs) if pair and pair.has_ends)
         open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in profiled]
         return alone(f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit)
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number, entry
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnassembledPoses, warn
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series, as_series
@@ -23,7 +23,7 @@ Sides = tuple[OuterPair, tuple[End, End], OuterPair]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolvedDyad(PrintsShort):
+class SolvedDyad(ShortRepr):
     """Two links found: the motion of their inner pair and of both. Numbers or arrays of the shape of what was given.
 
     `inner` is the inner pin, or the place on a guide where its block is; `first` and `second` are the two links, each a

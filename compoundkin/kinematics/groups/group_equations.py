@@ -17,17 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import joined
-from compoundkin.base.linear import Inverse, Row, stacked
-from compoundkin.base.newton import ChordStop, chord_newton, largest_of
-from compoundkin.base.pivots import Elimination
+from compoundkin.base.arrays import Number, complex_of
+from compoundkin.base.linear import Elimination, Inverse, Row, stacked
+from compoundkin.base.newton import ChordStop, chord_newton, elementwise_largest
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import BodyColumns, Member, add, bars_of
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Poses
-from compoundkin.model.pairs.optional_answers import held_scales
+from compoundkin.model.pairs.contract import Poses, constraint_scales
 
 # Newton stops when no correction exceeds this (of the mechanism's size, or radians): it doubles its digits with every
 # step, so that the pose is then exact to rounding.
@@ -102,7 +100,7 @@ class GroupEquations:
         stop = ChordStop(CONVERGED, CLOSED * self.size, CHORD, steps, longest)
         found, closed = chord_newton(system, start, weights, stop)
         closed = closed & self._properly_assembled(bodies, leading)
-        moved = largest_of([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
+        moved = elementwise_largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
         return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
 
     def series(self, state: Number, block: Block, order: int) -> list[Pose]:
@@ -160,7 +158,7 @@ class GroupEquations:
         found = {}
         for i, body in enumerate(self.kept):
             x, y, theta = values[3 * i : 3 * i + 3]
-            found[body] = _about(constant(joined(x, y)), constant(theta), self.middles[body])
+            found[body] = _about(constant(complex_of(x, y)), constant(theta), self.middles[body])
         return found
 
     def residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
@@ -199,7 +197,7 @@ class GroupEquations:
 
     def _lengths(self, pair: Pair) -> Iterator[float]:
         """Yield by what a pair's equations are multiplied, so that all are lengths and close alike in any unit."""
-        return (self.size / scale for scale in held_scales(pair, self.size))
+        return (self.size / scale for scale in constraint_scales(pair, self.size))
 
     def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
         """Return the poses of a pair's members, to order k at most."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.optional_answers import lower_equivalent
+from compoundkin.model.pairs.contract import Ends, lower_equivalent
 from compoundkin.structure.assur_groups import named_group
 from compoundkin.structure.parts import Body, Group
 

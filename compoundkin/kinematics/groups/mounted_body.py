@@ -8,9 +8,8 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contact_search import Freedom
-from compoundkin.model.pairs.contract import Poses
-from compoundkin.model.pairs.optional_answers import Drivable
+from compoundkin.model.pairs.contract import Drivable, Poses
+from compoundkin.model.pairs.profile_contact import Freedom
 from compoundkin.structure.parts import Body
 
 

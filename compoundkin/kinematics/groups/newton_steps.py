@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from compoundkin.base.linear import Row
-from compoundkin.base.newton import largest_of
-from compoundkin.base.pivots import Elimination
+from compoundkin.base.arrays import Number
+from compoundkin.base.linear import Elimination, Row
+from compoundkin.base.newton import elementwise_largest
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import CONVERGED, GroupEquations
 
@@ -55,7 +55,7 @@ class NewtonSteps(NamedTuple):
         return Elimination([*self._rows(bodies, leading)], self.equations.width)
 
     def _largest(self, change: Sequence[Number]) -> Number:
-        return largest_of([one * weight for one, weight in zip(change, self.equations.weights, strict=True)])
+        return elementwise_largest([one * weight for one, weight in zip(change, self.equations.weights, strict=True)])
 
     def _rows(self, bodies: Mapping[int, Pose], block: Block) -> Iterator[Row]:
         """Yield the Jacobian by rows: the equations' rates as one number of the state grows at unit rate."""

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import cross, dot, reciprocal
+from compoundkin.base.arrays import Number, cross, dot, reciprocal
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, as_series
+from compoundkin.base.series import as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair

@@ -9,10 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import dot, reciprocal
-from compoundkin.base.composition import planar
+from compoundkin.base.arrays import Number, dot, reciprocal
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series, planar_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import CircleLocus, LineLocus, Loci, direction_of, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
@@ -40,7 +39,7 @@ class RPR(DyadSolver):
         line, across = _distances(first, inner, second)
         line2 = line.abs2()
         along, margin = root(line2 - across * across, line2.c[0])
-        guide = line / planar(along * sign, across)
+        guide = line / planar_series(along * sign, across)
         u, v = guide * inner[0].along.conj(), guide * inner[1].along.conj()
         first_pose = placed_at(as_series(first.world.point), u, first.local.point)
         second_pose = placed_at(as_series(second.world.point), v, second.local.point)

@@ -10,9 +10,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import dot, reciprocal
+from compoundkin.base.arrays import Number, dot, reciprocal
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair

@@ -9,10 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import cross, reciprocal
-from compoundkin.base.composition import planar
+from compoundkin.base.arrays import Number, cross, reciprocal
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series, planar_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import Loci, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import COINCIDENT, AssembledDyad, Closed, DyadSolver, OuterPair
@@ -42,7 +41,7 @@ class RRR(DyadSolver):
         foot = (line2 + (a2 - b.abs2())) * 0.5  # the scalar product of the first link and the line
         apart = line2.c[0] > COINCIDENT**2 * a2.c[0]
         height, margin = root(reach2 - foot * foot, np.where(apart, reach2.c[0], np.nan))  # their cross product
-        u = line * a.conj() / planar(foot, height * sign)
+        u = line * a.conj() / planar_series(foot, height * sign)
         v = (u * a - line) / b
         first_pose = placed_at(_point(first), u, first.local.point)
         return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2)

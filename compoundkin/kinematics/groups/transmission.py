@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import cross, dot
+from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.linear import inverted
-from compoundkin.base.series import Number, as_series
+from compoundkin.base.series import as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.group_equations import GroupEquations

@@ -8,11 +8,18 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
-from compoundkin.model.laws.motion_programs import Program, least_time, program, synchronised
-from compoundkin.model.laws.motion_tables import MotionTable
-from compoundkin.model.laws.path_parts import PathPart
-from compoundkin.model.laws.program_segments import ProgramSegment, dwell, fall, rise
-from compoundkin.model.laws.time_tables import TimeTable
+from compoundkin.model.laws.motion_programs import (
+    Program,
+    ProgramSegment,
+    dwell,
+    fall,
+    least_time,
+    program,
+    rise,
+    synchronised,
+)
+from compoundkin.model.laws.path_coordinate import PathCoordinate
+from compoundkin.model.laws.table_laws import MotionTable, TimeTable
 
 __all__ = [
     "WRITTEN",
@@ -21,7 +28,7 @@ __all__ = [
     "FunctionLaw",
     "Law",
     "MotionTable",
-    "PathPart",
+    "PathCoordinate",
     "Program",
     "ProgramSegment",
     "TimeTable",
@@ -38,7 +45,7 @@ __all__ = [
     "time_table",
 ]
 
-Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | MotionTable | PathPart | FunctionLaw
+Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | MotionTable | PathCoordinate | FunctionLaw
 
 # The laws that files can say.
 WRITTEN: dict[str, type[Any]] = {

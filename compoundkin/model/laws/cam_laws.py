@@ -1,26 +1,21 @@
-"""The standard cam laws over a span of 1, and what their pieces make.
-
-Every law is given by its acceleration, piece by piece: a polynomial and a sine. Integrated from rest and scaled to
-the rise, it is a polynomial and a sine again, so that one table of numbers holds any sequence of laws, and
-all derivatives follow from it.
-
-Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., Industrial Press 2009, chapters 2 to 4.
-"""
+"""The standard cam laws over a span of 1, their pieces, and the rest-to-rest motion of least time."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from math import comb, cos, factorial, pi, sin
+from functools import cache, cached_property
+from math import comb, cos, factorial, inf, isinf, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Terms that cancel leave no more than this part of their sizes: a few units in the last place.
 ROUNDING = 1e-15
+
+
 # Rounding leaves no jump of a derivative where there is none above this part of what is natural for the program.
 JUMP = 1e-9
 
@@ -102,25 +97,25 @@ def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
     >>> [piece.start for piece in unit_pieces("modified-sine")]
     [0.0, 0.125, 0.875]
     """
-    return integrated(LAWS[law])
+    return integrate_acceleration(LAWS[law])
 
 
-def integrated(parts: Sequence[AccelerationPiece]) -> tuple[PositionPiece, ...]:
+def integrate_acceleration(parts: Sequence[AccelerationPiece]) -> tuple[PositionPiece, ...]:
     """Return the positions that accelerations make, from rest, with a rise of 1.
 
-    >>> [piece.start for piece in integrated((AccelerationPiece(0.5, (1.0,)), AccelerationPiece(0.5, (-1.0,))))]
+    >>> [piece.start for piece in integrate_acceleration((AccelerationPiece(0.5, (1.0,)), AccelerationPiece(0.5, (-1.0,))))]
     [0.0, 0.5]
     """
     start = place = speed = 0.0
     pieces = []
     for part in parts:
-        piece = _integrated(part, start, place, speed + part.leap)
+        piece = _integrate_piece(part, start, place, speed + part.leap)
         start, place, speed = start + part.span, piece.derivative(0, part.span), piece.derivative(1, part.span)
         pieces.append(piece)
     return tuple(piece.scaled(0.0, 1.0, 0.0, 1.0 / place if place else 1.0) for piece in pieces)
 
 
-def _integrated(part: AccelerationPiece, start: float, place: float, speed: float) -> PositionPiece:
+def _integrate_piece(part: AccelerationPiece, start: float, place: float, speed: float) -> PositionPiece:
     """Return the position of a part that begins at a place with a speed."""
     amplitude, frequency, phase = part.wave
     wave = -amplitude / frequency**2
@@ -218,3 +213,84 @@ class PieceTable:
         # sine, cosine, -sine, -cosine ...
         signs = (1.0, 1.0, -1.0, -1.0)
         return [turns[k % 2] * (signs[k % 4] / factorial(k)) * frequency**k for k in range(order + 1)]
+
+
+# Parts that take less than this of the whole time are rounding: a limit is then just reached.
+NOTHING = 1e-13
+
+
+@dataclass(frozen=True)
+class LeastTime:
+    """How a distance is gone in the least time. A limit that is infinite does not count.
+
+    The speed grows over `ramp` (the jerk is greatest), `hold` (the acceleration is) and a ramp again; then `cruise`;
+    then the same backwards.
+
+    >>> LeastTime(10.0, speed=5.0, acceleration=2.0).duration  # 10 / 5 + 5 / 2, beyond the triangle's 2 sqrt(10 / 2)
+    4.47213595499958
+    >>> round(LeastTime(2.0, jerk=1.0).duration, 12)  # the cube root of 32 d / j
+    4.0
+    """
+
+    distance: float
+    speed: float = inf
+    acceleration: float = inf
+    jerk: float = inf
+
+    @cached_property
+    def ramp(self) -> float:
+        """The time in which the acceleration grows, until it meets a limit."""
+        unlimited: float = (self.distance / self.jerk / 2.0) ** (1.0 / 3.0)
+        return min(self.acceleration / self.jerk if not isinf(self.acceleration) else inf,
+                   sqrt(self.speed / self.jerk) if not isinf(self.speed) else inf, unlimited)  # fmt: skip
+
+    @cached_property
+    def peak(self) -> float:
+        """The greatest acceleration reached."""
+        return self.acceleration if isinf(self.jerk) else min(self.acceleration, self.jerk * self.ramp)
+
+    @cached_property
+    def hold(self) -> float:
+        """The time at the greatest acceleration."""
+        half = self.ramp / 2.0
+        until_half_way = sqrt(half * half + self.distance / self.peak) - half
+        return self._time(min(self.speed / self.peak, until_half_way) - self.ramp)
+
+    @cached_property
+    def growth(self) -> float:
+        """The time in which the acceleration grows and holds."""
+        return self.ramp + self.hold
+
+    @cached_property
+    def cruise(self) -> float:
+        """The time at the greatest speed."""
+        return self._time(self.distance / (self.peak * self.growth) - self.growth - self.ramp)
+
+    @property
+    def duration(self) -> float:
+        """The whole time."""
+        return 2.0 * (2.0 * self.ramp + self.hold) + self.cruise
+
+    @property
+    def _least(self) -> float:
+        """A time that the whole one is not below: that of the greatest acceleration alone."""
+        return 2.0 * sqrt(self.distance / self.peak)
+
+    def _time(self, found: float) -> float:
+        return found if found > NOTHING * self._least else 0.0
+
+    @cached_property
+    def unit_pieces(self) -> tuple[PositionPiece, ...]:
+        """Its pieces with a rise of 1 over a span of 1."""
+        ramp, hold, cruise = (part / self.duration for part in (self.ramp, self.hold, self.cruise))
+        slope = 1.0 / ramp if ramp else 0.0
+        parts = (
+            AccelerationPiece(ramp, (0.0, slope)),
+            AccelerationPiece(hold, (1.0,)),
+            AccelerationPiece(ramp, (1.0, -slope)),
+            AccelerationPiece(cruise),
+            AccelerationPiece(ramp, (0.0, -slope)),
+            AccelerationPiece(hold, (-1.0,)),
+            AccelerationPiece(ramp, (-1.0, slope)),
+        )
+        return integrate_acceleration([part for part in parts if part.span])

@@ -7,14 +7,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.model.fields import Key
 
 
-class Compared:
+class ComparedByValue:
     """Laws are equal if they say the same, array by array."""
 
     def __eq__(self, other: object) -> bool:
@@ -60,7 +61,7 @@ def as_number(value: Number) -> Number:
     return float(value) if np.ndim(value) == 0 else value
 
 
-def hold_numbers(law: Any, *names: str) -> None:
+def check_law_numbers(law: Any, *names: str) -> None:
     """Make the numbers of a law floats or arrays that cannot be written to. Raises InvalidMechanism."""
     for name in names or [f.name for f in fields(law)]:
         given = getattr(law, name)
@@ -76,7 +77,7 @@ def hold_numbers(law: Any, *names: str) -> None:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstantSpeed(PrintsShort, Compared):
+class ConstantSpeed(ShortRepr, ComparedByValue):
     """The coordinate grows at a constant speed (rad/s or length/s).
 
     From `start` at time 0.
@@ -97,7 +98,7 @@ class ConstantSpeed(PrintsShort, Compared):
     span: ClassVar[None] = None
 
     def __post_init__(self) -> None:
-        hold_numbers(self)
+        check_law_numbers(self)
 
     def coordinate(self, t: Number, order: int) -> Series:
         """Return value and derivatives at times t (seconds)."""
@@ -105,7 +106,7 @@ class ConstantSpeed(PrintsShort, Compared):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstantAcceleration(PrintsShort, Compared):
+class ConstantAcceleration(ShortRepr, ComparedByValue):
     """The coordinate grows at a constant acceleration (rad/s^2 or length/s^2).
 
     From `start` at `speed` at time 0.
@@ -127,7 +128,7 @@ class ConstantAcceleration(PrintsShort, Compared):
     span: ClassVar[None] = None
 
     def __post_init__(self) -> None:
-        hold_numbers(self)
+        check_law_numbers(self)
 
     def coordinate(self, t: Number, order: int) -> Series:
         """Return value and derivatives at times t (seconds)."""

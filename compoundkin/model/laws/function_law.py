@@ -1,41 +1,52 @@
-"""The driving law by a Python function, with its derivatives. Exact where it can be followed, or by differences."""
+"""The driving law of a Python function with its derivatives, by series arithmetic or by differences."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import factorial
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from compoundkin.base.copies import HoldsFunction
+from compoundkin.base.arrays import Number
+from compoundkin.base.copies import CopiesFunction
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series, compose_series, constant
 from compoundkin.model.fields import Key
-from compoundkin.model.laws.constant_laws import Compared, as_number, from_derivatives
-from compoundkin.model.laws.jets import Jet
+from compoundkin.model.laws.constant_laws import ComparedByValue, as_number, from_derivatives
 
 Array: TypeAlias = np.ndarray[Any, Any]
 
+
 MOST_DERIVATIVES = 4
+
+
 # Nine points: the error of a third derivative is of the sixth power of the step.
 NODES = np.arange(-4.0, 5.0)
+
+
 # The steps tried, as parts of the range of times; the best is about a fiftieth of the function's own time scale.
 # Their ratio is no simple fraction: else steps of whole periods of the function agree with each other.
 STEPS = 0.0625 * 0.618 ** np.arange(18.0)
+
+
 # Differences of neighbouring steps that disagree by more than this part of the derivative show that there is none.
 AGREEMENT = 1e-2
+
+
 # Two ways to the same value differ by rounding only.
 SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class FunctionLaw(HoldsFunction, Compared):
+class FunctionLaw(CopiesFunction, ComparedByValue):
     """A Python function of times that returns the coordinate, or (value, speed, ...).
 
     The latter is a tuple.
     A tuple may go to the jerk. Derivatives that it does not return are exact where the function is written with
-    NumPy's ordinary functions; otherwise they are differences (see `differentiated`). Raises InvalidInput where it
+    NumPy's ordinary functions; otherwise they are differences (see `differentiate_function`). Raises InvalidInput where it
     fails, or returns something of another shape or not finite.
 
     >>> FunctionLaw(lambda t: np.sin(2.0 * t)).coordinate(np.array([0.0]), order=3).derivative(3).tolist()
@@ -61,7 +72,7 @@ class FunctionLaw(HoldsFunction, Compared):
         given = self._called(times)[: order + 1]
         if len(given) <= order:
             last = len(given) - 1
-            given += differentiated(lambda x: self._component(x, last), times, order - last)[1:]
+            given += differentiate_function(lambda x: self._component(x, last), times, order - last)[1:]
         return from_derivatives([as_number(values) for values in given])
 
     def _component(self, times: Any, k: int) -> Any:
@@ -99,7 +110,7 @@ def _checked(part: Any, times: Array) -> Array:
     return values
 
 
-def differentiated(f: Callable[[Any], Any], times: Array, order: int) -> list[Array]:
+def differentiate_function(f: Callable[[Any], Any], times: Array, order: int) -> list[Array]:
     """Return a function and its derivatives up to `order` (3 at most) at times. Arrays of the shape of `times`.
 
     Exact where the function is written with NumPy functions that `Jet` knows. Otherwise central differences over
@@ -112,16 +123,16 @@ def differentiated(f: Callable[[Any], Any], times: Array, order: int) -> list[Ar
     Source: W. H. Press et al., Numerical Recipes, 3rd ed., Cambridge 2007, section 5.7 (choice of the step);
     M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, section 25.3.
 
-    >>> [found.tolist() for found in differentiated(lambda t: t**3, np.array([2.0]), 3)]
+    >>> [found.tolist() for found in differentiate_function(lambda t: t**3, np.array([2.0]), 3)]
     [[8.0], [12.0], [12.0], [6.0]]
     """
-    exact = _followed(f, times, order)
+    exact = _by_series(f, times, order)
     if exact is not None:
         return exact
-    return [np.asarray(f(times.copy()), dtype=float), *_differences(f, times, order)]
+    return [np.asarray(f(times.copy()), dtype=float), *_by_differences(f, times, order)]
 
 
-def _followed(f: Callable[[Any], Any], times: Array, order: int) -> list[Array] | None:
+def _by_series(f: Callable[[Any], Any], times: Array, order: int) -> list[Array] | None:
     """Differentiate by series arithmetic. None where the function does something that it does not know."""
     plain = np.asarray(f(times.copy()), dtype=float)
     try:
@@ -137,11 +148,11 @@ def _followed(f: Callable[[Any], Any], times: Array, order: int) -> list[Array] 
     return found if near.all() and all(np.isfinite(one).all() for one in found) else None
 
 
-def _differences(f: Callable[[Any], Any], times: Array, order: int) -> list[Array]:
+def _by_differences(f: Callable[[Any], Any], times: Array, order: int) -> list[Array]:
     spread = float(np.ptp(times)) or 1.0
     steps = spread * STEPS
     tried = [_sampled(f, times[..., None] + NODES * step) for step in steps]
-    return [_best(np.stack([s @ w / h**k for s, h in zip(tried, steps, strict=True)]), tried, steps, times, k)
+    return [_best_difference(np.stack([s @ w / h**k for s, h in zip(tried, steps, strict=True)]), tried, steps, times, k)
             for k, w in enumerate(_weights(order), 1)]  # fmt: skip
 
 
@@ -166,7 +177,7 @@ def _weights(order: int) -> list[Array]:
     return list(np.linalg.solve(powers, wanted).T)
 
 
-def _best(found: Array, tried: list[Array], steps: Array, times: Array, k: int) -> Array:
+def _best_difference(found: Array, tried: list[Array], steps: Array, times: Array, k: int) -> Array:
     """Return the difference that the next two smaller steps change least."""
     change = np.abs(np.diff(found, axis=0))
     change = np.maximum(change[:-1], change[1:])
@@ -181,3 +192,142 @@ def _best(found: Array, tried: list[Array], steps: Array, times: Array, k: int) 
         remedy = "let it return (value, speed, acceleration, jerk)"
         raise InvalidInput(Problem("law", what, remedy))
     return np.asarray(best)
+
+
+class Jet(NDArrayOperatorsMixin):
+    """A Taylor series (to order 3) in the guise of an array. What NumPy does to it, it does to all derivatives.
+
+    A function it does not know raises TypeError. At jumps and kinks the derivatives are those of one side.
+
+    >>> t = Jet(Series((2.0, 1.0, 0.0, 0.0)))
+    >>> [float(c) for c in (np.sqrt(2.0 * t) + t**2).series.c]
+    [6.0, 4.5, 0.9375, 0.015625]
+    """
+
+    def __init__(self, series: Series) -> None:
+        self.series = series
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the array it stands for."""
+        return np.shape(self.series.c[0])
+
+    def __array_ufunc__(self, function: Any, method: str, *operands: Any, **options: Any) -> Any:
+        return self._applied(UFUNCS, function, operands, method != "__call__" or bool(options))
+
+    def __array_function__(self, function: Any, types: Any, operands: Any, options: Any) -> Any:
+        return self._applied(FUNCTIONS, function, operands, bool(options))
+
+    def _applied(self, table: dict[Any, Callable[..., Any]], function: Any, operands: Any, special: bool) -> Any:
+        if special or function not in table:
+            return NotImplemented
+        made = table[function](*operands)
+        return Jet(made) if isinstance(made, Series) else made
+
+
+def _series(operand: Any) -> Series:
+    return operand.series if isinstance(operand, Jet) else constant(np.asarray(operand, dtype=float))
+
+
+def _leading(operand: Any) -> Any:
+    return operand.series.c[0] if isinstance(operand, Jet) else operand
+
+
+def _function(*derivatives: Callable[[Any], Any]) -> Callable[[Any], Series]:
+    """Return the rule of a function, from itself and its derivatives."""
+
+    def rule(operand: Any) -> Series:
+        x = _series(operand)
+        outer = [derivative(x.c[0]) / factorial(k) for k, derivative in enumerate(derivatives[: len(x.c)])]
+        return compose_series(outer, x)
+
+    return rule
+
+
+def _power(base: Any, exponent: Any) -> Series:
+    if isinstance(exponent, Jet) or np.ndim(exponent):
+        raise TypeError
+    x, p = _series(base), float(exponent)
+    outer: list[Number] = []
+    factor = 1.0
+    for k in range(len(x.c)):
+        # a derivative that vanishes must not become 0 times infinity at 0
+        outer.append(factor * x.c[0] ** (p - k) if factor else 0.0 * x.c[0])
+        factor *= (p - k) / (k + 1)
+    return compose_series(outer, x)
+
+
+def _where(condition: Any, yes: Any, no: Any) -> Series:
+    chosen, (a, b) = _leading(condition), (_series(yes), _series(no))
+    pairs = ((s.c[k] if k < len(s.c) else 0.0 for s in (a, b)) for k in range(max(len(a.c), len(b.c))))
+    return Series(tuple([np.where(chosen, *pair) for pair in pairs]))
+
+
+def _constant(function: Any) -> Callable[..., Any]:
+    """Return the rule of a function that only looks at values."""
+    return lambda *operands: function(*map(_leading, operands))
+
+
+def _remainder(a: Any, b: Any) -> Series:
+    carried: Series = _series(b) * np.floor(_leading(a) / _leading(b))
+    return _series(a) - carried
+
+
+_sin = _function(np.sin, np.cos, lambda x: -np.sin(x), lambda x: -np.cos(x))
+
+
+_cos = _function(np.cos, lambda x: -np.sin(x), lambda x: -np.cos(x), np.sin)
+
+
+_sinh = _function(np.sinh, np.cosh, np.sinh, np.cosh)
+
+
+_cosh = _function(np.cosh, np.sinh, np.cosh, np.sinh)
+
+
+UFUNCS: dict[Any, Callable[..., Any]] = {
+    np.add: lambda a, b: _series(a) + _series(b),
+    np.subtract: lambda a, b: _series(a) - _series(b),
+    np.multiply: lambda a, b: _series(a) * _series(b),
+    np.true_divide: lambda a, b: _series(a) / _series(b),
+    np.negative: lambda a: -_series(a),
+    np.positive: _series,
+    np.square: lambda a: _series(a) * _series(a),
+    np.power: _power,
+    np.float_power: _power,
+    np.sqrt: lambda a: _power(a, 0.5),
+    np.reciprocal: lambda a: 1.0 / _series(a),
+    np.remainder: _remainder,
+    np.absolute: lambda a: _where(_leading(a) < 0.0, Jet(-_series(a)), a),
+    np.maximum: lambda a, b: _where(np.greater_equal(_leading(a), _leading(b)), a, b),
+    np.minimum: lambda a, b: _where(np.less_equal(_leading(a), _leading(b)), a, b),
+    np.sin: _sin,
+    np.cos: _cos,
+    np.tan: lambda a: _sin(a) / _cos(a),
+    np.sinh: _sinh,
+    np.cosh: _cosh,
+    np.tanh: lambda a: _sinh(a) / _cosh(a),
+    np.exp: _function(np.exp, np.exp, np.exp, np.exp),
+    np.log: _function(np.log, lambda x: 1.0 / x, lambda x: -1.0 / x**2, lambda x: 2.0 / x**3),
+    np.arctan: _function(
+        np.arctan,
+        lambda x: 1.0 / (1.0 + x**2),
+        lambda x: -2.0 * x / (1.0 + x**2) ** 2,
+        lambda x: (6.0 * x**2 - 2.0) / (1.0 + x**2) ** 3,
+    ),
+    np.deg2rad: lambda a: _series(a) * (np.pi / 180.0),
+    np.radians: lambda a: _series(a) * (np.pi / 180.0),
+    np.rad2deg: lambda a: _series(a) * (180.0 / np.pi),
+    np.degrees: lambda a: _series(a) * (180.0 / np.pi),
+}
+
+
+UFUNCS |= {f: _constant(f) for f in (np.less, np.less_equal, np.greater, np.greater_equal, np.equal, np.not_equal,
+                                     np.floor, np.ceil, np.sign)}  # fmt: skip
+
+
+FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    np.where: _where,
+    np.zeros_like: _constant(np.zeros_like),
+    np.ones_like: _constant(np.ones_like),
+}

@@ -1,24 +1,31 @@
-"""The numbers of laws by name, laws with others in their place, and how a law changes with one of its numbers."""
+"""Numbers of driving laws by name: laws with other numbers or of several designs, and their sensitivities."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidMechanism
-from compoundkin.base.series import Number
-from compoundkin.model.field_numbers import numbers_of
-from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.laws.program_segments import ProgramSegment
+from compoundkin.base.series import Series
+from compoundkin.model.fields import stated_numbers
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment
+from compoundkin.model.laws.path_coordinate import PathCoordinate
+from compoundkin.model.laws.table_laws import MotionTable, TimeTable
 
 SEGMENTS = "segments"
+
+
 # Differences are taken over this part of a number, or of the shortest piece where pieces move; each level of
 # extrapolation halves it. Four levels leave the eighth power of it, some 1e-13 of the slope, and as much of rounding.
 STEP, LEVELS = 0.02, 4
+
+
 # Where a law has other pieces, or is none, so near to a number, it is not smooth there.
 NEAREST = 1e-6
 
@@ -29,14 +36,14 @@ def law_numbers(law: Any) -> dict[str, Number]:
     What follows from other numbers is none: the rise of a dwell, the span of a rise in the least time.
 
     >>> from compoundkin.model.laws.motion_programs import program
-    >>> from compoundkin.model.laws.program_segments import dwell, rise
+    >>> from compoundkin.model.laws.motion_programs import dwell, rise
     >>> law_numbers(program(rise(10.0, over=2.0), dwell(1.0)))
     {'start': 0.0, 'segments.0.over': 2.0, 'segments.0.rise': 10.0, 'segments.1.over': 1.0}
     """
     # a table has its numbers all along the motion
-    found = {name: value for name, value in numbers_of(law).items() if np.shape(value)[-1:] <= (1,)}
+    found = {name: value for name, value in stated_numbers(law).items() if np.shape(value)[-1:] <= (1,)}
     for index, segment in enumerate(getattr(law, SEGMENTS, ())):
-        own = {name: value for name, value in numbers_of(segment).items() if name != segment.followed}
+        own = {name: value for name, value in stated_numbers(segment).items() if name != segment.followed}
         found |= {f"{SEGMENTS}.{index}.{name}": value for name, value in own.items()}
     return found
 
@@ -45,7 +52,7 @@ def law_with(law: Any, numbers: Mapping[str, Any]) -> Any:
     """Return a law with other numbers, named as `law_numbers` does. Raises InvalidMechanism.
 
     >>> from compoundkin.model.laws.motion_programs import program
-    >>> from compoundkin.model.laws.program_segments import rise
+    >>> from compoundkin.model.laws.motion_programs import rise
     >>> law_with(program(rise(10.0, over=2.0)), {"segments.0.rise": 20.0}).lift
     20.0
     """
@@ -110,10 +117,10 @@ def _smooth_step(law: Program, name: str, times: Number) -> tuple[float, int]:
     number = float(law_numbers(law)[name])
     step = STEP * (abs(number) or 1.0)
     periods = 1.0 + float(np.max(np.abs(times))) / law.period if law.repeat else 1.0
-    own = _places(law)
+    own = _piece_boundaries(law)
     while step >= NEAREST * STEP * abs(number):
         try:
-            ends = [_places(law_with(law, {name: number + way * step})) for way in (1.0, -1.0)]
+            ends = [_piece_boundaries(law_with(law, {name: number + way * step})) for way in (1.0, -1.0)]
         except InvalidMechanism:
             ends = []
         if ends and all(len(end) == len(own) for end in ends):
@@ -126,6 +133,91 @@ def _smooth_step(law: Program, name: str, times: Number) -> tuple[float, int]:
     return step, 0
 
 
-def _places(law: Program) -> Number:
+def _piece_boundaries(law: Program) -> Number:
     """Return where its pieces begin, and the end."""
     return np.array([*(piece.start for piece in law.pieces), law.period])
+
+
+@dataclass(frozen=True, repr=False)
+class DesignLaws(ShortRepr):
+    """Programs side by side. `shape` is that of the designs, in whose order they are."""
+
+    laws: tuple[Program, ...]
+    shape: tuple[int, ...]
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """From when to when they are defined, None where they differ."""
+        spans = {law.span for law in self.laws}
+        return spans.pop() if len(spans) == 1 else None
+
+    def coordinate(self, t: Number, order: int) -> Series:
+        """Return value and derivatives at times t (seconds)."""
+        return Series(tuple(self._rows(t, lambda law, row: law.coordinate(row, order).c)))
+
+    def slopes(self, name: str, times: Number, order: int) -> list[Number]:
+        """Return the slopes by one of their numbers, as `law_slopes` does."""
+        return self._rows(times, lambda law, row: law_slopes(law, name, row, order))
+
+    def _rows(self, t: Number, of: Callable[[Program, Number], Sequence[Number]]) -> list[Number]:
+        """Return what is found of each law at its times, design by design."""
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        designs = np.broadcast_shapes(self.shape, times.shape[:-1])
+        shape = (*designs, times.shape[-1])
+        rows = np.broadcast_to(times, shape).reshape(-1, shape[-1])
+        index = np.broadcast_to(np.arange(len(self.laws)).reshape(self.shape), designs).ravel()
+        found = [of(self.laws[i], row) for i, row in zip(index, rows, strict=True)]
+        return [np.stack(column).reshape(shape) for column in zip(*found, strict=True)]
+
+
+def law_of_designs(law: Any, numbers: Mapping[str, Number]) -> Any:
+    """Return a law with other numbers, or arrays of them for designs. Raises InvalidMechanism.
+
+    >>> from compoundkin.model.laws.motion_programs import program
+    >>> from compoundkin.model.laws.motion_programs import rise
+    >>> lifts = law_of_designs(program(rise(1.0, over=2.0)), {"segments.0.rise": np.array([[10.0], [20.0]])})
+    >>> lifts.coordinate(1.0, 0).c[0].tolist()
+    [[5.0], [10.0]]
+    """
+    shape = np.broadcast_shapes(*(np.shape(value)[:-1] for value in numbers.values()))
+    single = all(np.ndim(value) == 0 for value in numbers.values())
+    if single or not isinstance(law, Program):
+        return law_with(law, numbers)
+    columns = {name: np.broadcast_to(np.asarray(v)[..., 0] if np.ndim(v) else v, shape) for name, v in numbers.items()}
+    rows = zip(*(column.ravel().tolist() for column in columns.values()), strict=True)
+    return DesignLaws(tuple(law_with(law, dict(zip(numbers, row, strict=True))) for row in rows), shape)
+
+
+def law_sensitivities(law: Any, name: str, times: Number, order: int) -> list[Number]:
+    """Return what `law_slopes` does, of a law or of laws of designs."""
+    return law.slopes(name, times, order) if isinstance(law, DesignLaws) else law_slopes(law, name, times, order)
+
+
+def derivative_jumps(law: Any, first: float, last: float) -> Number:
+    """Return the times at which some derivative of a law may jump.
+
+    They are in order, from `first` to `last`. A Python function tells none.
+
+    >>> from compoundkin.model.laws import dwell, program, rise
+    >>> derivative_jumps(program(rise(1.0, over=2.0, law="parabolic"), dwell(1.0), repeat=True), 0.5, 5.0).tolist()
+    [1.0, 2.0, 3.0, 4.0, 5.0]
+    >>> derivative_jumps(MotionTable([0, 1, 2], *np.ones((3, 3))), 0.5, 5.0).tolist()
+    [1.0, 2.0]
+    """
+    if isinstance(law, Program):
+        own = np.append([piece.start for piece in law.pieces], law.period)
+        return _over_periods(own, law.period, law.repeat, first, last)
+    if isinstance(law, TimeTable | MotionTable):
+        low, high = law.span
+        return _over_periods(np.asarray(law.times), high - low, isinstance(law, TimeTable) and law.repeat, first, last)
+    if isinstance(law, PathCoordinate):
+        return np.unique(np.concatenate([np.empty(0), *(derivative_jumps(own, first, last) for own in law.path.laws)]))
+    return np.empty(0)
+
+
+def _over_periods(own: Number, period: float, repeat: bool, first: float, last: float) -> Number:
+    """Return the corners of a law in a range of times, those of all its periods if it repeats."""
+    if repeat:
+        turns = np.arange(np.floor((first - own[0]) / period), np.ceil((last - own[0]) / period) + 1.0)
+        own = np.unique((own[:-1] + turns[:, None] * period).ravel())
+    return own[(own >= first) & (own <= last)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-from compoundkin.model.loads.along_pair import AlongPair, Effort, effort
+from compoundkin.model.loads.attachments import Effort, PairLoad, effort
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.damper import Damper, PairDamper, damper
 from compoundkin.model.loads.force import Force, Torque, force, torque
@@ -17,16 +17,16 @@ from compoundkin.model.loads.spring import PairSpring, Spring, spring
 __all__ = [
     "KINDS",
     "WRITTEN",
-    "AlongPair",
     "Damper",
     "Effort",
     "Force",
     "Friction",
     "Gravity",
     "Load",
-    "LoadWord",
+    "LoadElement",
     "Mass",
     "PairDamper",
+    "PairLoad",
     "PairSpring",
     "Pretension",
     "Spring",
@@ -50,4 +50,4 @@ WRITTEN: dict[str, tuple[type[Any], ...]] = {
     kind.table: tuple(other for other in _TABLED if other.table == kind.table) for kind in _TABLED
 }
 # What is written of masses and forces.
-LoadWord: TypeAlias = Mass | Gravity | Load | Friction | Pretension
+LoadElement: TypeAlias = Mass | Gravity | Load | Friction | Pretension

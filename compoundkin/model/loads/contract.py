@@ -8,17 +8,18 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol, Self
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TIME
-from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
+from compoundkin.model.fields import DeclaredKeys, NameWording, implied_points, link_fields, name_problems, value_key
 from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.units import Units
 
-NO_NAMES: Mapping[str, str] = MappingProxyType({})
+NO_RENAMING: Mapping[str, str] = MappingProxyType({})
 
 
 class LoadedPoses(Protocol):
@@ -51,7 +52,7 @@ class LoadedPoses(Protocol):
         """Return what of a value belongs to these poses. `where` names it in errors."""
 
 
-class WrittenNames(Protocol):
+class NamedParts(Protocol):
     """What is written of links and pairs, for loads that name them."""
 
     @property
@@ -85,7 +86,7 @@ def with_names(amount: Any, coordinates: Mapping[str, str]) -> Any:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Load(PrintsShort, ABC):
+class Load(ShortRepr, ABC):
     """What acts on links from outside: forces, torques, efforts, springs, dampers. Kinds are frozen dataclasses."""
 
     name: str = field(
@@ -140,18 +141,18 @@ class Load(PrintsShort, ABC):
         """Return the point of a link at which it acts. It is a letter or a place in the link, None for a couple."""
         return None
 
-    def completed(self, written: WrittenNames) -> Load:
+    def completed(self, written: NamedParts) -> Load:
         """Return the load with what its words leave open; itself without any."""
-        found = only_points(self, written.letters)
+        found = implied_points(self, written.letters)
         return replace(self, **found) if found else self
 
-    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
         """Return it on links and over coordinates of other names. Its own name stays."""
         told = {key: links.get(getattr(self, key), getattr(self, key)) for key in self.link_keys}
         held = {key: with_names(getattr(self, key), coordinates) for key in self.amounts if coordinates}
         return replace(self, **told, **held)
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find what is wrong with it as written."""
         yield from name_problems(self, written.letters, where, self.wording)
 

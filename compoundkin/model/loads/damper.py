@@ -9,21 +9,27 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number
 from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.along_pair import AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, as_amount, value_of
-from compoundkin.model.loads.between_points import BetweenPoints, EndGap, as_spot, hold_ends
-from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
-from compoundkin.model.loads.spring import is_law
+from compoundkin.model.loads.attachments import (
+    EndSeparation,
+    PairLoad,
+    PointToPointLoad,
+    attachment_point,
+    check_ends,
+    rate_of,
+)
+from compoundkin.model.loads.contract import LoadedPoses, NamedParts
+from compoundkin.model.loads.spring import is_force_law
 
 _RATE = "Force or torque for a unit of speed, or the force itself as a table over that."
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Damper(BetweenPoints):
+class Damper(PointToPointLoad):
     """A damper between points of two links.
 
     It pulls with its rate times the speed at which it is drawn.
@@ -45,23 +51,23 @@ class Damper(BetweenPoints):
         """Whether it asks for velocities: it does nothing else."""
         return True
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find unknown ends, and a negative rate."""
         yield from super().problems(written, where)
         yield from rate_problems(self.rate, where)
 
-    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
+    def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
         """Return its force; where its ends meet, along their relative velocity."""
         own = {"rate": lambda: gap.rate, "length": lambda: gap.length}
         amount = value_of(self.where, self.rate, at, own)
         # ends that meet move along the line they are on before and after
         line = np.where(np.asarray(gap.length) == 0.0, gap.velocity, gap.vector)
-        pull = amount if is_law(self.rate) else amount * gap.rate
-        return EndGap(line, np.abs(line), gap.velocity).along(pull, self.where)
+        pull = amount if is_force_law(self.rate) else amount * gap.rate
+        return EndSeparation(line, np.abs(line), gap.velocity).along(pull, self.where)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairDamper(AlongPair):
+class PairDamper(PairLoad):
     """A damper along the free coordinate of a pair: it works against its rate."""
 
     rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
@@ -76,7 +82,7 @@ class PairDamper(AlongPair):
         """Whether it asks for velocities: it does nothing else."""
         return True
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find an unknown pair, and a negative rate."""
         yield from super().problems(written, where)
         yield from rate_problems(self.rate, where)
@@ -86,12 +92,12 @@ class PairDamper(AlongPair):
         series = at.coordinate(self.pair)
         own = {"rate": lambda: rate_of(series), "coordinate": lambda: series.c[0]}
         amount = value_of(self.where, self.rate, at, own)
-        return 0.0 - (amount if is_law(self.rate) else amount * rate_of(series))
+        return 0.0 - (amount if is_force_law(self.rate) else amount * rate_of(series))
 
 
 def rate_problems(rate: Amount, where: str) -> Iterator[Problem]:
     """Find a damper that drives."""
-    if not is_law(rate) and np.any(np.asarray(rate) < 0.0):
+    if not is_force_law(rate) and np.any(np.asarray(rate) < 0.0):
         yield Problem(f"{where}.{Damper.amounts[0]}", "a damper of negative rate drives", "give a rate above zero")
 
 
@@ -112,8 +118,8 @@ def damper(
     """
     where = f"dampers.{name or pair or link}"
     amount = as_amount(f"{where}.{Damper.amounts[0]}", rate, "rate", "length" if link else "coordinate", "time")
-    hold_ends(where, pair, link, {"link": link, "point": point, "at": at} if pair else {})
+    check_ends(where, pair, link, {"link": link, "point": point, "at": at} if pair else {})
     if pair:
         return PairDamper(pair, rate=amount, name=name)
-    one, other = (as_spot(f"{where}.{key}", spot) for key, spot in (("point", point), ("at", at)))
+    one, other = (attachment_point(f"{where}.{key}", spot) for key, spot in (("point", point), ("at", at)))
     return Damper(link, one, to=to, at=other, rate=amount, name=name)

@@ -9,15 +9,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import dot
-from compoundkin.base.errors import Problem, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, dot
+from compoundkin.base.errors import Problem, suggestion
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TIME
 from compoundkin.model.fields import link_key, spot_key, value_key
 from compoundkin.model.geometry import FRAME, vector
 from compoundkin.model.loads.amounts import Amount, as_amount, as_planar_amount, planar_value_of, value_of
-from compoundkin.model.loads.contract import Load, LoadedPoses, WrittenNames
+from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,19 +59,19 @@ class Force(Load):
         """The fields that name links, with the one whose axes it keeps."""
         return ("link", "fixed_in")
 
-    def completed(self, written: WrittenNames) -> Load:
+    def completed(self, written: NamedParts) -> Load:
         """Return the force on a link, where a point is named."""
         own = written.carriers.get(self.link, ())
         if self.link in written.letters or not own or not isinstance(self.at, str) or self.at:
             return super().completed(written)
         return replace(self, link=own[0], at=self.link, on_pin=self.link if len(own) > 1 else "")
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find unknown links and points, the one with which it turns among them."""
         yield from super().problems(written, where)
         if self.fixed_in not in written.letters:
             what = f"there is no link {self.fixed_in!r}"
-            yield Problem(f"{where}.fixed_in", what, nearest(self.fixed_in, list(written.letters)))
+            yield Problem(f"{where}.fixed_in", what, suggestion(self.fixed_in, list(written.letters)))
         if self.while_moving is not None and np.any(np.asarray(self.while_moving) == 0):
             yield Problem(f"{where}.while_moving", "it has no direction", "write (dx, dy), or leave it out")
 

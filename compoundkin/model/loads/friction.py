@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.contract import WrittenNames
-from compoundkin.model.loads.pair_property import PairProperty
+from compoundkin.model.loads.attachments import PairProperty
+from compoundkin.model.loads.contract import NamedParts
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,7 +32,7 @@ class Friction(PairProperty):
     title: ClassVar[str] = "friction"
     table: ClassVar[str] = "frictions"
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find an unknown pair, a pin without a radius, and what is negative."""
         several = written.at_pin(self.pair)
         pair = written.pair(several[0] if several else self.pair)

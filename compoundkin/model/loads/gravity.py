@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, nearest, warn
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, suggestion, warn
 from compoundkin.model.geometry import vector
 from compoundkin.model.units import LENGTHS
 
@@ -22,7 +22,7 @@ MOST = 30.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Gravity(PrintsShort):
+class Gravity(ShortRepr):
     """The acceleration of free fall, m/s^2 whatever the unit of length."""
 
     vector: Number
@@ -43,7 +43,7 @@ def gravity(x: Any, y: Any, *, unit: str = "") -> Gravity:
     """
     if unit and unit not in ACCELERATIONS:
         what = f"{unit!r} is no known unit of acceleration"
-        raise InvalidMechanism(Problem("gravity.unit", what, nearest(unit, list(ACCELERATIONS))))
+        raise InvalidMechanism(Problem("gravity.unit", what, suggestion(unit, list(ACCELERATIONS))))
     given = vector("gravity", (x, y))
     if not unit:
         warn_of_unit(given)

@@ -1,25 +1,24 @@
-"""Masses of links."""
+"""Masses of links, and uniform bars and plates through points."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number, cross, dot
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number
 from compoundkin.model.fields import DeclaredKeys, NameWording, link_key, name_problems, spot_key, value_key
 from compoundkin.model.geometry import FRAME, real, vector
-from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
-from compoundkin.model.loads.uniform_bodies import uniform_body
+from compoundkin.model.loads.contract import NO_RENAMING, NamedParts
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Mass(PrintsShort):
+class Mass(ShortRepr):
     """The mass of a link, its mass centre `at`, its inertia about that.
 
     The mass centre is a letter, or a place in the link's frame. What is left out is that of a uniform bar or plate
@@ -56,7 +55,7 @@ class Mass(PrintsShort):
         """The fields that name links."""
         return ("link",)
 
-    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
         """Return it on a link of another name."""
         return replace(self, link=links.get(self.link, self.link))
 
@@ -82,7 +81,7 @@ class Mass(PrintsShort):
             assumed=f"{left_out} of a {body.kind} {'-'.join(points)}",
         )
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find unknown links and points, and numbers that no mass has."""
         if self.link == FRAME:
             yield Problem(f"{where}.link", "the frame does not move: its mass does nothing", "name a link that moves")
@@ -123,3 +122,93 @@ def mass(link: str, mass: Any = None, *, at: Any = None, inertia: Any = None, de
     place = at if at is None or isinstance(at, str) else vector(f"{where}.at", at)
     numbers = {"mass": mass, "inertia": inertia, "density": density}
     return Mass(link, at=place, **{key: real(f"{where}.{key}", value) for key, value in numbers.items()})
+
+
+# A plate with less area than this part of its length squared is a bar: its points are in line but for rounding.
+IN_LINE = 1e-9
+
+
+class UniformBody(NamedTuple):
+    """A uniform body.
+
+    It has its length or area, its mass centre, and its inertia about that for a unit of mass.
+    """
+
+    kind: str  # "point mass", "uniform bar", "uniform plate"
+    extent: Number
+    centre: Number
+    inertia: Number
+
+
+def uniform_body(points: list[Number]) -> UniformBody:
+    """Return the uniform body through points of a link.
+
+    It is a bar through two points or more in line, else a plate. The plate is the convex hull of its points, in
+    whichever order they are written.
+
+    >>> uniform_body([0j, 3 + 0j])
+    UniformBody(kind='uniform bar', extent=3.0, centre=(1.5+0j), inertia=0.75)
+    >>> uniform_body([0j, 6 + 0j, 3j])[2:]
+    ((2+1j), 2.5)
+    """
+    if len(points) == 1:
+        return UniformBody("point mass", 0.0, points[0], 0.0)
+    given = np.array(np.broadcast_arrays(*points), dtype=complex)
+    bar, plate = _bar(given), _plate(given)
+    flat = plate.extent <= IN_LINE * bar.extent**2
+    if np.all(flat):
+        return UniformBody(bar.kind, *map(_as_number, bar[1:]))
+    found = (np.where(flat, one, other) for one, other in zip(bar[2:], plate[2:], strict=True))
+    return UniformBody(plate.kind, _as_number(plate.extent), *map(_as_number, found))
+
+
+def _as_number(value: Number) -> Number:
+    return value.item() if np.ndim(value) == 0 else value
+
+
+def _bar(points: Number) -> UniformBody:
+    """Return the bar between the two points that are farthest from each other."""
+    first, second = np.triu_indices(len(points), 1)
+    gaps = np.abs(points[second] - points[first])
+    k = np.argmax(gaps, axis=0)[None]
+    length = np.take_along_axis(gaps, k, axis=0)[0]
+    centre = np.take_along_axis((points[first] + points[second]) / 2.0, k, axis=0)[0]
+    return UniformBody("uniform bar", length, centre, length**2 / 12.0)
+
+
+def _plate(points: Number) -> UniformBody:
+    """Return the plate in the convex hull of points.
+
+    Source: Green's theorem, triangle by triangle from one point: I. N. Bronshtein et al., Handbook of Mathematics.
+    """
+    middle = np.mean(points, axis=0)
+    here, there = _hull_edges(points - middle)
+    double = cross(here, there)
+    area = np.sum(double, axis=0) / 2.0
+    with np.errstate(all="ignore"):
+        centre = np.sum((here + there) * double, axis=0) / (6.0 * area)
+        a, b = here - centre, there - centre
+        polar = np.sum(cross(a, b) * (dot(a, a) + dot(a, b) + dot(b, b)), axis=0) / 12.0
+        return UniformBody("uniform plate", area, middle + centre, polar / area)
+
+
+def _hull_edges(points: Number) -> tuple[Number, Number]:
+    """Return the edges of the convex hull, counterclockwise; edges that are none are points.
+
+    Source: R. A. Jarvis, On the identification of the convex hull of a finite set of points in the plane,
+    Information Processing Letters 2 (1973) 18-21.
+    """
+    lowest = np.lexsort((points.real, points.imag), axis=0)[:1]
+    start = here = np.take_along_axis(points, lowest, axis=0)[0]
+    closed = np.zeros(np.shape(start), dtype=bool)
+    edges = []
+    for _ in points:
+        there = start
+        for point in points:
+            turn = cross(there - here, point - here)
+            farther = (turn == 0) & (np.abs(point - here) > np.abs(there - here))
+            there = np.where((turn < 0) | farther, point, there)
+        there = np.where(closed, here, there)
+        edges.append((here, there))
+        here, closed = there, closed | (there == start)
+    return np.array([edge[0] for edge in edges]), np.array([edge[1] for edge in edges])

@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.contract import WrittenNames
-from compoundkin.model.loads.pair_property import PairProperty
+from compoundkin.model.loads.attachments import PairProperty
+from compoundkin.model.loads.contract import NamedParts
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -27,7 +27,7 @@ class Pretension(PairProperty):
     title: ClassVar[str] = "pretension"
     table: ClassVar[str] = "pretensions"
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find an unknown pair, or one without strands; a belt that pushes."""
         pair = written.pair(self.pair)
         if pair is None:

@@ -9,15 +9,22 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import Problem, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import Problem, suggestion
 from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME, real
-from compoundkin.model.loads.along_pair import COORDINATE, VARIABLES, AlongPair, rate_of
-from compoundkin.model.loads.amounts import Amount, LoadFunction, as_amount, needs_rates, value_of
-from compoundkin.model.loads.between_points import BetweenPoints, EndGap, as_spot, hold_ends
-from compoundkin.model.loads.contract import Load, LoadedPoses, WrittenNames
-from compoundkin.model.loads.load_table import LoadTable
+from compoundkin.model.loads.amounts import Amount, LoadFunction, LoadTable, as_amount, needs_rates, value_of
+from compoundkin.model.loads.attachments import (
+    COORDINATE,
+    VARIABLES,
+    EndSeparation,
+    PairLoad,
+    PointToPointLoad,
+    attachment_point,
+    check_ends,
+    rate_of,
+)
+from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 
 TENSION, COMPRESSION = "tension", "compression"
 _STIFFNESS = "Force or torque for a unit of extension, or the force itself as a table over that."
@@ -26,7 +33,7 @@ _ONLY = 'Whether it acts in "tension" or in "compression" only.'
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spring(BetweenPoints):
+class Spring(PointToPointLoad):
     """A spring between points of two links.
 
     It pulls with stiffness times extension, plus a preload.
@@ -51,39 +58,41 @@ class Spring(BetweenPoints):
         """Whether its force depends on how fast it is drawn."""
         return needs_rates(self.stiffness)
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find unknown ends, a negative length, a side that is none."""
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
         if np.any(np.asarray(self.free_length) < 0.0):
             yield Problem(f"{where}.free_length", "a length is not negative", "give a preload instead")
 
-    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
+    def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
         """Return its force. Without a free length it is exact where its ends meet."""
         preload, free = (at.fitted(value, self.where) for value in (self.preload, self.free_length))
         extension = gap.length - free
-        if is_law(self.stiffness):
+        if is_force_law(self.stiffness):
             own = {"extension": lambda: extension, "rate": lambda: gap.rate}
             pull = value_of(self.where, self.stiffness, at, own) + preload
-            return gap.along(sided(pull, self.only), self.where)
+            return gap.along(one_sided_pull(pull, self.only), self.where)
         stiffness = at.fitted(self.stiffness, self.where)
         # the part in proportion to the length has no need of a direction
         force = stiffness * gap.vector + gap.along(preload - stiffness * free, self.where)
-        return force if self.only is None else np.where(acts(stiffness * extension + preload, self.only), force, 0.0)
+        return (
+            force if self.only is None else np.where(is_active(stiffness * extension + preload, self.only), force, 0.0)
+        )
 
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return its energy, zero at its free length.
 
         None where its force is a function or a table.
         """
-        if is_law(self.stiffness):
+        if is_force_law(self.stiffness):
             return None
         extension = self.gap(at).length - at.fitted(self.free_length)
-        return stored(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
+        return stored_energy(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairSpring(AlongPair):
+class PairSpring(PairLoad):
     """A spring along the free coordinate of a pair.
 
     It is a torsion spring at a pin, or a spring along a slide. It drives the coordinate down with stiffness times what
@@ -107,7 +116,7 @@ class PairSpring(AlongPair):
         """Whether its force depends on how fast it is drawn."""
         return needs_rates(self.stiffness)
 
-    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find an unknown pair, or one that no spring could act along."""
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
@@ -116,20 +125,20 @@ class PairSpring(AlongPair):
         """Return its effort, against what the coordinate is beyond its free one."""
         series, preload = at.coordinate(self.pair), at.fitted(self.preload, self.where)
         extension = series.c[0] - at.fitted(self.free, self.where)
-        if is_law(self.stiffness):
+        if is_force_law(self.stiffness):
             own = {"extension": lambda: extension, "rate": lambda: rate_of(series)}
-            return 0.0 - sided(value_of(self.where, self.stiffness, at, own) + preload, self.only)
-        return 0.0 - sided(at.fitted(self.stiffness, self.where) * extension + preload, self.only)
+            return 0.0 - one_sided_pull(value_of(self.where, self.stiffness, at, own) + preload, self.only)
+        return 0.0 - one_sided_pull(at.fitted(self.stiffness, self.where) * extension + preload, self.only)
 
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return its energy, zero at its free coordinate.
 
         None where its effort is a function or a table.
         """
-        if is_law(self.stiffness):
+        if is_force_law(self.stiffness):
             return None
         extension = at.coordinate(self.pair).c[0] - at.fitted(self.free)
-        return stored(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
+        return stored_energy(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
 
 
 def as_spring(load: Load) -> Spring | PairSpring | None:
@@ -137,22 +146,22 @@ def as_spring(load: Load) -> Spring | PairSpring | None:
     return load if isinstance(load, Spring | PairSpring) else None
 
 
-def is_law(stiffness: Amount) -> bool:
+def is_force_law(stiffness: Amount) -> bool:
     """Tell whether a stiffness is the force itself, as a function or a table."""
     return isinstance(stiffness, LoadFunction | LoadTable)
 
 
-def acts(pull: Number, only: str | None) -> Number:
+def is_active(pull: Number, only: str | None) -> Number:
     """Tell where a one-sided spring acts. That is true where its pull is not a number."""
     return ~(np.asarray(pull) <= 0.0) if only == TENSION else ~(np.asarray(pull) >= 0.0)
 
 
-def sided(pull: Number, only: str | None) -> Number:
+def one_sided_pull(pull: Number, only: str | None) -> Number:
     """Return the pull of a spring that may act one way only."""
-    return pull if only is None else np.where(acts(pull, only), pull, 0.0)
+    return pull if only is None else np.where(is_active(pull, only), pull, 0.0)
 
 
-def stored(stiffness: Number, preload: Number, extension: Number, only: str | None) -> Number:
+def stored_energy(stiffness: Number, preload: Number, extension: Number, only: str | None) -> Number:
     """Return the energy that a spring holds beyond its free length.
 
     That of a one-sided spring stays where it acts no more.
@@ -162,13 +171,15 @@ def stored(stiffness: Number, preload: Number, extension: Number, only: str | No
         return whole
     with np.errstate(all="ignore"):
         released = np.where(np.asarray(stiffness) == 0.0, 0.0, -np.square(preload) / (2.0 * np.asarray(stiffness)))
-    return np.where(acts(stiffness * extension + preload, only), whole, released)
+    return np.where(is_active(stiffness * extension + preload, only), whole, released)
 
 
 def side_problems(only: str | None, where: str) -> Iterator[Problem]:
     """Find a side on which no spring acts."""
     if only not in (None, TENSION, COMPRESSION):
-        yield Problem(f"{where}.only", f"a spring does not act in {only!r} only", nearest(only, [TENSION, COMPRESSION]))
+        yield Problem(
+            f"{where}.only", f"a spring does not act in {only!r} only", suggestion(only, [TENSION, COMPRESSION])
+        )
 
 
 @checked
@@ -198,9 +209,9 @@ def spring(
     force = as_amount(f"{where}.stiffness", stiffness, "extension", *VARIABLES[1:])
     drawn = real(f"{where}.preload", preload)
     ends = {"link": link, "point": point, "at": at, "free_length": free_length} if pair else {"free": free}
-    hold_ends(where, pair, link, ends)
+    check_ends(where, pair, link, ends)
     if pair:
         return PairSpring(pair, stiffness=force, free=real(f"{where}.free", free), preload=drawn, only=only, name=name)
-    one, other = (as_spot(f"{where}.{key}", spot) for key, spot in (("point", point), ("at", at)))
+    one, other = (attachment_point(f"{where}.{key}", spot) for key, spot in (("point", point), ("at", at)))
     length = real(f"{where}.free_length", free_length)
     return Spring(link, one, to=to, at=other, stiffness=force, free_length=length, preload=drawn, only=only, name=name)

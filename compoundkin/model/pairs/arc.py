@@ -8,22 +8,21 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import link_key, point_key, value_key, word
+from compoundkin.base.series import Series
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Touch, row
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.dry_contacts import RubbingContact
-from compoundkin.model.pairs.guide_ends import EndedArc, Reach, reach_key
-from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
+from compoundkin.model.pairs.contact import FrictionContact, Touch, passing_rates
+from compoundkin.model.pairs.contract import Ends, Equivalent, Guided, Osculation, Poses
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
+from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, known_range
+from compoundkin.model.pairs.travel_limits import Reach, TravelLimitedArc, reach_key
 
 
 @dataclass(frozen=True, eq=False)
-class ArcSlot(RubbingContact, Guided, EndedArc):
+class ArcSlot(FrictionContact, Guided, TravelLimitedArc):
     """A point of `link` that runs along a circular slot in the link `on`.
 
     The point is `at`, the circle of `radius` about `centre_at`.
@@ -84,7 +83,7 @@ class ArcSlot(RubbingContact, Guided, EndedArc):
         """Return the row of the pin along the circle. It goes by the pin's distance from the centre."""
         pin = poses[1].at(ends[1].point).c[0]
         arm = pin - poses[0].at(ends[0].point).c[0]
-        return row(poses, pin, 1j * arm / np.abs(arm) ** 2)
+        return passing_rates(poses, pin, 1j * arm / np.abs(arm) ** 2)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """Return the direction from the centre to the pin."""
@@ -117,7 +116,7 @@ class ArcSlot(RubbingContact, Guided, EndedArc):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return a groove as long as the pin's way, and the pin."""
-        way = reach(np.unwrap(np.ravel(self.coordinate(ends, poses).c[0])))
+        way = known_range(np.unwrap(np.ravel(self.coordinate(ends, poses).c[0])))
         return Groove(0, arc_line(ends[0].point, ends[0].measure, *way)), Stud(1, ends[1].point)
 
     def with_ends(
@@ -128,4 +127,4 @@ class ArcSlot(RubbingContact, Guided, EndedArc):
         return (Groove(0, arc_line(ends[0].point, ends[0].measure, low, high), (True, True)), *marks[1:])
 
 
-arc = word("arc", ArcSlot)
+arc = constructor("arc", ArcSlot)

@@ -8,20 +8,18 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.fields import value_key, word
+from compoundkin.model.fields import constructor, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.force_answers import Strapped
-from compoundkin.model.pairs.geared import Geared
-from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, reach, strap_line
-from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action
+from compoundkin.model.pairs.contract import BeltDrive, Ends, Poses
+from compoundkin.model.pairs.geared import Geared, axes_of, line_of_action
+from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, known_range, strap_line
 
 
 @dataclass(frozen=True, eq=False)
-class Belt(Geared, Strapped):
+class Belt(Geared, BeltDrive):
     """Two pulleys or sprockets with a belt, chain or cable that does not slip.
 
     An open belt turns them alike, a `crossed` one does not. See `Geared` for the rest.
@@ -115,9 +113,9 @@ class Belt(Geared, Strapped):
         back = poses[2].inverse()
         middles = [back.at(pose.at(end.point)).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
         # the carrier is rigid: they are where they are at every pose
-        first, second = (reach(np.real(middle))[0] + reach(np.imag(middle))[0] * 1j for middle in middles)
+        first, second = (known_range(np.real(middle))[0] + known_range(np.imag(middle))[0] * 1j for middle in middles)
         discs = (Wheel(k, ends[k].point, radii[k]) for k in range(2))
         return *discs, Strap(2, strap_line((first, second), radii, self.crossed))
 
 
-belt = word("belt", Belt)
+belt = constructor("belt", Belt)

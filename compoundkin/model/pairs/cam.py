@@ -9,27 +9,23 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series
-from compoundkin.model.fields import link_key, point_key, value_key, word
+from compoundkin.base.series import Series, as_series
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
-from compoundkin.model.pairs.contact import Touch, centre_of_curvature, row
-from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, path_of
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.dry_contacts import RubbingContact
-from compoundkin.model.pairs.loop_terms import LoopTerms
-from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, angle_of
-from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
-from compoundkin.model.pairs.profile_contact import THINNED, Profiled
+from compoundkin.model.pairs.contact import FrictionContact, Touch, centre_of_curvature, passing_rates
+from compoundkin.model.pairs.contract import Ends, Equivalent, Guided, Osculation, Poses
+from compoundkin.model.pairs.loop_terms import LoopTerms, ProfileVector, Sum, Unknown, angle_of
+from compoundkin.model.pairs.profile_contact import THINNED, Freedom, ProfileContact, path_crossings, relative_path
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
 
 
 @dataclass(frozen=True, eq=False)
-class Cam(Profiled, Guided, RubbingContact):
+class Cam(ProfileContact, Guided, FrictionContact):
     """A roller of `radius`, or the point `at`, on the profile of `on`.
 
     A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself,
@@ -111,7 +107,7 @@ class Cam(Profiled, Guided, RubbingContact):
         normal = frame.u.c[0] * along * -1j
         distance = apart.real * normal.real + apart.imag * normal.imag
         speed = np.abs(first) * (1.0 + distance * self.curve.curvature(s))
-        return row(poses, centre.c[0], frame.u.c[0] * along / speed)
+        return passing_rates(poses, centre.c[0], frame.u.c[0] * along / speed)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """Return the parameter of the contact."""
@@ -154,8 +150,8 @@ class Cam(Profiled, Guided, RubbingContact):
         free, on, curve = Unknown("parameter", self.name), angle_of(self.on), self.curve
         away, parameter = ends[1].measure * self.outward, Sum(0.0, ((1.0, free),))
         scale = self.coordinate_scale
-        contact = Curved(f"profile({free.key})", curve.at, parameter, on, scale=scale)
-        normal = Curved(f"normal({free.key})", lambda s: away * curve.normal(s), parameter, on, scale=scale)
+        contact = ProfileVector(f"profile({free.key})", curve.at, parameter, on, scale=scale)
+        normal = ProfileVector(f"normal({free.key})", lambda s: away * curve.normal(s), parameter, on, scale=scale)
         arms = (contact, normal) if np.any(away != 0.0) else (contact,)
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
@@ -165,9 +161,9 @@ class Cam(Profiled, Guided, RubbingContact):
         On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
         """
         side = poses[0].carry(ends[0])
-        path = path_of(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
+        path = relative_path(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
         away = np.asarray(ends[1].measure) * self.outward
-        least, greatest = crossings_on_way(path, self._samples, away, self.curve.closed)
+        least, greatest = path_crossings(path, self._samples, away, self.curve.closed)
         forward = (freedom.sense > 0) == path.straight
         return np.where(forward, least, greatest), np.where(forward, greatest, least)
 
@@ -211,4 +207,4 @@ class Cam(Profiled, Guided, RubbingContact):
         return (Outline(0, line, True, self.inside) if self.curve.closed else Groove(0, line)), edge
 
 
-cam = word("cam", Cam)
+cam = constructor("cam", Cam)

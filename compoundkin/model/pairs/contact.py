@@ -1,17 +1,19 @@
-"""What pins in slots, cams and other contacts have in common: two links touch, and slide and roll on each other."""
+"""Contacts of two links that slide and roll on each other, and pairs with Coulomb friction.
+
+Pins, slides, pins in slots and cams have friction. Rolling wheels, gears and belts have none.
+"""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from typing import ClassVar, NamedTuple
 
-from compoundkin.base.arrays import joined
+from compoundkin.base.arrays import Number, complex_of, dot
 from compoundkin.base.curves import Curve
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import NORMAL
-from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, table
-from compoundkin.model.pairs.optional_answers import Replaceable
+from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, Replaceable, jacobian_of_rows
 
 
 class Touch(NamedTuple):
@@ -58,7 +60,7 @@ class Contact(Replaceable):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of the distance and of the sliding."""
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
-        return table(row(poses, place, normal), self.sliding(ends, poses))
+        return jacobian_of_rows(passing_rates(poses, place, normal), self.sliding(ends, poses))
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
         """Return a force that presses along the common normal, and the coordinate's effort.
@@ -67,7 +69,7 @@ class Contact(Replaceable):
         """
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
         x, y, turn = self.sliding(ends, poses)[3:]
-        return Wrench.at(place, normal), Wrench.at(poses[1].z.c[0], joined(x, y), turn)
+        return Wrench.at(place, normal), Wrench.at(poses[1].z.c[0], complex_of(x, y), turn)
 
     @property
     def acts_at(self) -> str:
@@ -90,7 +92,7 @@ def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Nu
     return place + 1j * along / curve.curvature(s)
 
 
-def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
+def passing_rates(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
     """Return the rates at which the second link passes the first at a place.
 
     They are by each link's x, y, theta; the direction `along` is a unit vector, or one whose length is a factor.
@@ -103,3 +105,77 @@ def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
 def as_contact(pair: Pair) -> Contact | None:
     """Return a pair as one of two links that touch, or None."""
     return pair if isinstance(pair, Contact) else None
+
+
+class FrictionPair(Pair):
+    """A pair whose links rub on each other as it moves."""
+
+    needs_radius: ClassVar[bool] = False  # whether friction takes a radius, as that of a pin
+
+    @abstractmethod
+    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return the wrench on the second member of friction by a press of one. It is along the pair's free motion.
+
+        Where friction acts on a pin it is a couple, the `radius`.
+        """
+
+    @abstractmethod
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the forces that press the links together.
+
+        They are linear in the wrench, that on the second member. Each is a number with a sign or a vector; friction
+        goes by the sum of their sizes.
+        """
+
+
+def as_friction_pair(pair: Pair) -> FrictionPair | None:
+    """Return a pair as one whose links rub, or None."""
+    return pair if isinstance(pair, FrictionPair) else None
+
+
+class FrictionPin(FrictionPair):
+    """A pin. The friction moment is coefficient times radius times force."""
+
+    needs_radius = True
+
+    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a couple."""
+        return Wrench(0j, radius)
+
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the force in the pin."""
+        return (wrench.force,)
+
+
+class FrictionGuide(FrictionPair):
+    """A block in a guide. With a length it touches at the two ends of that, else at its point."""
+
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
+
+    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a force of one along the guide, through the block's point."""
+        return Wrench.at(poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0])
+
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the normal force, or those at both ends of a long guide.
+
+        These carry the moment as well.
+        """
+        normal = dot(1j * poses[0].carry(ends[0]).along.c[0], wrench.force)
+        if length is None:
+            return (normal,)
+        couple = wrench.about(poses[1].at(ends[1].point).c[0]) / length
+        return 0.5 * normal + couple, 0.5 * normal - couple
+
+
+class FrictionContact(Contact, FrictionPair):
+    """Two links that touch at a place and slide there."""
+
+    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a force of one across the common normal, where they touch."""
+        touch = self.touch(ends, poses)
+        return Wrench.at(touch.place.c[0], -1j * touch.normal.c[0])
+
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the force along the common normal."""
+        return (dot(self.touch(ends, poses).normal.c[0], wrench.force),)

@@ -1,6 +1,7 @@
-"""What every kind of kinematic pair answers; each kind lives in one file of this folder.
+"""The contract of a kinematic pair, with the optional answers that only some kinds give.
 
 A pair reports the relative coordinates between its links: the first `held` of them stay zero, the others are free.
+Each kind lives in one file; each optional answer has one function that asks for it, such as `as_drivable`.
 """
 
 from __future__ import annotations
@@ -12,15 +13,15 @@ from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import joined
+from compoundkin.base.arrays import Number, complex_of
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
+from compoundkin.model.attributes import NORMAL, TANGENTIAL
+from compoundkin.model.fields import DeclaredKeys, NameWording, implied_points, link_fields, name_problems, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.loop_terms import LoopTerms
-from compoundkin.model.pairs.pose_rates import line_rows, moved_alone_in, row_at
 from compoundkin.model.pairs.symbols import Mark
 
 
@@ -46,6 +47,8 @@ class Line(NamedTuple):
 
 # A pair's sides on its members, in the members' own frames; and the members' poses.
 Ends: TypeAlias = tuple[End, ...]
+
+
 Poses: TypeAlias = tuple[Pose, ...]
 
 
@@ -98,7 +101,7 @@ class Pair(ABC):
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Pair:
         """Return the pair with the points that its words leave open; itself without any."""
-        found = only_points(self, links)
+        found = implied_points(self, links)
         return replace(self, **found) if found else self
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
@@ -128,11 +131,11 @@ class Pair(ABC):
         still = [pose.trimmed(0) for pose in poses]
         columns = []
         for k, pose in enumerate(still):
-            for moved in moved_alone_in(pose):
+            for moved in unit_motions(pose):
                 moving = (*still[:k], moved, *still[k + 1 :])
                 rows = *self.closure(fixed, moving), self.coordinate(fixed, moving)
                 columns.append([row.c[1] if len(row.c) > 1 else 0.0 for row in rows])
-        return table(*zip(*columns, strict=True))
+        return jacobian_of_rows(*zip(*columns, strict=True))
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
         """Return unit wrenches on the second member, the opposites on the first. Those by which it holds come first.
@@ -142,7 +145,8 @@ class Pair(ABC):
         """
         rows, origin = self.jacobian(ends, poses), poses[1].z.c[0]
         return tuple(
-            Wrench.at(origin, joined(rows[..., k, 3], rows[..., k, 4]), rows[..., k, 5]) for k in range(self.held + 1)
+            Wrench.at(origin, complex_of(rows[..., k, 3], rows[..., k, 4]), rows[..., k, 5])
+            for k in range(self.held + 1)
         )
 
     @property
@@ -167,11 +171,11 @@ class Pair(ABC):
         if len(self.members) == 2:
             (a, b, c), (d, e, f), free = second
             place = b * f - c * e, c * d - a * f, a * e - b * d
-            return Point(*(at / row_at(free, place) for at in place))
+            return Point(*(at / line_at(free, place) for at in place))
         axes = [pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
         one, two = ((axis.real, axis.imag, 1.0) for axis in axes)
-        turn, other = -row_at(second[0], two), row_at(first[0], one)
-        rate = turn * row_at(first[-1], one) + other * row_at(second[-1], two)
+        turn, other = -line_at(second[0], two), line_at(first[0], one)
+        rate = turn * line_at(first[-1], one) + other * line_at(second[-1], two)
         return Point(*((other * at - turn * before) / rate for before, at in zip(one, two, strict=True)))
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
@@ -206,10 +210,10 @@ class Pair(ABC):
         """
 
 
-def table(*rows: tuple[Number, ...]) -> Number:
+def jacobian_of_rows(*rows: tuple[Number, ...]) -> Number:
     """Join Jacobian rows of equal length in one array (..., rows, columns). The rows are numbers or arrays.
 
-    >>> table((1.0, 0.0, np.zeros(2), 0.0, 0.0, 0.0)).shape
+    >>> jacobian_of_rows((1.0, 0.0, np.zeros(2), 0.0, 0.0, 0.0)).shape
     (2, 1, 6)
     """
     shape = np.broadcast_shapes(*{getattr(entry, "shape", ()) for row in rows for entry in row})
@@ -218,3 +222,281 @@ def table(*rows: tuple[Number, ...]) -> Number:
         for j, entry in enumerate(row):
             out[..., i, j] = entry
     return out
+
+
+class DrawnNumbers(Pair):
+    """A pair that may read some of its numbers off the drawing."""
+
+    @abstractmethod
+    def read_off(self, ends: Ends, geometry: Geometry) -> Mapping[str, Number]:
+        """Return the fields that are drawn and not stated, by the pair's sides."""
+
+
+class DrawnGuide(DrawnNumbers):
+    """A guide whose offset and whose block's turn may be drawn."""
+
+    link: str
+    on: str
+    through: str
+
+    def read_off(self, ends: Ends, geometry: Geometry) -> Mapping[str, Number]:
+        """Return the drawn offset and turn, as far as they are not stated."""
+        if not ({self.on, self.link} <= geometry.as_drawn and self.on in geometry.drawn):
+            return {}
+        guide, block = ends
+        away = np.conjugate(guide.along.c[0]) * (guide.point - geometry.points[self.on][self.through])
+        found = {"offset": away.imag, "turn": 0.0 - np.angle(block.along.c[0])}
+        return {name: value for name, value in found.items() if getattr(self, name) is None}
+
+
+class DrawnPhase(DrawnNumbers):
+    """A pair of wheels whose phase may be drawn. It is on their carrier, else on the first member."""
+
+    def read_off(self, ends: Ends, geometry: Geometry) -> Mapping[str, Number]:
+        """Return the drawn phase, unless it is stated."""
+        is_drawn = all(name in geometry.drawn for name in self.members)
+        return {"phase": ends[2 % len(ends)].measure} if getattr(self, "phase", 0.0) is None and is_drawn else {}
+
+
+def drawn_fields(pair: Pair, ends: Ends, geometry: Geometry) -> Mapping[str, Number]:
+    """Return what a pair reads off the drawing, by its fields."""
+    return pair.read_off(ends, geometry) if isinstance(pair, DrawnNumbers) else {}
+
+
+class Drivable(Pair):
+    """A pair that a driver may prescribe: nothing but its coordinate is free."""
+
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
+
+    @abstractmethod
+    def placed(self, ends: Ends, free: Series) -> Pose:
+        """Return the second member's pose when the coordinate is `free`. It is in the first one's frame."""
+
+    def driven_by(self, link: str) -> int:
+        """Return +1 if driving `link` drives the coordinate itself, else -1."""
+        return 1
+
+    def effort(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return the torque or thrust of a wrench on the second member.
+
+        It is along the coordinate: the power of the wrench as that moves at unit rate.
+        """
+        x, y, w = self.centre(ends, poses)
+        return wrench.force.real * y - wrench.force.imag * x + wrench.moment * w
+
+    def drawn_coordinate(self, ends: Ends, poses: Poses) -> Number:
+        """Return the free coordinate at the members' drawn poses."""
+        return self.coordinate(ends, poses).c[0]
+
+    def drawn_value(self, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]) -> Number | None:
+        """Return the free coordinate by poses and points that are drawn elsewhere. None where it is its members'."""
+        return None
+
+    def drawn_length(self, sketch: Mapping[str, Number]) -> Number | None:
+        """Return the size of the free coordinate that drawn points alone show. It has no sign.
+
+        None where they do not, without the links' poses.
+        """
+        return None
+
+
+def as_drivable(pair: Pair) -> Drivable | None:
+    """Return a pair as one that can be driven, or None."""
+    return pair if isinstance(pair, Drivable) else None
+
+
+class DrawnPair(NamedTuple):
+    """A pair as a drawing shows it.
+
+    It has its ends, the poses of its members as far as they are known, and where letters are drawn.
+    """
+
+    ends: Ends
+    poses: tuple[Pose | None, ...]
+    sketch: Mapping[str, Number]
+
+
+class Orienting(Pair):
+    """A pair that tells a member's angle from the others' poses. Such are slides, gears, wheels."""
+
+    @abstractmethod
+    def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
+        """Return the angle of the member `own`, or None if it is not told."""
+
+
+def as_orienting(pair: Pair) -> Orienting | None:
+    """Return a pair as one that tells angles, or None."""
+    return pair if isinstance(pair, Orienting) else None
+
+
+class TurnCounting(DrawnPhase, Orienting):
+    """A pair that asks for its members' angles with full turns. Such are gears, belts, racks, wheels that roll."""
+
+    def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+        """Return the ends with members' angles by whole `turns` from the drawn ones."""
+        return ends
+
+    def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
+        """Return the ends of a driven pair for whole `turns` of its coordinate. They count from the drawn one."""
+        return ends
+
+    def is_affine(self, lower: Pair, own: int) -> bool:
+        """Tell whether `closure` grows in proportion to another pair's coordinate.
+
+        The other pair is `lower`, on which the member `own` is.
+        """
+        return False
+
+    def distance_error(self, ends: Ends, poses: Poses) -> Series | None:
+        """Return a length that other pairs must keep at zero.
+
+        The pair does not hold it itself; None where there is none.
+        """
+        return None
+
+
+def as_turn_counting(pair: Pair) -> TurnCounting | None:
+    """Return a pair as one that counts turns, or None."""
+    return pair if isinstance(pair, TurnCounting) else None
+
+
+class Guided(Pair):
+    """A pair with a guide on the first member. A point of the second runs along it."""
+
+    def guided(self, ends: Ends) -> Number:
+        """Return this point, in the frame of its link."""
+        return ends[1].point
+
+
+def guided_point(pair: Pair, ends: Ends) -> Number | None:
+    """Return the point that runs along a guide, of the second member. None where none does."""
+    return pair.guided(ends) if isinstance(pair, Guided) else None
+
+
+class Equivalent(NamedTuple):
+    """The lower pairs and the link between them for a higher pair.
+
+    The two pairs stand for it at every pose, not at one only.
+
+    `pairs` join `link` to the first and to the second member; `ends` are their sides by their names.
+    """
+
+    link: str
+    pairs: tuple[Drivable, Drivable]
+    ends: Mapping[str, Ends]
+
+
+class Osculation(NamedTuple):
+    """The centres of curvature of two members' profiles where they touch. They are in the world.
+
+    None for a straight one. A bar between the centres, or a block on the straight profile pinned at the other one's
+    centre, gives the members the same velocities and accelerations. `normal` is a unit vector between the centres.
+    """
+
+    first: Number
+    second: Number
+    normal: Number
+
+
+class Replaceable(Pair):
+    """A higher pair for which lower pairs stand. They do at every pose, or for velocities and accelerations at one."""
+
+    def equivalent(self, ends: Ends) -> Equivalent | None:
+        """Return the lower pairs for it at every pose. Only some dimensions allow such."""
+        return None
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
+        """Return the centres of curvature where they are known.
+
+        They are those at the leading coefficient of the poses.
+        """
+        return None
+
+
+def lower_equivalent(pair: Pair, ends: Ends) -> Equivalent | None:
+    """Return the lower pairs for a pair at every pose. None where there are no such pairs."""
+    return pair.equivalent(ends) if isinstance(pair, Replaceable) else None
+
+
+def osculation(pair: Pair, ends: Ends, poses: Poses) -> Osculation | None:
+    """Return the centres of curvature of a higher pair, where they are known."""
+    return pair.osculation(ends, poses) if isinstance(pair, Replaceable) else None
+
+
+class TransmittingPair(Pair):
+    """A pair whose force comes with others that do no work. Teeth part the wheels, strands pull pulleys together."""
+
+    @abstractmethod
+    def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return how much of its unit wrench a wrench on the second member has."""
+
+    @abstractmethod
+    def accompanying(self, ends: Ends, poses: Poses, transmitted: Number, pretension: Number | None = None) -> Wrench:
+        """Return what comes with a transmitted force, on the second member. The opposite is on the first.
+
+        `pretension` is the pull in each strand at rest, None for a chain that hangs loose.
+        """
+
+
+def as_transmitting_pair(pair: Pair) -> TransmittingPair | None:
+    """Return a pair as one whose force comes with others, or None."""
+    return pair if isinstance(pair, TransmittingPair) else None
+
+
+def constraint_scales(pair: Pair, size: float) -> tuple[float, ...]:
+    """Return how large each held coordinate is if it is not zero. That is 1 for angles, the size for lengths."""
+    return tuple(1.0 if k in pair.held_angles else size for k in range(pair.held))
+
+
+class RollingContact(Pair):
+    """A wheel that rolls without slip. What presses it and what turns it act at the contact."""
+
+    force_words: ClassVar[tuple[str, ...]] = (NORMAL, TANGENTIAL)
+
+    @abstractmethod
+    def contact(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
+        """Return where the wheel touches, and the normal there. It is a unit vector into the wheel."""
+
+    @property
+    def acts_at(self) -> str:
+        """The contact."""
+        return "contact"
+
+    def acting_place(self, ends: Ends, poses: Poses) -> Number:
+        """Return the place of contact."""
+        return self.contact(ends, poses)[0]
+
+
+class BeltDrive(TransmittingPair):
+    """A pair of pulleys with a belt, whose two strands pull."""
+
+    @abstractmethod
+    def strands(self, ends: Ends, poses: Poses) -> tuple[Wrench, Wrench]:
+        """Return what a unit pull in each strand does to the second pulley."""
+
+
+def as_belt_drive(pair: Pair) -> BeltDrive | None:
+    """Return a pair as one whose strands pull, or None."""
+    return pair if isinstance(pair, BeltDrive) else None
+
+
+def line_rows(rows: Number, z: Number) -> list[tuple[Number, Number, Number]]:
+    """Return (a, b, c) by each row of a Jacobian.
+
+    A twist of the member about (x, y, w) changes ``a x + b y + c w``.
+    """
+    across = np.moveaxis(rows, (-2, -1), (0, 1))
+    return [(-y, x, turn + y * z.real - x * z.imag) for x, y, turn in across]
+
+
+def line_at(line: tuple[Number, ...], place: tuple[Number, ...]) -> Number:
+    """Return what a line gives at a place, in homogeneous coordinates."""
+    return sum(own * at for own, at in zip(line, place, strict=True))
+
+
+def unit_motions(pose: Pose) -> Iterator[Pose]:
+    """Yield a pose as it moves at unit rate in x, y and angle."""
+    yield Pose(Series((pose.z.c[0], 1.0 + 0j)), pose.u, pose.theta)
+    yield Pose(Series((pose.z.c[0], 1j)), pose.u, pose.theta)
+    theta = None if pose.theta is None else Series((pose.theta.c[0], 1.0))
+    yield Pose(pose.z, Series((pose.u.c[0], 1j * pose.u.c[0])), theta)

@@ -8,9 +8,17 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number
-from compoundkin.model.fields import DeclaredKeys, NameWording, link_key, name_problems, point_key, value_key, word
+from compoundkin.model.fields import (
+    DeclaredKeys,
+    NameWording,
+    constructor,
+    link_key,
+    name_problems,
+    point_key,
+    value_key,
+)
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.prismatic import Prismatic
@@ -122,4 +130,4 @@ class Cylinder:
             yield Problem(where, what, "give two lengths above zero between the pins, the lesser first")
 
 
-cylinder = word("cylinder", Cylinder)
+cylinder = constructor("cylinder", Cylinder)

@@ -9,32 +9,29 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import dot
+from compoundkin.base.arrays import Number, dot
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series
-from compoundkin.model.fields import link_key, point_key, value_key, word
+from compoundkin.base.series import Series, as_series
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Touch, centre_of_curvature, row
-from compoundkin.model.pairs.contact_search import Freedom, path_of, tangents_on_way
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.dry_contacts import RubbingContact
-from compoundkin.model.pairs.loop_terms import LoopTerms
-from compoundkin.model.pairs.loop_vectors import (
-    Curved,
+from compoundkin.model.pairs.contact import FrictionContact, Touch, centre_of_curvature, passing_rates
+from compoundkin.model.pairs.contract import Ends, Equivalent, Osculation, Poses
+from compoundkin.model.pairs.loop_terms import (
+    LoopTerms,
+    ProfileVector,
     Sum,
     Unknown,
     Vector,
     angle_of,
     difference,
-    direction,
-    turned,
+    end_angle,
+    rotated,
 )
-from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
-from compoundkin.model.pairs.profile_contact import THINNED, Profiled
+from compoundkin.model.pairs.profile_contact import THINNED, Freedom, ProfileContact, face_tangencies, relative_path
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.symbols import Mark, Outline, Track, reach
+from compoundkin.model.pairs.symbols import Mark, Outline, Track, known_range
 from compoundkin.model.profiles import Profile, side_of
 
 # A sample is one that a face can touch if the face with its normal touches within this part of the size.
@@ -44,7 +41,7 @@ ALONG = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Face(Profiled, RubbingContact):
+class Face(ProfileContact, FrictionContact):
     """A flat face of `link` rests on the profile of the link `on`.
 
     The face is the line through the point `at` of `link` in the direction `angle` (radians, from its x axis); the
@@ -104,7 +101,7 @@ class Face(Profiled, RubbingContact):
         frame, face = self._sides(ends, poses)
         s = self._support(frame, face).c[0]
         rolled = self.side / np.abs(self.curve.curvature(s))
-        passed = row(poses, frame.at(self.curve.at(s)).c[0], face.along.c[0])
+        passed = passing_rates(poses, frame.at(self.curve.at(s)).c[0], face.along.c[0])
         return tuple(rolled * turn - p for turn, p in zip((0.0, 0.0, -1.0, 0.0, 0.0, 1.0), passed, strict=True))
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
@@ -137,13 +134,16 @@ class Face(Profiled, RubbingContact):
         if self.profile.circle is not None:
             return None
         free, on, curve, side = Unknown("displacement", self.name), angle_of(self.on), self.curve, -1j * self.side
-        along = angle_of(self.link).plus(direction(ends[1]))
+        along = angle_of(self.link).plus(end_angle(ends[1]))
         toward = difference(on, along)
 
         def touched(angle: Series | Number) -> Series:
-            return curve.at(curve.support(turned(angle, side)))
+            return curve.at(curve.support(rotated(angle, side)))
 
-        arms = Curved(f"contact({self.name})", touched, toward, on), Vector("", Sum(0.0, ((1.0, free),)), along, -1)
+        arms = (
+            ProfileVector(f"contact({self.name})", touched, toward, on),
+            Vector("", Sum(0.0, ((1.0, free),)), along, -1),
+        )
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
@@ -152,14 +152,14 @@ class Face(Profiled, RubbingContact):
         On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
         """
         frame, face = self._sides(ends, poses)
-        path = path_of(frame, face.point.c[0], own, freedom)
+        path = relative_path(frame, face.point.c[0], own, freedom)
         facing = np.conjugate(frame.u.c[0]) * self._normal(face).c[0]
         if path.straight:
             reach = self.curve.at(self._support(frame, face).c[0]).c[0] - path.start
             rise = dot(facing, path.centre)
             found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
-        right, left = tangents_on_way(path, self._samples, facing, self.curve.closed)
+        right, left = face_tangencies(path, self._samples, facing, self.curve.closed)
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
 
@@ -211,9 +211,9 @@ class Face(Profiled, RubbingContact):
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the profile, and the part of the face that it touches."""
         line = self.curve.at(self.curve.samples.s).c[0]
-        travel = reach(self.coordinate(ends, poses).c[0])
+        travel = known_range(self.coordinate(ends, poses).c[0])
         track = Track(1, ends[1].point, ends[1].along.c[0], *travel, float(self.side))
         return Outline(0, line, self.curve.closed), track
 
 
-face = word("face", Face)
+face = constructor("face", Face)

@@ -8,19 +8,15 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import dot
+from compoundkin.base.arrays import Number, dot
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TANGENTIAL
-from compoundkin.model.fields import value_key, word
+from compoundkin.model.fields import constructor, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.geared import Geared
-from compoundkin.model.pairs.optional_answers import Accompanied
+from compoundkin.model.pairs.contract import Ends, Poses, TransmittingPair
+from compoundkin.model.pairs.geared import Geared, axes_of, distance_problems, pressure_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
-from compoundkin.model.pairs.wheel_lines import axes_of
-from compoundkin.model.pairs.wheel_sizes import distance_problems, pressure_problems
 
 # The pressure angle of standard involute teeth.
 STANDARD = float(np.deg2rad(20.0))
@@ -30,7 +26,7 @@ UNCOUNTED = 18
 
 
 @dataclass(frozen=True, eq=False)
-class Gear(Geared, Accompanied):
+class Gear(Geared, TransmittingPair):
     """Two gears in mesh. `internal` where the second is an internal gear (a ring) around the first.
 
     With a `module`, or with radii, the pitch circles must fit the distance of the axes; by teeth alone they take it.
@@ -147,4 +143,4 @@ class Gear(Geared, Accompanied):
         )
 
 
-gear = word("gear", Gear)
+gear = constructor("gear", Gear)

@@ -1,26 +1,33 @@
-"""What gears, belts and chains have in common: two links turn on a common carrier in a fixed ratio."""
+"""Two wheels on a common carrier with a fixed ratio, as gears and belts: sizes, axes, lines of action."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
-from compoundkin.base.errors import Problem
+from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
-from compoundkin.model.pairs.loop_vectors import angle_of, difference
-from compoundkin.model.pairs.optional_answers import DrawnPair, Osculation, Replaceable, TurnCounting, as_drivable
-from compoundkin.model.pairs.symbols import reach
-from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action, ratio
-from compoundkin.model.pairs.wheel_sizes import Sizes, Two, size_problems, two_of, wheel_problems
+from compoundkin.model.pairs.contract import (
+    DrawnPair,
+    Ends,
+    Osculation,
+    Pair,
+    Point,
+    Poses,
+    Replaceable,
+    TurnCounting,
+    as_drivable,
+    jacobian_of_rows,
+)
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference
+from compoundkin.model.pairs.symbols import known_range
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +71,7 @@ class Geared(TurnCounting, Replaceable):
         """Two sizes are numbers or arrays."""
         super().__post_init__()
         for name in ("teeth", "radii"):
-            object.__setattr__(self, name, two_of(name, getattr(self, name)))
+            object.__setattr__(self, name, two_sizes(name, getattr(self, name)))
 
     @property
     def turns_alike(self) -> bool:
@@ -152,7 +159,7 @@ class Geared(TurnCounting, Replaceable):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of the sum of angles and of the first angle."""
         turned = ratio(ends)
-        return table(
+        return jacobian_of_rows(
             (0.0, 0.0, turned, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 - turned),
             (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0),
         )
@@ -212,9 +219,151 @@ class Geared(TurnCounting, Replaceable):
     def apart(self, ends: Ends, poses: Poses) -> float:
         """Return the distance of the axes, the same at all poses."""
         first, second = axes_of(ends, poses)
-        return reach(abs(second - first))[0]
+        return known_range(abs(second - first))[0]
 
 
 def as_geared(pair: Pair) -> Geared | None:
     """Return a pair as one whose closure is a sum of angles, or None. The angles are its members', times constants."""
     return pair if isinstance(pair, Geared) else None
+
+
+class LineOfAction(NamedTuple):
+    """Where a line touches the circles about two axes, in the world. `across` is a unit vector at right angles."""
+
+    first: Number
+    second: Number
+    across: Number
+
+
+def ratio(ends: Ends) -> Number:
+    """Return how far the second wheel turns back for one of the first. Both are seen from the carrier."""
+    return ends[0].measure / ends[1].measure
+
+
+def axes_of(ends: Ends, poses: Poses) -> tuple[Number, Number]:
+    """Return where the axes of two wheels are."""
+    first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+    return first, second
+
+
+def line_of_action(axes: tuple[Number, Number], radii: tuple[Number, Number], side: float = 1.0) -> LineOfAction:
+    """Return a common tangent of the circles about two axes.
+
+    It is the inner one; the outer one where the second radius is negative. It touches the first circle to the left of
+    the way from axis to axis, or to the right for a `side` of -1.
+
+    >>> complex(line_of_action((0j, 5 + 0j), (1.0, -1.0)).second)
+    (5+1j)
+    """
+    (first, second), (one, two) = axes, radii
+    distance = np.abs(second - first)
+    cosine = (one + two) / distance
+    across = (second - first) / distance * (cosine + 1j * side * np.sqrt(1.0 - cosine**2))
+    return LineOfAction(first + one * across, second - two * across, across)
+
+
+Two = tuple[Number, Number]
+
+
+Sizes = Sequence[Number] | None
+
+
+# Radii fit a centre distance that they meet to this part of it: drawings are given to some five digits.
+FITS = 1e-5
+
+
+def two_sizes(key: str, value: Any) -> Two | None:
+    """Return two sizes as numbers or arrays. Raises InvalidMechanism naming the key for anything else.
+
+    >>> two_sizes("teeth", (20, 40))
+    (20.0, 40.0)
+    """
+    if value is None:
+        return None
+    try:
+        one, two = (np.asarray(size, dtype=float) for size in value)
+    except (TypeError, ValueError):
+        what = f"{value!r} are not two numbers"
+        raise InvalidMechanism(Problem(key, what, f"write {key}=(20, 40)")) from None
+    return one.item() if one.ndim == 0 else one, two.item() if two.ndim == 0 else two
+
+
+def wheel_problems(
+    links: Mapping[str, tuple[str, ...]], members: Sequence[str], axes: Sequence[str], where: str
+) -> Iterator[Problem]:
+    """Find unknown links, one link twice, and axes that are not shared."""
+    named = dict(zip(("first", "second", "carrier"), members, strict=True))
+    missing = [(key, name) for key, name in named.items() if name not in links]
+    for key, name in missing:
+        yield Problem(f"{where}.{key}", f"there is no link {name!r}", suggestion(name, list(links)))
+    if not missing and len(set(members)) < len(members):
+        yield Problem(where, "the two wheels and their carrier are not three different links", "name three links")
+    elif not missing:
+        for key, axis in zip(("first", "second"), axes, strict=True):
+            yield from _axis_problems(links, (named[key], named["carrier"]), axis, where, key)
+
+
+def _axis_problems(
+    links: Mapping[str, tuple[str, ...]], pinned: tuple[str, str], axis: str, where: str, key: str
+) -> Iterator[Problem]:
+    """Find an axis that a wheel and its carrier do not share. These are the links that are `pinned`."""
+    name, carrier = pinned
+    shared = [letter for letter in links[name] if letter in links[carrier]]
+    if axis and axis not in shared:
+        what = f"{name!r} and {carrier!r} do not share the point {axis!r}"
+        yield Problem(f"{where}.{key}_at", what, suggestion(axis, shared))
+    elif not shared:
+        what = f"{carrier!r} does not carry the axis of {name!r}: they share no point"
+        yield Problem(f"{where}.carrier", what, "give both a point of one letter, or name another carrier")
+    elif not axis:
+        what = f"{name!r} and {carrier!r} share several points"
+        yield Problem(f"{where}.{key}_at", what, f"name the axis: {', '.join(shared)}")
+
+
+def size_problems(teeth: Sizes, radii: Sizes, where: str) -> Iterator[Problem]:
+    """Find two sizes that are none, or do not go together. The latter are teeth and radii."""
+    if teeth is None and radii is None:
+        yield Problem(where, "it has no sizes", "give teeth = (20, 40) or radii = (10, 20)")
+    for key, sizes in (("teeth", teeth), ("radii", radii)):
+        if sizes is None:
+            continue
+        if not all(np.all(np.asarray(size) > 0) for size in sizes):
+            yield Problem(f"{where}.{key}", f"{_sizes_text(sizes)} are not two positive numbers")
+        elif key == "teeth" and not all(np.all(np.asarray(size) == np.round(size)) for size in sizes):
+            yield Problem(f"{where}.{key}", f"{_sizes_text(sizes)} are not whole numbers", "give radii instead")
+    if teeth is not None and radii is not None and not _proportional(teeth, radii):
+        what = f"teeth {_sizes_text(teeth)} and radii {_sizes_text(radii)} have different ratios"
+        yield Problem(where, what, "leave one of them out")
+
+
+def distance_problems(axes: str, distance: Number, wanted: Number, where: str, said: str) -> Iterator[Problem]:
+    """Find wheels whose sizes do not fit the distance of their axes. The axes are on the carrier."""
+    off = np.abs(wanted - distance) > FITS * np.abs(distance)
+    if np.any(off):
+        at = int(np.argmax(np.ravel(np.broadcast_to(off, np.shape(off)))))
+        a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (wanted, distance))
+        what = f"{said} {a:.6g}, but {axes} are {b:.6g} apart"
+        yield Problem(where, what, "change the sizes or move an axis; give teeth alone for a distance as it is")
+
+
+def _proportional(one: Sequence[Number], two: Sequence[Number]) -> bool:
+    return bool(np.all(np.abs(one[0] * two[1] - one[1] * two[0]) <= FITS * np.abs(one[0] * two[1])))
+
+
+def _sizes_text(sizes: Sequence[Number]) -> str:
+    return " and ".join(f"{size:g}" if np.ndim(size) == 0 else str(np.asarray(size).tolist()) for size in sizes)
+
+
+def pressure_problems(angle: Number, where: str) -> Iterator[Problem]:
+    """Find a pressure angle that is none."""
+    if np.ndim(angle) or not 0.0 <= angle < np.pi / 2.0:
+        shown = f"{np.rad2deg(angle):g} degrees" if np.ndim(angle) == 0 else "an array"
+        remedy = "give one angle from 0 up to 90 degrees, such as pressure_angle=ck.deg(20)"
+        yield Problem(f"{where}.pressure_angle", f"{shown} is no pressure angle", remedy)
+
+
+def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:
+    """Find a radius, or another length or number, that is not positive."""
+    if radius is not None and not np.all(np.asarray(radius) > 0):
+        shown = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
+        yield Problem(f"{where}.{key}", f"{shown} is not positive", "give the size of the wheel")

@@ -8,20 +8,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, cross, whole_turns
+from compoundkin.base.arrays import TURN, Number, cross, whole_turns
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Point, Poses
-from compoundkin.model.pairs.optional_answers import DrawnPair, TurnCounting
-from compoundkin.model.pairs.symbols import Mark, Track, Wheel, reach
-from compoundkin.model.pairs.wheel_sizes import FITS
+from compoundkin.model.pairs.contract import DrawnPair, Ends, Point, Poses, TurnCounting
+from compoundkin.model.pairs.geared import FITS
+from compoundkin.model.pairs.symbols import Mark, Track, Wheel, known_range
 
 Row = tuple[Number, ...]
 
 
-class OnLine(TurnCounting):
+class PitchLinePair(TurnCounting):
     """A wheel of a radius that rolls along a straight line. The line is another link's, which comes first."""
 
     free: ClassVar[tuple[str, ...]] = ("displacement",)
@@ -190,7 +189,7 @@ class OnLine(TurnCounting):
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the part of the line on which the wheel rolls, and the wheel."""
         line, wheel = ends
-        low, high = reach(self.coordinate(ends, poses).c[0])
+        low, high = known_range(self.coordinate(ends, poses).c[0])
         radius = abs(wheel.measure)
         pitch = self.pitch(radius)
         track = Track(0, line.point, line.along.c[0], low, high, float(self.side), pitch)

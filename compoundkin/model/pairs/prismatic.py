@@ -8,26 +8,42 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, cross, dot
+from compoundkin.base.arrays import TURN, Number, cross, dot
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import NORMAL
-from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
+from compoundkin.model.fields import NameWording, constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Point, Poses, table
-from compoundkin.model.pairs.drawn_numbers import DrawnGuide
-from compoundkin.model.pairs.dry_contacts import RubbingGuide
-from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
-from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
-from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, Guided, Orienting
-from compoundkin.model.pairs.symbols import Mark, Sliding, reach
+from compoundkin.model.pairs.contact import FrictionGuide
+from compoundkin.model.pairs.contract import (
+    DrawnGuide,
+    DrawnPair,
+    Drivable,
+    Ends,
+    Guided,
+    Orienting,
+    Point,
+    Poses,
+    jacobian_of_rows,
+)
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    end_angle,
+)
+from compoundkin.model.pairs.symbols import Mark, Sliding, known_range
+from compoundkin.model.pairs.travel_limits import Reach, TravelLimited, reach_key
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended, DrawnGuide):
+class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, DrawnGuide):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of
@@ -157,7 +173,7 @@ class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended, DrawnGuide):
         across = cross(1j * e, gap) + cross(e, -1j * arm0)
         along = dot(1j * e, gap) + dot(e, -1j * arm0)
         aligned = dot(e, block.along.c[0])
-        return table(
+        return jacobian_of_rows(
             (e.imag, -e.real, across, -e.imag, e.real, cross(e, 1j * arm1)),
             (0.0, 0.0, -aligned, 0.0, 0.0, aligned),
             (-e.real, -e.imag, along, e.real, e.imag, dot(e, 1j * arm1)),
@@ -176,7 +192,7 @@ class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended, DrawnGuide):
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """Return the way along the guide; angles of block and guide are tied."""
         free = Unknown("displacement", self.name)
-        guide, block = (angle_of(name).plus(direction(end)) for name, end in zip(self.members, ends, strict=True))
+        guide, block = (angle_of(name).plus(end_angle(end)) for name, end in zip(self.members, ends, strict=True))
         arm, tied = Vector("", Sum(0.0, ((1.0, free),)), guide), Auxiliary(self.name, difference(guide, block))
         points = ends[0].point, ends[1].point
         return LoopTerms(points, (f"{self.through}'", self.at), (arm,), (free,), (tied,))
@@ -204,15 +220,15 @@ class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended, DrawnGuide):
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return a block on the part of its guide that it uses."""
         guide, block = ends
-        low, high = reach(self.coordinate(ends, poses).c[0])
+        low, high = known_range(self.coordinate(ends, poses).c[0])
         return (Sliding(guide.point, guide.along.c[0], low, high, block.point, block.along.c[0]),)
 
     def with_ends(
         self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
     ) -> tuple[Mark, ...]:
         """Return a block on its whole guide."""
-        low, high, stops = self.way_shown(bounds, self.coordinate(ends, poses).c[0])
+        low, high, stops = self.drawn_extent(bounds, self.coordinate(ends, poses).c[0])
         return tuple(mark._replace(low=low, high=high, stops=stops) for mark in marks if isinstance(mark, Sliding))
 
 
-slide = word("slide", Prismatic)
+slide = constructor("slide", Prismatic)

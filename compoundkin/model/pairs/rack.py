@@ -8,24 +8,22 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import dot, first_entry
+from compoundkin.base.arrays import Number, dot, first_entry
 from compoundkin.base.errors import Problem
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TANGENTIAL
-from compoundkin.model.fields import link_key, point_key, value_key, word
-from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
+from compoundkin.model.pairs.contract import Ends, Pair, Poses, TransmittingPair, jacobian_of_rows
 from compoundkin.model.pairs.gear import STANDARD, UNCOUNTED
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
-from compoundkin.model.pairs.loop_vectors import angle_of, difference, direction
-from compoundkin.model.pairs.optional_answers import Accompanied
-from compoundkin.model.pairs.pitch_line import OnLine
+from compoundkin.model.pairs.geared import FITS, pressure_problems, radius_problems
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, end_angle
+from compoundkin.model.pairs.pitch_line import PitchLinePair
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.wheel_sizes import FITS, pressure_problems, radius_problems
 
 
 @dataclass(frozen=True, eq=False)
-class Rack(OnLine, Accompanied):
+class Rack(PitchLinePair, TransmittingPair):
     """The link `pinion` rolls without slip along the pitch line of the link `rack`.
 
     The pitch line runs through the point `through` of the rack, in the direction `angle` (radians, from the rack's x
@@ -114,7 +112,7 @@ class Rack(OnLine, Accompanied):
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of slip and displacement."""
-        return table(*self.rows(ends, poses)[1:])
+        return jacobian_of_rows(*self.rows(ends, poses)[1:])
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
         """Return forces along the pitch line. At the pitch point, and at the axis."""
@@ -148,7 +146,7 @@ class Rack(OnLine, Accompanied):
         """Return the way along the pitch line, and the pinion's turn. Other pairs lead the axis on this way."""
         rack, pinion = (angle_of(name) for name in self.members)
         turned = difference(rack, pinion).times(ends[1].measure).plus(-ends[0].measure)
-        rolled = Auxiliary(self.name, turned, along=rack.plus(direction(ends[0])), counts_turns=True)
+        rolled = Auxiliary(self.name, turned, along=rack.plus(end_angle(ends[0])), counts_turns=True)
         points = ends[0].point, ends[1].point
         return LoopTerms(points, ("line", "axis"), equations=(rolled,), is_crossed=False)
 
@@ -165,4 +163,4 @@ class Rack(OnLine, Accompanied):
         return 2.0 * np.pi * radius / UNCOUNTED
 
 
-rack = word("rack", Rack)
+rack = constructor("rack", Rack)

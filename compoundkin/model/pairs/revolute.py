@@ -8,15 +8,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Point, Poses, table
-from compoundkin.model.pairs.dry_contacts import RubbingPin
+from compoundkin.model.pairs.contact import FrictionPin
+from compoundkin.model.pairs.contract import Drivable, Ends, Point, Poses, jacobian_of_rows
 from compoundkin.model.pairs.loop_terms import LoopTerms
-from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.symbols import Mark, Pin
 
 # At a multiple pin the first that occurs in no name of its links joins two of them, so that pair names are unique.
@@ -24,7 +24,7 @@ SEPARATORS = ("-", "/", ":", " to ", " - ")
 
 
 @dataclass(frozen=True)
-class Revolute(RubbingPin, Drivable):
+class Revolute(FrictionPin, Drivable):
     """A pin at the letter `at` between the links `first` and `second`.
 
     Held: the distance in x and in y between the two sides of the pin. Free: the angle from first to second.
@@ -75,7 +75,7 @@ class Revolute(RubbingPin, Drivable):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of gap x, gap y and angle."""
         arm = [(pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
-        return table(
+        return jacobian_of_rows(
             (-1.0, 0.0, arm[0].imag, 1.0, 0.0, -arm[1].imag),
             (0.0, -1.0, -arm[0].real, 0.0, 1.0, arm[1].real),
             (0.0, 0.0, -1.0, 0.0, 0.0, 1.0),

@@ -8,23 +8,29 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.fields import link_key, point_key, value_key, word
-from compoundkin.model.pairs.contract import Ends, Poses, table
-from compoundkin.model.pairs.force_answers import Rolls
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
-from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
-from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.model.pairs.pitch_line import OnLine
-from compoundkin.model.pairs.wheel_sizes import radius_problems
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
+from compoundkin.model.pairs.contract import Drivable, Ends, Poses, RollingContact, jacobian_of_rows
+from compoundkin.model.pairs.geared import radius_problems
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    end_angle,
+)
+from compoundkin.model.pairs.pitch_line import PitchLinePair
 
 
 @dataclass(frozen=True, eq=False)
-class Rolling(Rolls, OnLine, Drivable):
+class Rolling(RollingContact, PitchLinePair, Drivable):
     """A wheel that rolls without slip along a straight line.
 
     The wheel is the link `link`, about its point `at`; the line is one of the link `on`.
@@ -90,7 +96,7 @@ class Rolling(Rolls, OnLine, Drivable):
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of distance, slip and displacement."""
-        return table(*self.rows(ends, poses))
+        return jacobian_of_rows(*self.rows(ends, poses))
 
     def contact(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
         """Return where the wheel touches the line, and the normal into the wheel."""
@@ -109,7 +115,7 @@ class Rolling(Rolls, OnLine, Drivable):
         """Return the way along the line and out to the wheel's middle."""
         free, radius = Unknown("displacement", self.name), ends[1].measure
         on, wheel = (angle_of(name) for name in self.members)
-        along, side = on.plus(direction(ends[0])), int(np.sign(first_entry(radius)))
+        along, side = on.plus(end_angle(ends[0])), int(np.sign(first_entry(radius)))
         out = Vector(f"r({self.name})", Sum(np.abs(radius)), along.plus(np.pi / 2.0), side)
         turned = difference(on, wheel).times(radius)
         rolled = Auxiliary(self.name, Sum(-ends[0].measure, ((1.0, free), *turned.parts)), counts_turns=True)
@@ -128,4 +134,4 @@ class Rolling(Rolls, OnLine, Drivable):
         return Pose(free * line.along + (line.point + 1j * line.along * across) - u * wheel.point, u, theta)
 
 
-roll = word("roll", Rolling)
+roll = constructor("roll", Rolling)

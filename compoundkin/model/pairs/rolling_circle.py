@@ -8,24 +8,39 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, whole_turns
+from compoundkin.base.arrays import TURN, Number, whole_turns
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.fields import link_key, point_key, value_key, word
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Point, Poses, table
-from compoundkin.model.pairs.force_answers import Rolls
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
-from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
-from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, TurnCounting
+from compoundkin.model.pairs.contract import (
+    DrawnPair,
+    Drivable,
+    Ends,
+    Point,
+    Poses,
+    RollingContact,
+    TurnCounting,
+    jacobian_of_rows,
+)
+from compoundkin.model.pairs.geared import radius_problems
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    end_angle,
+)
 from compoundkin.model.pairs.symbols import Mark, Wheel
-from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 
 @dataclass(frozen=True, eq=False)
-class RollingOnCircle(Rolls, TurnCounting, Drivable):
+class RollingOnCircle(RollingContact, TurnCounting, Drivable):
     """A wheel that rolls without slip on a circle.
 
     The wheel is the link `link`, about its point `at`; the circle is one of the link `on`. The circle is that of radius
@@ -109,7 +124,7 @@ class RollingOnCircle(Rolls, TurnCounting, Drivable):
         drawn = (wheel.angle - on.angle).c[0] - self._turns * np.angle((line * on.u.conj()).c[0])
         return drawn if self.phase is None else self.phase + whole_turns(drawn - self.phase)
 
-    def shown_coordinate(self, ends: Ends, poses: Poses) -> Number:
+    def drawn_coordinate(self, ends: Ends, poses: Poses) -> Number:
         """Return the direction of the line of centres within a turn. The wheel's angle belongs to any of its turns."""
         line = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
         return np.angle((line * poses[0].u.conj()).c[0])
@@ -155,7 +170,7 @@ class RollingOnCircle(Rolls, TurnCounting, Drivable):
         arms = [pose.at(end.point).c[0] - pose.z.c[0] for pose, end in zip(poses, ends, strict=True)]
         slow = 1.0 / ends[1].measure
         first, second = -1j * arms[0] - 1j * line * (1.0 - slow), 1j * arms[1] - 1j * line * slow
-        return table(
+        return jacobian_of_rows(
             (-1.0, 0.0, first.real, 1.0, 0.0, second.real),
             (0.0, -1.0, first.imag, 0.0, 1.0, second.imag),
             (0.0, 0.0, -slow, 0.0, 0.0, slow),
@@ -187,7 +202,7 @@ class RollingOnCircle(Rolls, TurnCounting, Drivable):
         """Return the way from the circle's middle to the wheel's."""
         free = Unknown("direction", self.name)
         on, wheel = (angle_of(name) for name in self.members)
-        line = Sum(direction(ends[0]), (*on.parts, (1.0, free)))
+        line = Sum(end_angle(ends[0]), (*on.parts, (1.0, free)))
         turned = Sum(-ends[0].measure, (*difference(on, wheel).parts, (-ends[1].measure, free)))
         arm = Vector(f"r({self.name})", Sum(np.abs(ends[0].along.c[0])), line)
         rolled = Auxiliary(self.name, turned, counts_turns=True)
@@ -217,4 +232,4 @@ class RollingOnCircle(Rolls, TurnCounting, Drivable):
         return Wheel(0, ends[0].point, distance - radius, 0, self.inside), Wheel(1, ends[1].point, abs(radius))
 
 
-roll_around = word("roll_around", RollingOnCircle)
+roll_around = constructor("roll_around", RollingOnCircle)

@@ -11,23 +11,22 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import link_key, point_key, value_key, word
+from compoundkin.base.series import Series
+from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Touch, row
-from compoundkin.model.pairs.contract import Ends, Pair, Poses
-from compoundkin.model.pairs.dry_contacts import RubbingContact
-from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
-from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
+from compoundkin.model.pairs.contact import FrictionContact, Touch, passing_rates
+from compoundkin.model.pairs.contract import Ends, Equivalent, Guided, Osculation, Pair, Poses
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.symbols import Groove, Mark, Stud, line_of, reach
+from compoundkin.model.pairs.symbols import Groove, Mark, Stud, known_range, point_array
+from compoundkin.model.pairs.travel_limits import Reach, TravelLimited, reach_key
 
 
 @dataclass(frozen=True, eq=False)
-class Slot(RubbingContact, Guided, Ended):
+class Slot(FrictionContact, Guided, TravelLimited):
     """The point `at` of `link` runs along a straight slot in the link `on`.
 
     The slot is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of
@@ -104,7 +103,7 @@ class Slot(RubbingContact, Guided, Ended):
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
         """Return the row of the pin along the slot."""
-        return row(poses, poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0])
+        return passing_rates(poses, poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0])
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """Return the displacement along the slot."""
@@ -137,25 +136,25 @@ class Slot(RubbingContact, Guided, Ended):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return a groove as long as the pin's way, and the pin."""
-        return Groove(0, _way(ends, *reach(self.coordinate(ends, poses).c[0]))), Stud(1, ends[1].point)
+        return Groove(0, _centre_line(ends, *known_range(self.coordinate(ends, poses).c[0]))), Stud(1, ends[1].point)
 
     def with_ends(
         self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
     ) -> tuple[Mark, ...]:
         """Return the whole groove, and the pin."""
-        low, high, stops = self.way_shown(bounds, self.coordinate(ends, poses).c[0])
-        return (Groove(0, _way(ends, low, high), stops), *marks[1:])
+        low, high, stops = self.drawn_extent(bounds, self.coordinate(ends, poses).c[0])
+        return (Groove(0, _centre_line(ends, low, high), stops), *marks[1:])
 
 
-def _way(ends: Ends, low: float, high: float) -> Number:
+def _centre_line(ends: Ends, low: float, high: float) -> Number:
     """The middle line of a slot, as far as it is used."""
-    return line_of(ends[0].point + ends[0].along.c[0] * place for place in (low, high))
+    return point_array(ends[0].point + ends[0].along.c[0] * place for place in (low, high))
 
 
-slot = word("slot", Slot)
+slot = constructor("slot", Slot)
 
 
-class Loosened(NamedTuple):
+class ReleasedPair(NamedTuple):
     """A pair with some held coordinates left out. Their numbers, what they are in words, and what is left."""
 
     coordinates: tuple[int, ...]
@@ -176,17 +175,17 @@ class TurningBlock(Slot):
         return guide, End(block.point)
 
 
-def loosened(pair: Pair) -> Iterator[Loosened]:
+def releases(pair: Pair) -> Iterator[ReleasedPair]:
     """List the ways to leave out part of a written pair, the least first.
 
     >>> from compoundkin.model.pairs import slide
-    >>> [(way.coordinates, way.freed) for way in loosened(slide("w", on="v", at="A", through="B"))]
+    >>> [(way.coordinates, way.freed) for way in releases(slide("w", on="v", at="A", through="B"))]
     [((1,), 'in turning'), ((0, 1), 'as a whole')]
     """
     if isinstance(pair, Prismatic):
         words = {name: getattr(pair, name) for name in ("link", "on", "at", "through", "angle", "toward")}
-        yield Loosened((1,), "in turning", TurningBlock(**words, name=f"{pair.name} (turning)", slide=pair))
-    yield Loosened(tuple(range(pair.held)), "as a whole", None)
+        yield ReleasedPair((1,), "in turning", TurningBlock(**words, name=f"{pair.name} (turning)", slide=pair))
+    yield ReleasedPair(tuple(range(pair.held)), "as a whole", None)
 
 
 def pin_in_slot(letter: str, pinned: str, slotted: str, through: str) -> Pair:

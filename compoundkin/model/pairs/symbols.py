@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # A circle is given by so many points: its chords are then within 0.1 % of its radius.
 AROUND = 72
@@ -100,10 +100,10 @@ class Outline(NamedTuple):
 Mark: TypeAlias = Pin | Stud | Sliding | Groove | Wheel | Track | Strap | Outline
 
 
-def reach(values: Number) -> tuple[float, float]:
+def known_range(values: Number) -> tuple[float, float]:
     """Return the least and the greatest known value; zeros where none is.
 
-    >>> reach(np.array([2.0, np.nan, 1.0]))
+    >>> known_range(np.array([2.0, np.nan, 1.0]))
     (1.0, 2.0)
     """
     known = np.ravel(values)
@@ -111,10 +111,10 @@ def reach(values: Number) -> tuple[float, float]:
     return (known.min().item(), known.max().item()) if known.size else (0.0, 0.0)
 
 
-def line_of(points: Iterable[Number]) -> Number:
+def point_array(points: Iterable[Number]) -> Number:
     """Return points as an array. Numbers of another kind, such as those with notes, stay so.
 
-    >>> line_of([0j, 1.0])
+    >>> point_array([0j, 1.0])
     array([0.+0.j, 1.+0.j])
     """
     found = list(points)
@@ -130,7 +130,7 @@ def arc_line(centre: Number, radius: Number, start: float, stop: float) -> Numbe
     """
     count = max(2, int(np.ceil(abs(stop - start) / (2.0 * np.pi) * AROUND)) + 1)
     shares = np.linspace(0.0, 1.0, count)
-    return line_of(centre + radius * _unit(start + (stop - start) * share) for share in shares)
+    return point_array(centre + radius * _unit(start + (stop - start) * share) for share in shares)
 
 
 def _unit(angle: Number) -> Number:

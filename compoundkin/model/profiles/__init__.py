@@ -3,9 +3,17 @@
 Coordinates are those of the link that carries the profile. What they have in common is their `curve`.
 """
 
-from compoundkin.model.profiles.contract import Profile, side_of
 from compoundkin.model.profiles.double_cams import DoubleCam, conjugate, constant_breadth
-from compoundkin.model.profiles.given_profiles import DiscProfile, FormulaProfile, PointsProfile, disc, formula, profile
+from compoundkin.model.profiles.profile import (
+    DiscProfile,
+    FormulaProfile,
+    PointsProfile,
+    Profile,
+    disc,
+    formula,
+    profile,
+    side_of,
+)
 from compoundkin.model.profiles.synthesised import Synthesised, synthesise
 
 KINDS: tuple[type[Profile], ...] = (DiscProfile, PointsProfile, FormulaProfile, Synthesised)

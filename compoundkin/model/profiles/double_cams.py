@@ -17,20 +17,19 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Series
-from compoundkin.model.geometry import place_of
+from compoundkin.model.geometry import single_point
 from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.profiles.fitness import ROUNDING
-from compoundkin.model.profiles.synthesised import Synthesised
+from compoundkin.model.profiles.synthesised import ROUNDING, Synthesised
 
 # Places of half a turn at which a program is held against that half a turn later.
 PLACES = 1441
 
 
 @dataclass(frozen=True, repr=False)
-class DoubleCam(PrintsShort):
+class DoubleCam(ShortRepr):
     """Two profiles on one shaft, between which a follower is held.
 
     See `conjugate` and `constant_breadth`. `second` is `first` where one disc does both.
@@ -101,10 +100,12 @@ def conjugate(
     >>> cams.apart  # 50 + 50 + 20
     120.0
     """
-    pin = None if pivot is None else place_of(pivot, "pivot")
+    pin = None if pivot is None else single_point(pivot, "pivot")
     first = Synthesised(program, base, follower, roller, offset, angle, pin, arm, face, side, clockwise, start)
     other = {"base": second_base, "roller": second_roller, "arm": second_arm, "face": second_face}
-    return _made(first, _opposite(first, {key: value for key, value in other.items() if value is not None}))
+    return _checked_double_cam(
+        first, _opposite(first, {key: value for key, value in other.items() if value is not None})
+    )
 
 
 @checked
@@ -134,14 +135,14 @@ def constant_breadth(
     80.0
     """
     made = Synthesised(program, base, follower, roller, angle=angle, clockwise=clockwise, start=start)
-    return _made(made, made, list(_uneven(program)))
+    return _checked_double_cam(made, made, list(_uneven(program)))
 
 
-def upside_down(program: Program) -> Program:
+def inverted_program(program: Program) -> Program:
     """Return the program that falls as another one rises, between the same values.
 
     >>> from compoundkin.model.laws import fall, program, rise
-    >>> upside_down(program(fall(3, over=1), rise(5, over=2), start=3.0)).values.tolist()
+    >>> inverted_program(program(fall(3, over=1), rise(5, over=2), start=3.0)).values.tolist()
     [2.0, 5.0, 0.0]
     """
     total = float(np.min(program.values) + np.max(program.values))
@@ -154,7 +155,7 @@ def _opposite(first: Synthesised, other: Mapping[str, Any]) -> Synthesised:
     behind = np.pi if first.pivot is None else 0.0
     return replace(
         first,
-        program=upside_down(first.program),
+        program=inverted_program(first.program),
         # what is on the left of a direction is on the right of the opposite one
         offset=0.0 - first.offset,
         angle=first.angle + behind,
@@ -163,7 +164,7 @@ def _opposite(first: Synthesised, other: Mapping[str, Any]) -> Synthesised:
     )
 
 
-def _made(first: Synthesised, second: Synthesised, wrong: list[Problem] | None = None) -> DoubleCam:
+def _checked_double_cam(first: Synthesised, second: Synthesised, wrong: list[Problem] | None = None) -> DoubleCam:
     found = list(first.problems("")) or wrong or []
     if not found and second != first:
         found = [replace(one, where=f"second {one.where}".strip()) for one in second.problems("")]

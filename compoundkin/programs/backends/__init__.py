@@ -6,14 +6,14 @@ from collections.abc import Callable
 from importlib.util import find_spec
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.programs.backends.contract import BackEnd, Runner
-from compoundkin.programs.backends.tape.tape_backend import Tape
+from compoundkin.programs.backends.runner import BackEnd, Runner
+from compoundkin.programs.backends.tape_backend import Tape
 from compoundkin.programs.graph.flat_program import FlatProgram
 
 
 def _llvm() -> BackEnd:
     """Return the back end that compiles; its package is an extra."""
-    from compoundkin.programs.backends.llvm.llvm_backend import Llvm
+    from compoundkin.programs.backends.llvm_backend import Llvm
 
     return Llvm()
 

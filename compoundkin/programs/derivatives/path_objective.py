@@ -1,32 +1,49 @@
-"""An objective of a compiled path: a function of each pose, summed over the poses, and its gradient."""
+"""An objective of a compiled path: a user's function of one pose, recorded, summed over the poses, and its gradient."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import partial, reduce
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import UnassembledPoses, warn
-from compoundkin.programs.calls.call_numbers import CallNumbers, picked
-from compoundkin.programs.calls.written_arrays import hold_threads
-from compoundkin.programs.derivatives.law_chain import slope_inputs, summed_slopes
-from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveValues, objective_program
-from compoundkin.programs.derivatives.parameters import with_parameters
-from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
-from compoundkin.programs.derivatives.told_designs import ASSEMBLED, EVERYWHERE, SOLVED, told_designs
-from compoundkin.programs.ready_program import ReadyProgram
+from compoundkin.base.arguments import checked, planar_numbers, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import (
+    CompoundkinError,
+    InvalidInput,
+    Problem,
+    UnassembledPoses,
+    UnknownName,
+    suggestion,
+    warn,
+)
+from compoundkin.kinematics.inputs import fit
+from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, check_threads, numbers_of_designs
+from compoundkin.programs.derivatives.differentiation import reverse
+from compoundkin.programs.derivatives.law_slopes import slope_inputs, summed_slopes
+from compoundkin.programs.derivatives.solved_inputs import (
+    ALL_POSES,
+    ASSEMBLED_POSES,
+    SOLVED_POSES,
+    known_poses,
+    solved_inputs,
+)
+from compoundkin.programs.graph.operation_graph import PARAMETER, InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import TOTAL
+from compoundkin.programs.recorded_path import RecordedPath
+from compoundkin.programs.recording.recorded_number import RecordedNumber, one_pose, selected
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PathObjective(PrintsShort):
+class PathObjective(ShortRepr):
     """A function of the poses of a compiled path, summed over them.
 
     It is called like the path, and with what the function reads besides outputs (`target=...`): numbers or arrays, real
@@ -98,18 +115,18 @@ class PathObjective(PrintsShort):
         self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
     ) -> tuple[Any, dict[str, Any]]:
         """Return value and slopes; designs that come near a limit are computed again with masks."""
-        hold_threads(threads)
+        check_threads(threads)
         whole, complex_names = with_parameters(numbers, given)
         run, path = partial(self._run, complex_names, is_sloped, threads), self.path
         every = np.arange(whole.extent[0])
-        found = run(whole, EVERYWHERE)
+        found = run(whole, ALL_POSES)
         look = path.limits.doubtful(whole, found.least)
         if look is None:
             return found.shaped(whole.shape)
         parts = [(every, found)]
         if len(look.lost):
-            parts.append((look.lost, run(picked(whole, look.lost), ASSEMBLED)))
-        parts += [(part, run(told, SOLVED)) for part, told in told_designs(path, whole, look.handed)]
+            parts.append((look.lost, run(numbers_of_designs(whole, look.lost), ASSEMBLED_POSES)))
+        parts += [(part, run(told, SOLVED_POSES)) for part, told in solved_inputs(path, whole, look.to_solve)]
         joined = ObjectiveValues.joined(len(every), parts)
         missing = int(np.count_nonzero(np.isnan(joined.value)))
         if missing:
@@ -125,7 +142,7 @@ class PathObjective(PrintsShort):
             path = self.path
             by = slope_inputs(path.dimensions, path.order) if is_sloped else {}
             form = ObjectiveForm(self.function, given, by, known)
-            variant = path.variant(numbers.still, known == SOLVED)
+            variant = path.variant(numbers.still, known == SOLVED_POSES)
             self._programs[key] = objective_program(variant, path.names, numbers, form, path.chosen_backend)
         found = ObjectiveValues.of(self._programs[key].run(numbers, threads))
         if not (is_sloped and self.path.law_numbers):
@@ -134,3 +151,218 @@ class PathObjective(PrintsShort):
 
     def __repr__(self) -> str:
         return f"PathObjective(of {self.path!r})"
+
+
+# Besides the names of dimensions: the sum and the least margin.
+_SUM, _MARGIN = "", " "
+
+
+@dataclass(frozen=True)
+class ObjectiveForm:
+    """What is asked of an objective.
+
+    `given` tells of each name given with the call whether it is complex, `by` what slopes are by, one input or two of a
+    point, and `known` how it is known which poses there are.
+    """
+
+    function: Callable[[ObjectivePose], Any]
+    given: Mapping[str, bool]
+    by: Mapping[str, tuple[InputNumber, ...]]
+    known: str
+
+
+@dataclass(frozen=True, repr=False)
+class ObjectiveValues(ShortRepr):
+    """The sum, the least margin and the slopes of each design.
+
+    All are arrays (1 or designs, 1 or poses).
+    """
+
+    value: Number
+    least: Number
+    slopes: Mapping[str, Number]
+
+    @classmethod
+    def of(cls, found: Mapping[str, Number]) -> ObjectiveValues:
+        """Return what the program of an objective has found."""
+        return cls(found[_SUM], found[_MARGIN], {k: slope for k, slope in found.items() if k not in (_SUM, _MARGIN)})
+
+    @classmethod
+    def joined(cls, count: int, parts: Sequence[tuple[Number, ObjectiveValues]]) -> ObjectiveValues:
+        """Join the values of some designs, by index.
+
+        Later ones take the place of earlier ones.
+        """
+
+        def put(arrays: Sequence[Number]) -> Number:
+            whole = np.empty((count, arrays[0].shape[1]), arrays[0].dtype)
+            for (designs, _), array in zip(parts, arrays, strict=True):
+                whole[designs] = array
+            return whole
+
+        values = [part for _, part in parts]
+        slopes = {name: put([each.slopes[name] for each in values]) for name in values[0].slopes}
+        value = put([each.value for each in values])
+        for slope in slopes.values():
+            # a sum that is none has no slopes
+            slope[np.isnan(value[:, 0])] = complex(np.nan, np.nan) if np.iscomplexobj(slope) else np.nan
+        return cls(value, put([each.least for each in values]), slopes)
+
+    def shaped(self, shape: tuple[int, ...]) -> tuple[Any, dict[str, Any]]:
+        """Return sum and slopes in the form of the call.
+
+        Slopes along the motion keep the last axis.
+        """
+
+        def formed(array: Number) -> Any:
+            over = shape if array.shape[1] > 1 else shape[:-1]
+            whole = array if array.size == prod(over) else np.broadcast_to(array, (prod(shape[:-1]), array.shape[1]))
+            return whole.reshape(over)
+
+        return formed(self.value), {name: formed(slope) for name, slope in self.slopes.items()}
+
+
+def objective_program(
+    path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
+) -> ReadyProgram[str]:
+    """Make the program of an objective for numbers of some form."""
+    graph = path.mechanism.graph
+    assembled, known = known_poses(path, names, form.known)
+    outputs = {name: _masked_output(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
+    cost = record_objective(form.function, graph, outputs, form.given, assembled)
+    root = graph.apply(TOTAL, cost)
+    kept = reduce(RecordedNumber.__and__, _used_truths(graph, cost, known), assembled)
+    by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
+    every = [k for nodes in by.values() for k in nodes]
+    found = dict(zip(every, reverse(graph, root, every, numbers.strata(graph), kept.x), strict=True))
+    slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
+    nodes = {_SUM: (root,), _MARGIN: (path.least,), **slopes}
+    return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
+
+
+def _masked_output(output: RecordedNumber, assembled: RecordedNumber) -> RecordedNumber:
+    return selected(assembled, output, complex(np.nan, np.nan) if output.y is not None else np.nan)
+
+
+def _used_truths(graph: OperationGraph, cost: int, known: Mapping[str, RecordedNumber]) -> list[RecordedNumber]:
+    """Return where the outputs are known that a cost hangs on."""
+    needed = set(graph.needed([cost]))
+    return [truth for truth in known.values() if truth.x in needed]
+
+
+# What an objective reads besides outputs and what it is given.
+ASSEMBLED = "assembled"
+
+
+class ObjectivePose:
+    """One pose of a path, as an objective sees it.
+
+    `at["G.position"]` is an output of the path, `at["target"]` what is given under this name with each call;
+    `at.assembled`, or `at["assembled"]`, tells whether the pose is.
+    """
+
+    def __init__(self, known: Mapping[str, RecordedNumber], assembled: RecordedNumber) -> None:
+        self._known = {**known, ASSEMBLED: assembled}
+        self.read: set[str] = set()
+
+    def __getitem__(self, name: str) -> RecordedNumber:
+        """Return an output of the path, or what is given with the call."""
+        if name not in self._known:
+            what = "it is no output of the path, and was not given with the call"
+            raise UnknownName(Problem(str(name), what, suggestion(name, list(self._known))))
+        self.read.add(name)
+        return self._known[name]
+
+    @property
+    def assembled(self) -> RecordedNumber:
+        """Whether the pose is assembled."""
+        return self[ASSEMBLED]
+
+    def __repr__(self) -> str:
+        return f"ObjectivePose({', '.join(self._known)})"
+
+
+def recorded_parameter(graph: OperationGraph, name: str, is_complex: bool) -> RecordedNumber:
+    """Return what is given under a name with a call, as a recorded number."""
+    return RecordedNumber.given(graph, *parameter_inputs(name, is_complex))
+
+
+def parameter_inputs(name: str, is_complex: bool) -> tuple[InputNumber, ...]:
+    """Return the real numbers that are given under a name."""
+    return tuple(InputNumber(PARAMETER, name, part) for part in (("x", "y") if is_complex else ("",)))
+
+
+def record_objective(
+    function: Callable[[ObjectivePose], Any],
+    graph: OperationGraph,
+    outputs: Mapping[str, RecordedNumber],
+    given: Mapping[str, bool],
+    assembled: RecordedNumber,
+) -> int:
+    """Return the node of what an objective says of one pose.
+
+    `given` tells of each name given with the call whether it is complex. Raises InvalidInput for what cannot be
+    recorded, UnknownName for what is not read or not there.
+    """
+    taken = [
+        Problem(name, "the pose has this by itself", "give it another name") for name in _taken_names(outputs, given)
+    ]
+    if taken:
+        raise InvalidInput(taken)
+    pose = ObjectivePose(
+        {**outputs, **{name: recorded_parameter(graph, name, c) for name, c in given.items()}}, assembled
+    )
+    try:
+        with one_pose():
+            cost = assembled.like(function(pose))
+    except CompoundkinError:
+        raise
+    except (TypeError, AttributeError, ValueError, OverflowError) as error:
+        what = f"it cannot be recorded: {error}"
+        remedy = "write it of one pose, in arithmetic and NumPy's functions of numbers; np.where instead of if"
+        raise InvalidInput(Problem("objective", what, remedy)) from error
+    unread = [name for name in given if name not in pose.read]
+    if unread:
+        what, read = "the objective does not read it", [name for name in pose.read if name not in outputs]
+        raise UnknownName([Problem(name, what, suggestion(name, read)) for name in unread])
+    if cost.y is not None:
+        raise InvalidInput(Problem("objective", "its value is complex", "take abs(...) ** 2, or a .real part"))
+    if graph.is_truth(cost.x):
+        return graph.apply("select", cost.x, graph.constant(1.0), graph.constant(0.0))
+    return cost.x
+
+
+def _taken_names(outputs: Mapping[str, RecordedNumber], given: Mapping[str, bool]) -> list[str]:
+    """Return what is given under a name that means something already."""
+    return [name for name in given if name in outputs or name == ASSEMBLED]
+
+
+def with_parameters(numbers: CallNumbers, given: Mapping[str, Any]) -> tuple[CallNumbers, dict[str, bool]]:
+    """Return the numbers of a call with those given by name.
+
+    It tells of each name whether it is complex. Raises InvalidInput for what is no number, not finite, or does not
+    broadcast.
+    """
+    arrays = {name: _parameter_array(name, value) for name, value in sorted(given.items())}
+    shape = numbers.shape
+    for name, array in arrays.items():
+        try:
+            shape = np.broadcast_shapes(shape, array.shape)
+        except ValueError:
+            what = f"shape {array.shape} does not broadcast with {shape}"
+            raise InvalidInput(Problem(name, what, "the last axis is the motion")) from None
+    found = numbers.reshaped(shape)
+    more = dict(found.given)
+    for name, array in arrays.items():
+        whole = np.atleast_2d(fit(shape)(array))
+        for part, number in zip(parameter_inputs(name, np.iscomplexobj(array)), (whole.real, whole.imag), strict=False):
+            more[part] = np.asarray(number, float)
+    return replace(found, given=more), {name: np.iscomplexobj(array) for name, array in arrays.items()}
+
+
+def _parameter_array(name: str, value: Any) -> Number:
+    planar = planar_numbers(name, value)
+    array = planar if np.iscomplexobj(value) else real_numbers(name, value)
+    if array.size == 0 or not np.isfinite(array).all():
+        raise InvalidInput(Problem(name, "the value is empty or not finite"))
+    return array

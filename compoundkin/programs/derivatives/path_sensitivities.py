@@ -1,21 +1,32 @@
-"""Sensitivities of a compiled path: how its outputs change with dimensions and drivers, at every pose."""
+"""Sensitivities of a compiled path: how its outputs change with dimensions and drivers at every pose, by tangents."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, check_threads
+from compoundkin.programs.derivatives.differentiation import forward
+from compoundkin.programs.derivatives.law_slopes import law_slope_parts, slope_inputs
+from compoundkin.programs.derivatives.solved_inputs import solved_inputs
+from compoundkin.programs.dimensions import FreeDimension
+from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, InputNumber
 from compoundkin.programs.path_values import PathValues
+from compoundkin.programs.recorded_path import RecordedPath
+from compoundkin.programs.solved_designs import values_near_limits
+
+if TYPE_CHECKING:
+    from compoundkin.programs.path_programs import PathPrograms
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PathSensitivities(PrintsShort):
+class PathSensitivities(ShortRepr):
     """Outputs over designs and poses, and their slopes there.
 
     `found["G.position"]` is an output, `found["G.position", "plate.C.x"]` its slope by a coordinate of a free point,
@@ -50,7 +61,7 @@ class PathSensitivities(PrintsShort):
         output, by = map(str, name if len(name) == 2 else ("", name))
         if (output, by) not in self.slopes:
             wrong, known = (output, list(self.values.found)) if by in self.by else (by, list(self.by))
-            raise UnknownName(Problem(str(wrong), "there is no such slope", nearest(wrong, known)))
+            raise UnknownName(Problem(str(wrong), "there is no such slope", suggestion(wrong, known)))
         numbers = self.values.numbers
         return np.broadcast_to(self.slopes[output, by], numbers.extent).reshape(numbers.shape)
 
@@ -60,3 +71,115 @@ class PathSensitivities(PrintsShort):
 
     def __repr__(self) -> str:
         return f"PathSensitivities({', '.join(self.values.found)} by {', '.join(self.by)})"
+
+
+# An output and what its slope is by; the output itself is by nothing, and the least margin of no output.
+SlopeName: TypeAlias = tuple[str, str]
+
+
+_MARGIN = ("", "")
+
+
+def sensitivity_program(
+    path: RecordedPath, names: Sequence[str], by: Mapping[str, InputNumber], numbers: CallNumbers, backend: str | None
+) -> ReadyProgram[SlopeName]:
+    """Make the program of a path's outputs and slopes for numbers of some form."""
+    graph = path.mechanism.graph
+    outputs = dict(zip(names, path.nodes, strict=True))
+    wanted = [k for parts in path.nodes for k in parts]
+    nodes: dict[SlopeName, tuple[int, ...]] = {(name, ""): parts for name, parts in outputs.items()}
+    for word, given in by.items():
+        found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
+        nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
+    nodes[_MARGIN] = (path.least,)
+    return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SensitivityPrograms(ShortRepr):
+    """The programs that compute outputs of a path and their slopes."""
+
+    path: PathPrograms
+    _programs: dict[Any, ReadyProgram[SlopeName]] = field(default_factory=dict)
+
+    def found(self, numbers: CallNumbers, by: str | Sequence[str] | None, threads: int) -> PathSensitivities:
+        """Compute outputs and slopes.
+
+        They are by what is named, or by all free dimensions and drivers.
+        """
+        check_threads(threads)
+        known = _directions(numbers)
+        named = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
+        asked = [each for name in named for each in ([name] if name in known else _coordinates(name, known))]
+        unknown = [name for name in asked if name not in known]
+        if unknown:
+            raise UnknownName(
+                [Problem(f"by.{name}", "it is no input", suggestion(name, list(known))) for name in unknown]
+            )
+        path, names = self.path, self.path.names
+        laws = [one for one in path.law_numbers if one.name in asked]
+        read = {name: known[name] for name in asked if name not in {one.name for one in laws}}
+        wanted = read | {label: drive for label, (drive,) in slope_inputs(laws, path.order).items()}
+        found = self._run(numbers, wanted, False, threads)
+        look = path.limits.doubtful(numbers, found.pop(_MARGIN))
+        outputs = [found.pop((name, "")) for name in names]
+        failed = values_near_limits(numbers, names, outputs, look, path.solved)
+        slopes = found
+        if look is not None:
+            slopes = {key: np.array(np.broadcast_to(slope, numbers.extent)) for key, slope in found.items()}
+            for designs, told in solved_inputs(path, numbers, look.to_solve):
+                solved = self._run(told, wanted, True, threads)
+                for key, slope in slopes.items():
+                    slope[designs] = solved[key]
+        slopes = _with_law_slopes(laws, numbers, slopes, names, path.order)
+        values = path.shown(numbers, outputs, failed)
+        return PathSensitivities(
+            values, {key: _masked_slope(values.found[key[0]], slope) for key, slope in slopes.items()}
+        )
+
+    def _run(
+        self, numbers: CallNumbers, by: Mapping[str, InputNumber], is_seeded: bool, threads: int
+    ) -> dict[SlopeName, Number]:
+        key = numbers.form, tuple(by), is_seeded
+        if key not in self._programs:
+            path, backend = self.path.variant(numbers.still, is_seeded), self.path.chosen_backend
+            self._programs[key] = sensitivity_program(path, self.path.names, by, numbers, backend)
+        return self._programs[key].run(numbers, threads)
+
+
+def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:
+    """Return the inputs that slopes can be by: free numbers, coordinates of free points, values of drivers."""
+    found = {}
+    for given in numbers.given:
+        if given.kind == DIMENSION:
+            found[given.full_name] = given
+        elif (given.kind, given.part) == (DRIVE, "0"):
+            found[given.name] = given
+    return found
+
+
+def _with_law_slopes(
+    laws: Sequence[FreeDimension],
+    numbers: CallNumbers,
+    slopes: Mapping[SlopeName, Number],
+    names: Sequence[str],
+    order: int,
+) -> dict[SlopeName, Number]:
+    """Return slopes with those by numbers of laws in the place of those by what the laws move."""
+    found = dict(slopes)
+    for one in laws:
+        for name in names:
+            own = {label: found.pop((name, label)) for label in slope_inputs([one], order)}
+            found[name, one.name] = sum(law_slope_parts(one, numbers, own, order))
+    return found
+
+
+def _coordinates(name: str, known: Mapping[str, InputNumber]) -> list[str]:
+    """Return the coordinates of a free point, or the name itself."""
+    return [each for each, given in known.items() if given.name == name] or [name]
+
+
+def _masked_slope(value: Number, slope: Number) -> Number:
+    """Return a slope that is none where the value is none."""
+    lost = np.isnan(value)
+    return np.where(lost, np.nan, slope) if lost.any() else slope

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, INPUT
 
@@ -16,7 +16,7 @@ FIXED_NUMBER, BY_DESIGN, BY_POSE, BY_BOTH = 0, 1, 2, 3
 
 
 @dataclass(frozen=True, repr=False)
-class Carried(PrintsShort):
+class Carried(ShortRepr):
     """A number carried from pose to pose along the motion.
 
     Designs go side by side, a march.
@@ -31,7 +31,7 @@ class Carried(PrintsShort):
 
 
 @dataclass(frozen=True, repr=False)
-class FlatProgram(PrintsShort):
+class FlatProgram(ShortRepr):
     """What a back end computes. All sequences hold node indices of `graph`, in an order that can be computed.
 
     `before` is computed once a design, `by_pose` once a pose for all designs, `loop` at every design and pose (with the

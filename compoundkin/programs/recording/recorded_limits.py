@@ -1,7 +1,7 @@
 """Limits of a recorded mechanism: which poses are assembled, how near its groups are to change points.
 
-A pose whose margins are far from zero needs no look; near zero a group may pass between its modes, and rates may lose
-their digits, which only solving can tell.
+A pose whose margins are far from zero is certain; near zero a group may pass between its modes, and rates may lose
+their digits, which only solving can decide.
 """
 
 from __future__ import annotations
@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.lost_digits import FAST
-from compoundkin.programs.graph.least_value import least_value
+from compoundkin.programs.graph.operation_graph import OperationGraph
+from compoundkin.programs.graph.operations import CONSTANT, LEAST
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
@@ -25,7 +27,7 @@ CLOSE = 1e-5
 
 
 @dataclass(frozen=True, repr=False)
-class RecordedLimits(PrintsShort):
+class RecordedLimits(ShortRepr):
     """What tells of limits in a recorded mechanism, as nodes of its graph."""
 
     mechanism: RecordedMechanism
@@ -124,3 +126,42 @@ class RecordedLimits(PrintsShort):
 
     def _number(self, value: Number) -> RecordedNumber:
         return self.mechanism.number(value)
+
+
+def least_value(graph: OperationGraph, node: int) -> int:
+    """Return the least of a value over the poses.
+
+    It is no number where any part is none. Roots, and factors and summands that are known, are taken of the least
+    instead of at every pose.
+
+    >>> from compoundkin.programs.graph.operation_graph import InputNumber
+    >>> graph = OperationGraph()
+    >>> distance = graph.apply("sqrt", graph.input(InputNumber("drive", "crank", "0")))
+    >>> found = least_value(graph, graph.apply("min", graph.constant(1.0), distance))
+    >>> graph.nodes[found].operation, graph.nodes[found - 1].operation, graph.nodes[found - 2].operation
+    ('min', 'sqrt', 'least')
+    """
+    if graph.nodes[node].operation == CONSTANT:
+        return graph.apply(LEAST, node)  # as an array of all designs
+    return _least_of(graph, node)
+
+
+def _least_of(graph: OperationGraph, node: int) -> int:
+    found = graph.nodes[node]
+    known = [k for k in found.operands if graph.nodes[k].operation == CONSTANT]
+    if found.operation == CONSTANT:
+        return node
+    # where one operand is no number `fmin` has the other; that it is none is on the side of caution
+    if found.operation in ("min", "fmin"):
+        return graph.apply("min", *(_least_of(graph, k) for k in found.operands))
+    if found.operation == "sqrt" or (known and _keeps_order(graph, node, known[0])):
+        return graph.apply(found.operation, *(_least_of(graph, k) for k in found.operands))
+    return graph.apply(LEAST, node)
+
+
+def _keeps_order(graph: OperationGraph, node: int, known: int) -> bool:
+    """Tell whether a larger number has a larger value here, given what is known."""
+    found = graph.nodes[node]
+    if found.operation == "mul":
+        return 0.0 < graph.nodes[known].value < float("inf")
+    return found.operation == "add" or (found.operation == "sub" and found.operands[1] == known)

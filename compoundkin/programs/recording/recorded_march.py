@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import run
 from compoundkin.programs.graph.flat_program import Carried
-from compoundkin.programs.graph.input_kinds import DRIVE, SEED, SIDE, STEP, group_seed, start_of
-from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.graph.operation_graph import DRIVE, SEED, SIDE, STEP, InputNumber, group_seed, start_of
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.seeded_order import SeededChoice
@@ -25,7 +25,7 @@ TERMS = 3
 
 
 @dataclass(frozen=True, repr=False)
-class RecordedMarch(PrintsShort):
+class RecordedMarch(ShortRepr):
     """The march of a recorded mechanism whose groups' states are predicted.
 
     The drivers' steps from each pose to the next are inputs, and the states at each design's first pose. No pose is

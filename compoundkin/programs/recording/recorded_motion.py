@@ -1,23 +1,128 @@
-"""A recorded mechanism as a motion: what it has by name is read as that of any motion."""
+"""A recorded mechanism as a motion of one pose, and the outputs of a program read off it by name."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import and_
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number, unwrapped
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.inputs import Inputs, PoseGrid
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import read_of
+from compoundkin.kinematics.quantity_owners import check_part, owner_and_part, owner_of
 from compoundkin.kinematics.results import LinkMotion, Named, PairMotion
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.attributes import (
+    CORIOLIS,
+    DERIVED,
+    FORCES,
+    OF_POINTS,
+    PARTS,
+    TRANSMISSION_INDEX,
+    Attribute,
+    Kind,
+    motion_figure,
+)
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
+from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+# What is said of names that a motion knows and a program does not.
+USE_SOLVE = "ask the motion: quantity(solve(...), name)"
+
+
+class ProgramOutput(NamedTuple):
+    """An owner's attribute that a name asks for, perhaps a part of a vector.
+
+    An angle whose full turns nobody counts `is_wrapped`: made continuous along the motion afterwards.
+    """
+
+    name: str
+    kind: Kind
+    owner: str
+    attribute: Attribute
+    part: str = ""
+    is_wrapped: bool = False
+
+    @property
+    def is_derived(self) -> bool:
+        """Whether it is a figure that only some owners have."""
+        return self.attribute.word in DERIVED[self.kind]
+
+    def continuous(self, values: Number) -> Number:
+        """Return its values along the motion, full turns of angles counted."""
+        if not self.is_wrapped:
+            return values
+        # the sign of a zero, which no formula keeps, tells half a turn back from half a turn on
+        return unwrapped(np.where(values == -np.pi, np.pi, values))
+
+
+def output_of(motion: Motion, name: str) -> ProgramOutput:
+    """Return what a name asks for. Raises UnknownName, and InvalidInput for what no program tells."""
+    if isinstance(name, str) and motion_figure(name)[1]:
+        whole, figure = motion_figure(name)
+        what = f"{figure!r} is a figure of a whole motion, a program tells {whole!r} at each pose"
+        raise InvalidInput(Problem(name, what, USE_SOLVE))
+    if not isinstance(name, str):
+        raise InvalidInput(Problem("outputs", f"{name!r} is no name", 'write "G.velocity", one text for each'))
+    owner, word, part = owner_and_part(motion, name)
+    _check_recorded(motion, name, owner.kind, word)
+    if part:
+        check_part(name, part, word in (*OF_POINTS, CORIOLIS))
+    known = DERIVED[owner.kind] if word in DERIVED[owner.kind] else owner.attributes
+    is_wrapped = not part and _is_wrapped(motion, owner.kind, owner.name, known[word])
+    return ProgramOutput(name, owner.kind, owner.name, known[word], part, is_wrapped)
+
+
+def _check_recorded(motion: Motion, name: str, kind: Kind, word: str) -> None:
+    """Raise InvalidInput for figures that are no straight-line arithmetic of one pose."""
+    if word in FORCES[kind]:
+        raise InvalidInput(Problem(name, "forces are no outputs of a program", "ask force_analysis(solve(...))"))
+    owner = name.partition(".")[0]
+    numbered = [solver.group.links for solver in motion.solving_order.solvers if solver.is_numbered]
+    if word == TRANSMISSION_INDEX and any(owner in links for links in numbered):
+        what = "the index of a group without a closed form is no output of a program"
+        raise InvalidInput(Problem(name, what, USE_SOLVE))
+
+
+def _is_wrapped(motion: Motion, kind: Kind, owner: str, attribute: Attribute) -> bool:
+    """Tell whether an output is an angle without full turns."""
+    if attribute.order or attribute.word in DERIVED[kind]:
+        return False
+    if kind == "links":
+        return motion.poses[owner].theta is None
+    if kind != "pairs":
+        return False
+    pair = motion.solving_order.pairs[owner]
+    return pair.free_is_angle and any(motion.poses[member].theta is None for member in pair.members)
+
+
+def record_outputs(mechanism: RecordedMechanism, outputs: Iterable[ProgramOutput]) -> tuple[RecordedNumber, ...]:
+    """Return outputs as recorded numbers: complex for planar vectors.
+
+    Raises InvalidInput for a figure that is no straight-line arithmetic of one pose.
+    """
+    motion = RecordedMotion(mechanism)
+    return tuple(mechanism.number(_record_output(motion, output)) for output in outputs)
+
+
+def _record_output(motion: RecordedMotion, output: ProgramOutput) -> Number:
+    owner = owner_of(motion, output.kind, output.owner)
+    try:
+        found = read_of(owner, output.attribute.word)
+    except (TypeError, AttributeError) as error:
+        if not output.is_derived:
+            raise
+        raise InvalidInput(Problem(output.name, f"no program can tell it: {error}", USE_SOLVE)) from None
+    return PARTS[output.part](found.values) if output.part else found.values
 
 
 @dataclass(frozen=True)
@@ -62,7 +167,7 @@ class RecordedLink(LinkMotion):
 
 
 @dataclass(frozen=True, repr=False)
-class RecordedMotion(PrintsShort):
+class RecordedMotion(ShortRepr):
     """A recorded mechanism as a motion of one pose. Its numbers are nodes of a graph."""
 
     recorded: RecordedMechanism

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from compoundkin.programs.sources.contract import WrittenProgram
-from compoundkin.programs.sources.explanation import explanation
 from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Phrase, Spelling, call, calls, number
 from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
+from compoundkin.programs.sources.written_program import WrittenProgram, head_comment
 
 # Functions that the text brings along, each for one operation: math.h has none that keep what is not a number.
 _OWN: Mapping[str, tuple[str, str]] = {
@@ -44,7 +43,7 @@ _FOOT = ("", "#ifdef __cplusplus", "}", "#endif", "#endif")
 
 def _head(program: WrittenProgram) -> Iterator[str]:
     name, guard = program.name, program.name.upper()
-    yield from ("/*", *(f" * {line}".rstrip() for line in explanation(program, _use(program))), " */")
+    yield from ("/*", *(f" * {line}".rstrip() for line in head_comment(program, _use(program))), " */")
     yield from (f"#ifndef {guard}_C", f"#define {guard}_C", "", "#include <math.h>", "")
     yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
     yield from _structure(f"{name}_inputs", [f"double {one.name};" for one in program.arguments])

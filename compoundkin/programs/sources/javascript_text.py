@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from compoundkin.programs.sources.contract import Argument, WrittenProgram
-from compoundkin.programs.sources.explanation import explanation
 from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Phrase, Spelling, calls, number
 from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
+from compoundkin.programs.sources.written_program import Argument, WrittenProgram, head_comment
 
 # Functions that the text brings along: Math.round takes halves upwards, Math.max keeps what is not a number.
 _OWN: Mapping[str, tuple[str, str]] = {
@@ -43,7 +42,7 @@ def _number(value: float) -> Phrase:
 
 def _head(program: WrittenProgram) -> Iterator[str]:
     use = "It takes one object and returns another, whose properties have these names."
-    yield from ("/*", *(f" * {line}".rstrip() for line in explanation(program, use)), " */")
+    yield from ("/*", *(f" * {line}".rstrip() for line in head_comment(program, use)), " */")
     told = ", ".join(map(_parameter, program.arguments))
     yield f"function {program.name}({{{f' {told} ' if told else ''}}}) {{"
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from compoundkin.programs.sources.contract import WrittenProgram
-from compoundkin.programs.sources.explanation import explanation
 from compoundkin.programs.sources.spellings import (
     ARITHMETIC,
     ATOM,
@@ -23,6 +21,7 @@ from compoundkin.programs.sources.spellings import (
     number,
 )
 from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
+from compoundkin.programs.sources.written_program import WrittenProgram, head_comment
 
 # Functions that the text brings along: roots of negative numbers are complex there, its max leaves out what is not a
 # number, and its round takes halves away from zero.
@@ -80,7 +79,7 @@ def _number(value: float) -> Phrase:
 def _head(program: WrittenProgram) -> Iterator[str]:
     use = f"Save it as {program.name}.m. It returns a structure; arguments may be arrays of poses."
     yield f"function out = {program.name}({', '.join(one.name for one in program.arguments)})"
-    yield from (f"% {line}".rstrip() for line in explanation(program, use))
+    yield from (f"% {line}".rstrip() for line in head_comment(program, use))
     for k, one in enumerate(program.arguments):
         if one.own is not None:
             yield f"    if nargin < {k + 1}, {one.name} = {_number(one.own).text}; end"

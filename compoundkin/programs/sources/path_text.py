@@ -1,31 +1,74 @@
-"""A compiled path as a text: which numbers it is given and answers, what they mean, and what is told of them."""
+"""A compiled path as a function in other languages: its arguments and results, what they mean, and its notes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
+from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.suffixes import Kind
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import OF_POINTS, RATES, coordinate_dimension, unit_of
-from compoundkin.programs.calls.seed_values import seed_values
-from compoundkin.programs.graph.input_kinds import DRIVE, SIDE
-from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.graph.operation_graph import DRIVE, SIDE, InputNumber
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.sources.carried_states import CarriedState, carried_states, followed
-from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
-from compoundkin.programs.sources.identifiers import Identifiers, identifier
-from compoundkin.programs.sources.told_configuration import changed_modes, notes
+from compoundkin.programs.solved_designs import seed_values
+from compoundkin.programs.sources import LANGUAGES
+from compoundkin.programs.sources.fixed_configuration import (
+    CarriedState,
+    carried_states,
+    changed_modes,
+    configuration_notes,
+    follow_states,
+)
+from compoundkin.programs.sources.statements import Identifiers, identifier
+from compoundkin.programs.sources.written_program import Argument, Result, WrittenProgram
 
 
-def written_program(path: PathVariants, name: str = "") -> WrittenProgram:
+class WritesSources:
+    """A path of a mechanism that writes itself in other languages."""
+
+    saved_as: ClassVar[Kind] = "program"
+    programs: PathVariants
+
+    @checked
+    def source(self, language: str, name: str = "") -> str:
+        """Return it as a function in another language: "c", "python", "javascript" or "matlab".
+
+        It needs nothing else. `name` is what the function is called. Raises UnknownName for other languages, and
+        InvalidInput for what no text can compute, such as a mechanism that passes change points.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.model.mechanism import Mechanism
+        >>> from compoundkin.programs.compiled_path import compile
+        >>> crank = Mechanism("A crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+        >>> "out->B_position_x = B_x;" in compile(crank, "B.position").source("c")
+        True
+        """
+        if language not in LANGUAGES:
+            raise UnknownName(
+                Problem("language", f"{language!r} is none of them", suggestion(language, list(LANGUAGES)))
+            )
+        return LANGUAGES[language].text(self.written(name))
+
+    def written(self, name: str = "") -> WrittenProgram:
+        """Return what all languages write."""
+        return program_of_path(self.programs, name)
+
+    def content(self, form: str) -> bytes:
+        """Return the file of a function in a language, for `save`."""
+        return self.source(form).encode("utf-8")
+
+
+def program_of_path(path: PathVariants, name: str = "") -> WrittenProgram:
     """Return a path as a program that every language can write. Raises InvalidInput where none can."""
     motion = path.reference
     # groups without a closed form by single steps, of which a text takes as many as it needs
@@ -34,12 +77,12 @@ def written_program(path: PathVariants, name: str = "") -> WrittenProgram:
     if motion.shape[:-1]:
         what = "its dimensions are arrays, and a text is of one mechanism"
         raise InvalidInput(Problem(title, what, "give one number for each"))
-    _of_one_configuration(motion)
-    wanted = {n for nodes in recorded.nodes for n in nodes} | {_assembled(mechanism, ())}
+    _check_one_configuration(motion)
+    wanted = {n for nodes in recorded.nodes for n in nodes} | {_assembled_node(mechanism, ())}
     states = carried_states(mechanism, wanted)
-    assembled, called = _assembled(mechanism, states), _called(mechanism)
-    after = followed(mechanism.graph, states, {*wanted, assembled, *called})
-    results = (*_outputs(path, recorded), *(_next(one) for one in states))
+    assembled, called = _assembled_node(mechanism, states), _node_names(mechanism)
+    after = follow_states(mechanism.graph, states, {*wanted, assembled, *called})
+    results = (*_outputs(path, recorded), *(_state_result(one) for one in states))
     names = Identifiers()
     return WrittenProgram(
         identifier(name or title).lower(),
@@ -48,19 +91,19 @@ def written_program(path: PathVariants, name: str = "") -> WrittenProgram:
         tuple(_arguments(path, mechanism, states)),
         tuple(replace(one, node=after[one.node], name=names.take(one.name)) for one in results),
         after[assembled],
-        tuple(notes(motion, mechanism.recording.order, bool(states))),
+        tuple(configuration_notes(motion, mechanism.recording.order, bool(states))),
         {after[k]: word for k, word in called.items()},
     )
 
 
-def _assembled(mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> int:
+def _assembled_node(mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> int:
     """The node of whether all groups close, and states are followed."""
     goods = (mechanism.number(good) for _, good in mechanism.block.goods)
     kept = (state.kept for state in states if state.kept is not None)
     return reduce(RecordedNumber.__and__, (*goods, *kept), mechanism.number(True)).x
 
 
-def _of_one_configuration(motion: Motion) -> None:
+def _check_one_configuration(motion: Motion) -> None:
     """Raise InvalidInput where a group changes its mode along the motion."""
     links = changed_modes(motion)
     if links:
@@ -88,11 +131,11 @@ def _arguments(path: PathVariants, mechanism: RecordedMechanism, states: Sequenc
     seeds = seed_values([state.given for state in states if state.given.part != SIDE], motion)
     for state in states:
         value = float(seeds[state.given][0, first]) if state.given in seeds else 0.0
-        told = _next(state)
+        told = _state_result(state)
         yield Argument(state.given, names.take(told.name), f"{state.meaning}, before", told.unit, value, value)
 
 
-def _next(state: CarriedState) -> Result:
+def _state_result(state: CarriedState) -> Result:
     """A state as a result."""
     unit = unit_of("", "angle") if state.is_angle else ""
     return Result(state.now.x, f"state.{state.name}", state.meaning, unit)
@@ -108,10 +151,10 @@ def _outputs(path: PathVariants, recorded: RecordedPath) -> Iterator[Result]:
             yield Result(node, word, f"{word}{turns}", unit)
 
 
-def _called(mechanism: RecordedMechanism) -> Mapping[int, str]:
+def _node_names(mechanism: RecordedMechanism) -> Mapping[int, str]:
     """What points and links have, by nodes: names for values on the way."""
     found, nodes = dict[int, str](), mechanism.graph.nodes
-    for name, number in _known(mechanism):
+    for name, number in _named_numbers(mechanism):
         k, word = number.x, name
         if nodes[k].operation == "neg":
             k, word = nodes[k].operands[0], f"minus_{name}"
@@ -119,7 +162,7 @@ def _called(mechanism: RecordedMechanism) -> Mapping[int, str]:
     return found
 
 
-def _known(mechanism: RecordedMechanism) -> Iterator[tuple[str, RecordedNumber]]:
+def _named_numbers(mechanism: RecordedMechanism) -> Iterator[tuple[str, RecordedNumber]]:
     """Yield the direction of each link, and what each point has, with names."""
     for link, pose in mechanism.block.world.items():
         u = mechanism.number(pose.u.c[0])

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from compoundkin.programs.sources.contract import Argument, WrittenProgram
-from compoundkin.programs.sources.explanation import explanation
 from compoundkin.programs.sources.spellings import (
     ARITHMETIC,
     BOTH,
@@ -21,6 +19,7 @@ from compoundkin.programs.sources.spellings import (
     number,
 )
 from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
+from compoundkin.programs.sources.written_program import Argument, WrittenProgram, head_comment
 
 # Functions that the text brings along: those of `math` raise errors where others answer what is not a number.
 _OF_ONE: Mapping[str, tuple[str, str]] = {
@@ -73,7 +72,7 @@ def _number(value: float) -> Phrase:
 
 
 def _head(program: WrittenProgram) -> Iterator[str]:
-    first, *others = explanation(program, "It returns a dictionary.")
+    first, *others = head_comment(program, "It returns a dictionary.")
     yield from (f'"""{first}', *others, '"""', "", "import math", "")
 
 

@@ -1,26 +1,37 @@
-"""The statements of a text: values with a name, and expressions of as many operations as a line can hold."""
+"""The statements of a text: values with a name, and expressions of as many operations as a line can hold.
+
+Values are computed in an order in which few wait at once. Names are those of the mechanism, made fit for every
+language, no two alike.
+"""
 
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, REDUCTIONS
-from compoundkin.programs.sources.contract import WrittenProgram
-from compoundkin.programs.sources.identifiers import Identifiers
-from compoundkin.programs.sources.reading_order import reading_order
 from compoundkin.programs.sources.spellings import QUOTIENT, Phrase, Spelling
+from compoundkin.programs.sources.written_program import WrittenProgram
 
 # So long may the expression of a line be, and one that is used once to go without a name.
 LINE, NAMELESS = 84, 44
+
+
 # A number that is written more than once gets a name where it is longer than this.
 SHORT = 6
+
+
 ASSEMBLED = "assembled"
+
+
 _OPPOSITE = {"add": "sub", "sub": "add"}
+
+
 OF_NUMBERS, OF_ASSEMBLING = "numbers of the mechanism", "whether it can be assembled"
 
 
@@ -195,3 +206,137 @@ class StatementWriter:
         if node.operation != "mul":
             return None
         return next((n for n in node.operands if self.graph.nodes[n].operation == "inv" and self.uses[n] == 1), None)
+
+
+def reading_order(graph: OperationGraph, wanted: Sequence[int]) -> list[int]:
+    """Return all nodes that some nodes need, operands first.
+
+    What is wanted first comes first. Of the operands of a node, the one for which more values have to wait is computed
+    first (Sethi and Ullman, The generation of optimal code for arithmetic expressions, J. ACM 17, 1970, p. 715).
+    """
+    waits = _waiting(graph, wanted)
+    found: dict[int, None] = {}
+    for root in wanted:
+        waiting = [(root, False)]
+        while waiting:
+            node, is_ready = waiting.pop()
+            if node in found:
+                continue
+            if is_ready:
+                found[node] = None
+                continue
+            waiting.append((node, True))
+            # the last one put is the first one taken
+            operands = sorted(enumerate(graph.nodes[node].operands), key=lambda one: (waits[one[1]], -one[0]))
+            waiting.extend((operand, False) for _, operand in operands)
+    return list(found)
+
+
+def _waiting(graph: OperationGraph, wanted: Sequence[int]) -> dict[int, int]:
+    """How many values have to be kept at once to compute each node, as if nothing were shared."""
+    found: dict[int, int] = {}
+    for node in graph.needed(wanted):
+        needs = sorted((found[k] for k in graph.nodes[node].operands), reverse=True)
+        found[node] = max((need + k for k, need in enumerate(needs)), default=1)
+    return found
+
+
+# A name may have 63 characters in MATLAB; what is put before and behind it must have room too.
+LONGEST = 40
+
+
+_GREEK = re.compile(r"GREEK (?:SMALL|CAPITAL) LETTER (\w+)")
+
+
+# Words that mean something in one of the languages, and those that the texts use themselves. They are the same for all
+# languages, so that a quantity is called alike everywhere.
+_OF_C = """
+    auto break case char const continue default do double else enum extern float for goto if inline int long register
+    restrict return short signed sizeof static struct switch typedef union unsigned void volatile while bool true false
+    alignas alignof and and_eq asm bitand bitor catch class compl concept consteval constexpr constinit decltype delete
+    dynamic_cast explicit export friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private
+    protected public reinterpret_cast requires static_assert static_cast template this thread_local throw try typeid
+    typename using virtual wchar_t xor xor_eq complex I NAN INFINITY NULL main div gamma j0 j1 jn y0 y1 yn linux unix
+"""
+
+
+_OF_PYTHON = """
+    False None True and as assert async await break class continue def del elif else except finally for from global if
+    import in is lambda match nonlocal not or pass raise return try type while with yield abs max min round math nan inf
+"""
+
+
+_OF_JAVASCRIPT = """
+    arguments await break case catch class const continue debugger default delete do else enum eval export extends false
+    finally for function if implements import in instanceof interface let new null package private protected public
+    return static super switch this throw true try typeof undefined var void while with yield Infinity NaN Math Number
+    Object module exports require window globalThis name
+"""
+
+
+_OF_MATLAB = """
+    break case catch classdef continue else elseif end for function global if otherwise parfor persistent return spmd
+    switch try while do until endif endfor endwhile endfunction end_try_catch unwind_protect ans pi e i j Inf NaN eps
+    true false nargin nargout varargin varargout isempty struct zeros ones size disp
+"""
+
+
+_OF_TEXTS = """
+    in out assembled given abs fabs sqrt sin cos tan atan2 exp log floor ceil round rint fix mod sign max min fmax fmin
+    isnan copysign inputs outputs root quotient choice greatest least greater lesser nearest logarithm power sine cosine
+"""
+
+
+RESERVED = frozenset(" ".join((_OF_C, _OF_PYTHON, _OF_JAVASCRIPT, _OF_MATLAB, _OF_TEXTS)).split())
+
+
+def identifier(name: str) -> str:
+    """Return a name that every language takes.
+
+    >>> identifier("plate.C.x"), identifier("α-bar 2"), identifier("4th"), identifier("for"), identifier("__")
+    ('plate_C_x', 'alpha_bar_2', 'n4th', 'for_', 'n')
+    """
+    plain = "".join(map(_letters, unicodedata.normalize("NFKD", name)))
+    plain = re.sub(r"[^0-9A-Za-z]+", "_", plain).strip("_")[:LONGEST]
+    if not plain or plain[0].isdigit():
+        plain = f"n{plain}"
+    return f"{plain}_" if plain in RESERVED else plain
+
+
+def _letters(letter: str) -> str:
+    """What stands for a letter: nothing for an accent, the name of a Greek letter."""
+    if unicodedata.combining(letter):
+        return ""
+    greek = _GREEK.fullmatch(unicodedata.name(letter, ""))
+    return letter if greek is None else greek[1].lower()
+
+
+class Identifiers:
+    """The names that are taken in one text."""
+
+    def __init__(self, taken: Iterable[str] = ()) -> None:
+        self._taken = set(taken)
+
+    def take(self, name: str) -> str:
+        """Return a name like this one that nothing else has.
+
+        >>> names = Identifiers()
+        >>> names.take("a.b"), names.take("a-b"), names.take("a_b")
+        ('a_b', 'a_b_2', 'a_b_3')
+        """
+        wanted = found = identifier(name)
+        count = 2
+        while found in self._taken:
+            found, count = f"{wanted}_{count}", count + 1
+        self._taken.add(found)
+        return found
+
+    def take_numbered(self, letter: str, first: int) -> tuple[str, int]:
+        """Return a letter with a number that nothing else has, and the number.
+
+        It is the first one from `first` on.
+        """
+        while f"{letter}{first}" in self._taken:
+            first += 1
+        self._taken.add(f"{letter}{first}")
+        return f"{letter}{first}", first

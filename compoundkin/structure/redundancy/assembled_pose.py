@@ -9,17 +9,16 @@ from functools import partial
 import numpy as np
 
 from compoundkin.base.arrays import Number, first_entry, wrapped
-from compoundkin.base.newton import Rest, gauss_newton
+from compoundkin.base.newton import StoppingRule, gauss_newton
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import constant
-from compoundkin.model.elements import FRAME
-from compoundkin.model.geometry import fitted_pose
-from compoundkin.model.pairs.optional_answers import as_drivable
+from compoundkin.model.geometry import FRAME, pose_from_points
+from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, ConstraintEquations
 
 # Gauss and Newton's steps: at a pose where the equations are singular each halves the error only.
 STEPS = 60
-REST = Rest(
+REST = StoppingRule(
     # a residual that is rounding: no step could make it less; where one gains nothing below the second, that is too
     exact=1e-14,
     rounding=1e-11,
@@ -143,7 +142,7 @@ def _shown(equations: ConstraintEquations) -> dict[str, Pose]:
     while True:
         for name, pose in shown.items():
             seen.update({k: complex(pose.at(p).c[0]) for k, p in points[name].items() if k not in seen})
-        fitted = {name: fitted_pose(points[name], seen) for name in equations.links if name not in shown}
+        fitted = {name: pose_from_points(points[name], seen) for name in equations.links if name not in shown}
         found = {name: pose for name, pose in fitted.items() if pose is not None}
         if not found:
             return shown

@@ -12,12 +12,11 @@ import numpy as np
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import constant
-from compoundkin.model.elements import FRAME
+from compoundkin.model.definition import Pins, driven_pair
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.model.pin_pairs import Pins, driven_pair
+from compoundkin.model.pairs.contract import Drivable, Ends
 from compoundkin.structure.parts import LINK_FREEDOMS
 from compoundkin.structure.system import generic_jacobian
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import Shows, counted
+from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.kinematic_structure import Structure
@@ -33,7 +33,7 @@ class MobilityGap:
 
 
 @dataclass(frozen=True)
-class MobilityAnalysis(Shows):
+class MobilityAnalysis(DisplaysHtml):
     """The freedoms of a mechanism with its drivers free. Passive freedoms of rollers are not counted.
 
     `gruebler` is the count, `generic` what pairs of these kinds between these links leave free at general dimensions,
@@ -115,21 +115,21 @@ class MobilityAnalysis(Shows):
 
     def _motion(self) -> str:
         assert self.finite is not None
-        free = f"{self.kind} with {counted(self.finite, 'freedom')}"
+        free = f"{self.kind} with {count_phrase(self.finite, 'freedom')}"
         found = self.determined or 0
         own = "its driver" if self.drivers == 1 else f"its {self.drivers} drivers"
         if found < self.drivers:
-            spare = counted(self.drivers - found, "driver")
+            spare = count_phrase(self.drivers - found, "driver")
             return f"{free}: {spare} too many, or where nothing is free"
         missing = self.finite - len(self.passive) - found
         if missing > 0:
-            return f"{free}, {counted(missing, 'driver')} missing"
+            return f"{free}, {count_phrase(missing, 'driver')} missing"
         return f"{free}, determined by {own}"
 
     def _redundancy(self) -> list[str]:
         if not self.redundant:
             return []
-        what = f"{counted(self.redundant, 'coordinate')} held twice"
+        what = f"{count_phrase(self.redundant, 'coordinate')} held twice"
         return [f"{what}: {', '.join(self.freed)} could be freed" if self.freed else what]
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.slot import loosened, pin_in_slot
+from compoundkin.model.pairs.slot import pin_in_slot, releases
 from compoundkin.structure.composites import GROUND, Composites
 from compoundkin.structure.parts import Dropped
 from compoundkin.structure.redundancy.constraint_equations import Array, ConstraintEquations
@@ -68,7 +68,7 @@ def candidates(equations: ConstraintEquations, state: Array, stress: Array, bodi
     found = list(_of_pins(equations, state, stress * (equations.size / lengths)[:, None], bodies))
     joined = {step.pair.name for body in (bodies.ground, *bodies.moving) for step in body.driven}
     for rows in equations.rows[len(equations.pins) :]:
-        for way in loosened(rows.pair) if rows.pair.name not in joined else ():
+        for way in releases(rows.pair) if rows.pair.name not in joined else ():
             dropped = Dropped(rows.pair.name, (), way.kept, way.freed)
             found.append(Candidate(dropped, stress[[rows.first + k for k in way.coordinates]]))
     return [one for one in found if _carries(one.forces)]

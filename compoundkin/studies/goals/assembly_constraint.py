@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import TURN
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.transmission_angle import solver_of_link
 from compoundkin.kinematics.motion import Motion

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import degrees
+from compoundkin.base.arrays import Number, degrees
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import GREATEST, LEAST, TRANSMISSION_ANGLE, course_figure, is_angle_word
+from compoundkin.model.attributes import GREATEST, LEAST, TRANSMISSION_ANGLE, is_angle_word, motion_figure
 from compoundkin.studies.goals.contract import DesignConstraint
 from compoundkin.studies.goals.design_trial import DesignTrial
 
@@ -28,7 +27,7 @@ class FigureBound:
     @property
     def told(self) -> str:
         """What is bounded, and how."""
-        is_angle = is_angle_word(course_figure(self.name)[0].rpartition(".")[2])
+        is_angle = is_angle_word(motion_figure(self.name)[0].rpartition(".")[2])
         value = f"{degrees(self.value):g} deg" if is_angle else f"{self.value:g}"
         return f"{self.name} at {'least' if self.sign > 0 else 'most'} {value}"
 
@@ -38,7 +37,7 @@ class FigureBound:
 
         That is over the motion, between the poses too.
         """
-        is_figure = course_figure(self.name)[1]
+        is_figure = motion_figure(self.name)[1]
         return self.name if is_figure else f"{self.name}.{LEAST if self.sign > 0 else GREATEST}"
 
 
@@ -56,7 +55,7 @@ class BoundConstraint(DesignConstraint):
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return the figures; raises InvalidInput for vectors."""
         for one in self.bounds:
-            if quantity(motion, course_figure(one.name)[0]).is_vector:
+            if quantity(motion, motion_figure(one.name)[0]).is_vector:
                 raise InvalidInput(Problem(one.name, "it is a vector, and has no least value", f'"{one.name}.length"'))
         return tuple(dict.fromkeys(one.figure for one in self.bounds))
 

@@ -11,11 +11,11 @@ from compoundkin.analysis.interference.compared_bodies import ComparedBodies, co
 from compoundkin.analysis.interference.outline_places import geometries, nearest_places
 from compoundkin.analysis.interference.shapely_library import shapely
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.design_numbers import number_of_design
-from compoundkin.model.outlines.outline_shapes import Points, outline_shapes
+from compoundkin.model.mechanism import values_of_design
+from compoundkin.model.outline_shapes import Points, outline_shapes
 from compoundkin.studies.goals.contract import DesignConstraint
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.outline_vertices import OutlineVertices, nearest_weights
@@ -44,7 +44,7 @@ class ClearanceConstraint(DesignConstraint):
         for name in self.links:
             if name not in known:
                 what = "no outline of it is compared with another"
-                raise UnknownName(Problem(f"goals.clearance.{name}", what, nearest(name, sorted(known))))
+                raise UnknownName(Problem(f"goals.clearance.{name}", what, suggestion(name, sorted(known))))
         if not bodies:
             what, remedy = "no two links with outlines share a layer", 'write some: outline("crank", 8)'
             raise InvalidInput(Problem("goals.clearance", what, remedy))
@@ -91,7 +91,7 @@ def _all(motion: Motion) -> tuple[ComparedBodies, ...]:
 
 
 def _points(motion: Motion) -> Points:
-    points: Points = number_of_design(motion.mechanism.geometry.points, motion.shape, 0)
+    points: Points = values_of_design(motion.mechanism.geometry.points, motion.shape, 0)
     return points
 
 

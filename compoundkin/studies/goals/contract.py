@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.argument_forms import is_real
-from compoundkin.base.display import short
+from compoundkin.base.arguments import is_real
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.design_trial import DesignTrial
 
@@ -95,7 +95,7 @@ class Summand(ABC):
 
     def __add__(self, other: object) -> GoalSum:
         if not isinstance(other, Summand):
-            raise InvalidInput(Problem("objective", f"{short(other)} is no goal that could be added", ADDED))
+            raise InvalidInput(Problem("objective", f"{short_repr(other)} is no goal that could be added", ADDED))
         return GoalSum((*self.parts, *other.parts))
 
     def __radd__(self, other: object) -> GoalSum:
@@ -104,7 +104,7 @@ class Summand(ABC):
 
     def __mul__(self, weight: object) -> GoalSum:
         if not (is_real(weight) and 0.0 < float(weight) < np.inf):  # type: ignore[arg-type]
-            raise InvalidInput(Problem("weight", f"{short(weight)} is no positive number", WEIGHED))
+            raise InvalidInput(Problem("weight", f"{short_repr(weight)} is no positive number", WEIGHED))
         return GoalSum(tuple((float(weight) * own, goal) for own, goal in self.parts))  # type: ignore[arg-type]
 
     __rmul__ = __mul__

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.responses.close_places import close_places
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.designs import Designs
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DesignTrial(PrintsShort):
+class DesignTrial(ShortRepr):
     """Some designs along the motion, and the unknowns of the goal that asks.
 
     Those are (designs, unknowns). What is computed is computed once, however often it is asked for.
@@ -98,7 +98,7 @@ class DesignTrial(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PosesApart(PrintsShort):
+class PosesApart(ShortRepr):
     """Poses of designs that no motion joins.
 
     Each is a design of one pose in `single`.

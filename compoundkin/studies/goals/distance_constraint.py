@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import POSITION
 from compoundkin.studies.goals.contract import DesignConstraint

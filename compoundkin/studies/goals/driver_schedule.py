@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.contract import GoalUnknown
 

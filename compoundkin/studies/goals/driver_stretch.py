@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.driver_schedule import driver_of

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.attributes import course_figure
+from compoundkin.model.attributes import motion_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
 from compoundkin.studies.goals.driver_stretch import DriverStretch, driver_stretch
@@ -34,7 +34,7 @@ class DwellGoal(Goal):
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return the output; raises InvalidInput for the figure of a whole course."""
         self.stretch.hold(motion)
-        of, figure = course_figure(self.output)
+        of, figure = motion_figure(self.output)
         if figure:
             raise InvalidInput(Problem(self.output, "it is one number, and always even", f'say "{of}"'))
         return (self.output,)

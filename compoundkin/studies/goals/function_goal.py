@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import TURN
-from compoundkin.base.display import short
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import RADIANS, course_figure
+from compoundkin.model.attributes import RADIANS, motion_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.driver_schedule import driver_of
@@ -54,7 +53,7 @@ class FunctionGoal(Goal):
         Raises InvalidInput where it is a vector, or the function gives no numbers.
         """
         driver_of(self._where, motion, self.driver)
-        if course_figure(self.output)[1]:
+        if motion_figure(self.output)[1]:
             raise InvalidInput(Problem(self._where, "it is one number, and no course", "target for a figure"))
         if quantity(motion, self.output).is_vector:
             what = "it is a vector, and no number"
@@ -120,7 +119,7 @@ def function(output: str, wanted: object, *, driver: str | None = None, free_zer
     except (TypeError, ValueError, OverflowError):
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not len(pairs) or not np.isfinite(pairs).all():
-        raise InvalidInput(Problem(f"function.{output}", f"{short(wanted)} is no function", PAIRS))
+        raise InvalidInput(Problem(f"function.{output}", f"{short_repr(wanted)} is no function", PAIRS))
     if free_zero and len(pairs) == 1:
         raise InvalidInput(Problem(f"function.{output}", "one pair has no changes, which alone count", PAIRS))
     return FunctionGoal(output, pairs[:, 0], pairs[:, 1], driver, free_zero)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import GREATEST, course_figure
+from compoundkin.model.attributes import GREATEST, motion_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial
 
@@ -33,7 +33,7 @@ class LeastGoal(Goal):
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return its name; raises InvalidInput where it is a whole course, and no number."""
-        figure = course_figure(self.name)[1]
+        figure = motion_figure(self.name)[1]
         if not figure:
             found = quantity(motion, self.name)
             what = "it has a value at every pose, and is no number that could be least"

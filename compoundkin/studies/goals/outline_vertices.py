@@ -7,17 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
-from compoundkin.model.attributes import ANGLE, POSITION
-from compoundkin.model.component_names import AXES
-from compoundkin.model.elements import FRAME
-from compoundkin.model.outlines.outline_shapes import OutlineShape, Points
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.model.attributes import ANGLE, AXES, POSITION
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.outline_shapes import OutlineShape, Points
 from compoundkin.studies.goals.design_trial import DesignTrial
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class OutlineVertices(PrintsShort):
+class OutlineVertices(ShortRepr):
     """The corners of a shape's core. `points` are those of its link in the mechanism as it stands."""
 
     shape: OutlineShape

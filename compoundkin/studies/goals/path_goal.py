@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.argument_forms import is_real
-from compoundkin.base.arguments import checked
+from compoundkin.base.arguments import checked, is_real
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import POSITION
 from compoundkin.studies.goals.contract import Goal

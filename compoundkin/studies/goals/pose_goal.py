@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial

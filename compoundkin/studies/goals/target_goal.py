@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import short
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import course_figure
+from compoundkin.model.attributes import motion_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
 
@@ -31,7 +31,7 @@ class TargetGoal(Goal):
 
     @property
     def _is_figure(self) -> bool:
-        return bool(course_figure(self.name)[1])
+        return bool(motion_figure(self.name)[1])
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return its name; raises InvalidInput where there are not as many values as poses."""
@@ -40,7 +40,7 @@ class TargetGoal(Goal):
             what = f"there are {np.size(self.value)} values, and {count} poses"
             raise InvalidInput(Problem(f"target.{self.name}", what, "give one value, or one for each pose"))
         if np.iscomplexobj(self.value) and (self._is_figure or not quantity(motion, self.name).is_vector):
-            what = f"{self.name} is no vector, and cannot be {short(np.asarray(self.value).tolist())}"
+            what = f"{self.name} is no vector, and cannot be {short_repr(np.asarray(self.value).tolist())}"
             raise InvalidInput(Problem(f"target.{self.name}", what, "give a real number"))
         return (self.name,)
 
@@ -71,5 +71,7 @@ def target(name: str, value: object) -> Goal:
     except (TypeError, ValueError):
         good = False
     if not good:
-        raise InvalidInput(Problem(f"target.{name}", f"{short(value)} is no value", "a number, or one for each pose"))
+        raise InvalidInput(
+            Problem(f"target.{name}", f"{short_repr(value)} is no value", "a number, or one for each pose")
+        )
     return TargetGoal(name, found if found.ndim else found[()])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.contract import Goal, GoalUnknown
 from compoundkin.studies.goals.design_trial import DesignTrial, PosesApart

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import wrapped
+from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import ANGLE, POSITION
 from compoundkin.studies.goals.design_trial import DesignTrial, PosesApart

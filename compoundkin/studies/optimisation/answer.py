@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.studies.goals.contract import Term
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns

@@ -9,8 +9,14 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses, UnmetConstraints, warn
-from compoundkin.base.silence import silence
+from compoundkin.base.errors import (
+    InvalidInput,
+    Problem,
+    UnassembledPoses,
+    UnmetConstraints,
+    suppress_pose_warnings,
+    warn,
+)
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.goals.contract import DesignConstraint, Goal, GoalSum
@@ -63,7 +69,7 @@ def optimise(
     moved = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time, "modes": modes}
     _hold(starts, seed)
     goals, constraints = goals_of(objective), constraints_of(subject_to)
-    with silence(), np.errstate(all="ignore"):
+    with suppress_pose_warnings(), np.errstate(all="ignore"):
         problem = stated_problem(mechanism, free, goals, constraints, **moved)
         search = DesignSearch(problem, starts, seed, method, progress)
         found = answer(search, search.ends(), moved, began)

@@ -9,8 +9,8 @@ from typing import Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.goals.contract import DesignConstraint, Goal, Term
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.optimisation.search_space import SearchSpace
@@ -21,7 +21,7 @@ AnyTerm = TypeVar("AnyTerm", bound=Term)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AskedTerm(PrintsShort, Generic[AnyTerm]):
+class AskedTerm(ShortRepr, Generic[AnyTerm]):
     """A goal or a constraint with the path that it asks.
 
     `own` are the numbers of the space that are its unknowns.
@@ -44,7 +44,7 @@ AskedConstraint: TypeAlias = AskedTerm[DesignConstraint]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DesignProblem(PrintsShort):
+class DesignProblem(ShortRepr):
     """Goals and constraints over a space. `count` is of the designs that were looked at."""
 
     space: SearchSpace
@@ -103,7 +103,7 @@ class DesignProblem(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SearchedDesigns(PrintsShort):
+class SearchedDesigns(ShortRepr):
     """Some designs of a search; what is computed of them is computed once. NaN where they are not assembled."""
 
     problem: DesignProblem

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.optimisation.design_problem import DesignProblem
 from compoundkin.studies.optimisation.evolution import GENERATIONS, evolved
 from compoundkin.studies.optimisation.local_methods import EVOLUTION, METHODS, method_of
@@ -32,7 +32,7 @@ PARTS, STARTED, LED = 100, 10, 50
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DesignSearch(PrintsShort):
+class DesignSearch(ShortRepr):
     """A search from many starts, the same for a seed. `progress` is told of its parts."""
 
     problem: DesignProblem

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.studies.optimisation.design_problem import DesignProblem
 from compoundkin.studies.optimisation.single_design import merit
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.studies.optimisation.design_problem import DesignProblem
 from compoundkin.studies.optimisation.single_design import DesignsOfSearch, SingleDesign
 
@@ -96,7 +96,7 @@ def method_of(problem: DesignProblem, word: str | None, has_slopes: bool) -> str
         return ("least_squares" if fits_squares else "SLSQP") if has_slopes else EVOLUTION
     words = [*METHODS, EVOLUTION]
     if word not in words:
-        raise InvalidInput(Problem("method", f"there is no method {word!r}", nearest(word, words)))
+        raise InvalidInput(Problem("method", f"there is no method {word!r}", suggestion(word, words)))
     if word == "least_squares" and not fits_squares:
         what = "it is for sums of squares without constraints"
         raise InvalidInput(Problem("method", what, 'method="SLSQP"'))

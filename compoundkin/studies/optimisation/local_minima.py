@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.optimisation.design_problem import DesignProblem
 from compoundkin.studies.optimisation.single_design import HELD, merit
 
@@ -17,7 +17,7 @@ SAME = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EndedSearch(PrintsShort):
+class EndedSearch(ShortRepr):
     """A design at which searches ended, by parts of the ranges.
 
     `searches` are those, by number.

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.checks import Check, verify
-from compoundkin.base.display import PrintsShort, Shows, counted, way
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
+from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
@@ -54,7 +54,7 @@ class HeldConstraint:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LocalMinimum(PrintsShort):
+class LocalMinimum(ShortRepr):
     """A design at which searches ended: its objective, its dimensions, and which searches."""
 
     value: float
@@ -67,13 +67,13 @@ class LocalMinimum(PrintsShort):
     @cached_property
     def motion(self) -> Motion:
         """Its motion, in the configuration that the search kept to."""
-        with silence():
+        with suppress_pose_warnings():
             return solve(self._designed, **self._told)
 
     @cached_property
     def mechanism(self) -> Mechanism:
         """The mechanism with its dimensions, which moves as it did in the search."""
-        with silence():
+        with suppress_pose_warnings():
             return with_modes(self._designed, self.motion, self._told)
 
     @property
@@ -90,11 +90,13 @@ class LocalMinimum(PrintsShort):
         return self._path.mechanism(self.dimensions)
 
     def __repr__(self) -> str:
-        return f"LocalMinimum({self.value:.6g}, at which {counted(len(self.searches), 'search', 'searches')} ended)"
+        return (
+            f"LocalMinimum({self.value:.6g}, at which {count_phrase(len(self.searches), 'search', 'searches')} ended)"
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Optimum(Shows, PrintsShort):
+class Optimum(DisplaysHtml, ShortRepr):
     """The best design that was found.
 
     `value` is its objective, `value_before` that of the mechanism as it stood (NaN where it is not assembled), `goals`
@@ -135,7 +137,7 @@ class Optimum(Shows, PrintsShort):
     @cached_property
     def check(self) -> Check:
         """The verification of its motion."""
-        with silence():
+        with suppress_pose_warnings():
             return verify(self.motion)
 
     @property
@@ -166,7 +168,7 @@ class Optimum(Shows, PrintsShort):
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Plot what became better; see `plots.improvement`."""
-        return way("study_plot")(self, *names, **options)
+        return display_function("study_plot")(self, *names, **options)
 
     @property
     def _size(self) -> float:
@@ -174,7 +176,7 @@ class Optimum(Shows, PrintsShort):
 
     def __repr__(self) -> str:
         bound = f", bound by {', '.join(self.binding)}" if self.binding else ""
-        searches = f"{self.agreed} of {counted(self.starts, 'search', 'searches')} agree"
+        searches = f"{self.agreed} of {count_phrase(self.starts, 'search', 'searches')} agree"
         return f"Optimum({self.value_before:.6g} -> {self.value:.6g}, {searches}{bound})"
 
 

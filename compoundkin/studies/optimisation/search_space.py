@@ -8,16 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
-from compoundkin.model.component_names import AXES, component_names
+from compoundkin.model.attributes import AXES, component_names
 from compoundkin.studies.goals.contract import GoalUnknown
 from compoundkin.studies.variations.contract import Variation
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SearchSpace(PrintsShort):
+class SearchSpace(ShortRepr):
     """All numbers that a search changes.
 
     It sees them in parts of their ranges, so that all are of one size. `names` are the coordinates, two of a point,

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
 from compoundkin.studies.optimisation.search_space import SearchSpace
 from compoundkin.studies.optimisation.single_design import DesignsOfSearch
@@ -21,7 +21,7 @@ Refine = Callable[[DesignsOfSearch, Number, Number], Number]
 
 
 @dataclass(eq=False, repr=False)
-class _Round(PrintsShort):
+class _Round(ShortRepr):
     """What all searches ask for; it is computed when the last of those that go on has asked.
 
     So each round has the same designs whatever the threads do, and the answer does not depend on them.
@@ -66,7 +66,7 @@ class _Round(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SharedProblem(PrintsShort):
+class SharedProblem(ShortRepr):
     """The problem as one of the searches sees it."""
 
     space: SearchSpace
@@ -79,7 +79,7 @@ class SharedProblem(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SharedDesign(PrintsShort):
+class SharedDesign(ShortRepr):
     """One design of a round: each of its numbers has one row."""
 
     parts: Number

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
 
 # So many steps at most.
@@ -28,7 +28,7 @@ BELOW = 3.0
 
 
 @dataclass(eq=False, repr=False)
-class _Descent(PrintsShort):
+class _Descent(ShortRepr):
     """All starts with their residuals, slopes and damping."""
 
     problem: DesignProblem

@@ -7,8 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.optimisation.design_problem import SearchedDesigns
 from compoundkin.studies.optimisation.search_space import SearchSpace
 
@@ -30,7 +30,7 @@ class DesignsOfSearch(Protocol):
 
 
 @dataclass(eq=False, repr=False)
-class SingleDesign(PrintsShort):
+class SingleDesign(ShortRepr):
     """Objective and constraints at parts of the ranges, both in sizes of their own."""
 
     problem: DesignsOfSearch

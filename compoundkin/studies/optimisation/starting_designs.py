@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import NotAssembled, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
 from compoundkin.studies.responses.failed_parts import failed_name
 from compoundkin.studies.samples.sobol import SobolSample
@@ -23,7 +23,7 @@ NEIGHBOURS = 8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StartingDesigns(PrintsShort):
+class StartingDesigns(ShortRepr):
     """The designs at which searches begin, the most promising first.
 
     They are parts of the ranges. `screened` designs were looked at, `assembled` of them were. `scales` are the sizes of

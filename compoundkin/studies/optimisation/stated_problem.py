@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.programs.dimensions.named_dimensions import free_dimensions
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.dimensions import StatedDimensions, free_dimensions
 from compoundkin.studies.goals.contract import DesignConstraint, Goal, GoalSum, GoalUnknown, Term
 from compoundkin.studies.goals.least_goal import least
 from compoundkin.studies.optimisation.design_problem import AskedConstraint, AskedGoal, DesignProblem
@@ -95,7 +94,7 @@ def goals_of(objective: object) -> Goal | GoalSum:
     if isinstance(objective, Goal | GoalSum):
         return objective
     remedy = 'give a goal, such as ck.goals.path("G", points), or the name of a figure, "G.velocity.length.greatest"'
-    raise InvalidInput(Problem("objective", f"{short(objective)} is nothing that could be least", remedy))
+    raise InvalidInput(Problem("objective", f"{short_repr(objective)} is nothing that could be least", remedy))
 
 
 def constraints_of(subject_to: object) -> tuple[DesignConstraint, ...]:
@@ -106,5 +105,5 @@ def constraints_of(subject_to: object) -> tuple[DesignConstraint, ...]:
     for place, one in enumerate(found):
         if not isinstance(one, DesignConstraint):
             remedy = "give constraints of ck.goals"
-            raise InvalidInput(Problem(f"subject_to[{place}]", f"{short(one)} is no constraint", remedy))
+            raise InvalidInput(Problem(f"subject_to[{place}]", f"{short_repr(one)} is no constraint", remedy))
     return found

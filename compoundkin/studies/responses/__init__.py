@@ -11,10 +11,10 @@ from compoundkin.kinematics.extremes.measures import measure_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.kinematics.solution import solve
-from compoundkin.model.attributes import STROKE, VALUE, course_figure
+from compoundkin.model.attributes import STROKE, VALUE, motion_figure
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.programs.compilation import compile
-from compoundkin.programs.recording.recorded_outputs import output_of
+from compoundkin.programs.compiled_path import compile
+from compoundkin.programs.recording.recorded_motion import output_of
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.course_response import CourseResponse
 from compoundkin.studies.responses.designs import Designs, StudiedPath
@@ -29,7 +29,7 @@ __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
 def response_of(motion: Motion, name: str) -> Response:
     """Return what a name asks of every design. Raises UnknownName with the nearest there is."""
     found = quantity(motion, name)
-    of, figure = course_figure(name)
+    of, figure = motion_figure(name)
     if not _is_computed(motion, of):
         return _solved(found, not figure)
     if not figure:

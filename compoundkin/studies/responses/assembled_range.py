@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.approach import MOST, SPACING
 from compoundkin.studies.responses.design_blocks import blocks
 from compoundkin.studies.responses.designs import Designs
@@ -22,7 +22,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AssembledRange(PrintsShort):
+class AssembledRange(ShortRepr):
     """Where designs are not assembled.
 
     `failed` (designs, poses) is the index of the first group that does not close plus one, else 0. `between` (designs,)
@@ -33,7 +33,7 @@ class AssembledRange(PrintsShort):
     failed: Number
     between: Number
     after: Number
-    handed: Number
+    to_solve: Number
 
     @property
     def assembled(self) -> Number:
@@ -55,7 +55,7 @@ def _found(designs: Designs) -> AssembledRange:
     programs = designs.path.compiled.programs
     if values.look is None and not designs.path.has_ends:
         return AssembledRange(failed, between, after, none)
-    near, handed = (np.arange(shape[0]), none) if values.look is None else (values.look.near, values.look.handed)
+    near, handed = (np.arange(shape[0]), none) if values.look is None else (values.look.near, values.look.to_solve)
     near = np.arange(shape[0]) if designs.path.has_ends else near
     near = np.union1d(near, handed)
     near = near[~failed[near].any(axis=1)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # What lies between poses is sought in so many steps of a motion at least: ten degrees of a turn.
 CLOSE = 36

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.model.attributes import Dimension
 from compoundkin.studies.responses.designs import Designs
 

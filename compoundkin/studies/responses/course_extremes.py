@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.extreme_search import MOST_ADDED, POLE
 from compoundkin.kinematics.extremes.measures import ROUNDING
 from compoundkin.kinematics.extremes.windows import AT_FINE, FINE, FIT, INNER, SAMPLES, TRUSTED, vertices
@@ -27,7 +27,7 @@ AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CourseExtreme(PrintsShort):
+class CourseExtreme(ShortRepr):
     """The greatest value of a course of each design, and its place.
 
     With the sign -1 it is the least. Both are (designs,), NaN where a design is not assembled over the whole motion.
@@ -38,7 +38,7 @@ class CourseExtreme(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CourseSearch(PrintsShort):
+class CourseSearch(ShortRepr):
     """A search for the greatest values of a course, between the poses too.
 
     The course counts times a `sign`. The length of a vector is `squared`, so that it is smooth where it passes zero.
@@ -110,7 +110,7 @@ class CourseSearch(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CourseOffers(PrintsShort):
+class CourseOffers(ShortRepr):
     """The greatest values so far and their places, (designs,), written in place."""
 
     value: Number
@@ -125,7 +125,7 @@ class CourseOffers(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PeakWindow(PrintsShort):
+class PeakWindow(ShortRepr):
     """Windows with samples of a course, (windows, samples), times a sign."""
 
     values: Number

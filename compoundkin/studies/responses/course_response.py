@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.designs import Designs
 

@@ -9,15 +9,14 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.extremes.inputs_between import interval
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
-from compoundkin.programs.calls.call_numbers import CallNumbers
+from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
@@ -28,7 +27,7 @@ Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StudiedPath(PrintsShort):
+class StudiedPath(ShortRepr):
     """A compiled path over one motion: `reference` says what its drivers do.
 
     `given` are the values and rates that it was solved with.
@@ -79,7 +78,7 @@ class StudiedPath(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Designs(PrintsShort):
+class Designs(ShortRepr):
     """Designs by their free dimensions, (designs,) each; `inputs` tell what the drivers do.
 
     Poses are the last axis; `times` are those of a motion in time. What is computed of them is computed once.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes.inputs_between import inputs_between, times_between
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE
 from compoundkin.studies.responses.assembled_range import assembled_range
@@ -63,7 +63,7 @@ class FigureResponse(Response):
     def _found(self, designs: Designs, sign: float) -> CourseExtreme:
         """Search them; what passes change points, where a mode ends, is solved."""
         found = CourseSearch(designs, self.of, sign, self.is_angle, self.squared).found()
-        handed = assembled_range(designs).handed
+        handed = assembled_range(designs).to_solve
         handed = handed[~np.isnan(found.value[handed])]
         if len(handed):
             (solved,) = extremes(designs.picked(handed).motion, self.of)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled, NotDetermined
-from compoundkin.base.series import Number
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.design_blocks import blocks

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.model.attributes import TIME_RATIO

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.studies.responses.contract import Response

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.runs.study_plan import StudyPlan
 from compoundkin.studies.runs.study_rows import StudyRows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RunStore(ABC, PrintsShort):
+class RunStore(ABC, ShortRepr):
     """Where the rows of a study go. `kept` says to people where those are that a stopped run leaves."""
 
     plan: StudyPlan

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.table import ASSEMBLED
-from compoundkin.model.attributes import DEGREES, after_number
+from compoundkin.model.attributes import DEGREES, unit_suffix
 from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range
 from compoundkin.studies.responses.designs import Designs
 from compoundkin.studies.responses.failed_parts import failed_name, is_at_end
@@ -113,5 +113,5 @@ def _shown(designs: Designs) -> tuple[str, list[str], str]:
     ((name, value),) = moving.items()
     is_angle = designs.path.reference.structure.driven_angles[name]
     shown = np.rad2deg(value[0]) if is_angle else value[0]
-    unit = f" {DEGREES}" if is_angle else after_number(False, designs.path.reference.mechanism.unit)
+    unit = f" {DEGREES}" if is_angle else unit_suffix(False, designs.path.reference.mechanism.unit)
     return name, [f"{one:.6g}" for one in shown], unit

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.files.parquet_library import parquet
 from compoundkin.studies.runs.study_program import StudyColumn
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.runs.parquet_parts import part_column, part_rows
 from compoundkin.studies.runs.study_folder import StudyPart
 from compoundkin.studies.runs.study_rows import StudyRows

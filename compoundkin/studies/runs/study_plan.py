@@ -11,9 +11,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import counted
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
@@ -143,7 +143,7 @@ class StudyPlan:
                 raise InvalidInput(Problem(response.name, f"it has shape {found}", f"a design should have {expected}"))
 
     def __repr__(self) -> str:
-        of = f"{counted(len(self.dimensions), 'dimension')}, {counted(len(self.outputs), 'output')}"
+        of = f"{count_phrase(len(self.dimensions), 'dimension')}, {count_phrase(len(self.outputs), 'output')}"
         return f"{type(self).__name__}({self.mechanism.title!r}: {len(self):,} designs of {of})"
 
     def __getstate__(self) -> dict[str, Any]:

@@ -9,10 +9,10 @@ from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
-from compoundkin.model.component_names import component_names
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import suppress_pose_warnings
+from compoundkin.model.attributes import component_names
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.design_blocks import designs_at_once
 from compoundkin.studies.responses.designs import Designs, StudiedPath
@@ -45,7 +45,7 @@ class StudyColumn(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StudyProgram(PrintsShort):
+class StudyProgram(ShortRepr):
     """What a study computes of every row of its sample."""
 
     variations: Mapping[str, Variation]
@@ -102,7 +102,7 @@ class StudyProgram(PrintsShort):
     def _computed(self, rows: range) -> dict[str, Number]:
         """Compute a block."""
         dimensions = self.sample.designs(self.variations, rows)
-        with silence():
+        with suppress_pose_warnings():
             designs = self.path.designs(dimensions)
             found = {ROW: np.arange(rows.start, rows.stop)}
             for name, value in dimensions.items():

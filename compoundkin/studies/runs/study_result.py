@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort, Shows, counted, way
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import ASSEMBLED, Table, data_frame
-from compoundkin.model.component_names import AXES
+from compoundkin.model.attributes import AXES
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.runs.opened_folder import opened
 from compoundkin.studies.runs.study_plan import StudyPlan
@@ -28,7 +28,7 @@ _X, _Y = (f".{axis}" for axis in AXES)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StudyResult(Shows, PrintsShort):
+class StudyResult(DisplaysHtml, ShortRepr):
     """What a study found: `study` says of what, `rows` are those that are there.
 
     Angles are radians, vectors complex; what does not assemble is NaN, False in "assembled", and has a "reason".
@@ -101,7 +101,7 @@ class StudyResult(Shows, PrintsShort):
         if name in self._vectors:
             return self.rows.column(name + _X) + 1j * self.rows.column(name + _Y)
         known = [*self.names, *self._vectors]
-        raise UnknownName(Problem(name, "the study has no such column", nearest(name, known)))
+        raise UnknownName(Problem(name, "the study has no such column", suggestion(name, known)))
 
     def __contains__(self, name: object) -> bool:
         return name in self._named or name in self._vectors
@@ -184,11 +184,11 @@ class StudyResult(Shows, PrintsShort):
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Plot columns against each other."""
-        return way("study_plot")(self, *names, **options)
+        return display_function("study_plot")(self, *names, **options)
 
     def __repr__(self) -> str:
         there = f"{len(self):,}" if self.is_complete else f"{len(self):,} of {len(self.study):,}"
-        return f"StudyResult({self.study.mechanism.title!r}: {there} rows of {counted(len(self.names), 'column')})"
+        return f"StudyResult({self.study.mechanism.title!r}: {there} rows of {count_phrase(len(self.names), 'column')})"
 
 
 def _single(value: Any) -> Any:

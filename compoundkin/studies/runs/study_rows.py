@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.studies.runs.study_program import StudyColumn
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StudyRows(ABC, PrintsShort):
+class StudyRows(ABC, ShortRepr):
     """Rows that are there, in the order of their numbers.
 
     They have gaps where a run is not at its end.

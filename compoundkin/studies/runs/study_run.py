@@ -8,8 +8,7 @@ from contextlib import closing
 from pickle import PicklingError
 from typing import Any, TypeAlias
 
-from compoundkin.base.errors import CompoundkinError, Problem, StudyStopped
-from compoundkin.base.silence import silence
+from compoundkin.base.errors import CompoundkinError, Problem, StudyStopped, suppress_pose_warnings
 from compoundkin.studies.runs.contract import RunStore
 from compoundkin.studies.runs.row_pieces import piece_size, pieces_of
 from compoundkin.studies.runs.side_by_side import answers
@@ -34,7 +33,7 @@ def run(
 
     Raises InvalidInput for workers that are none, StudyStopped where it comes to no end.
     """
-    with workers(on, threads) as computing, silence():
+    with workers(on, threads) as computing, suppress_pose_warnings():
         missing = list(store.missing())
         size = piece_size(store.plan.program, computing.number(), chunk)
         tell = progress or (lambda done, count: None)

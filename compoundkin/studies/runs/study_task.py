@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from threading import Lock
 
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.studies.runs.study_plan import StudyPlan
 from compoundkin.studies.runs.study_program import StudyProgram
 
@@ -29,7 +29,7 @@ class StudyTask:
 
 def computed(plan: StudyPlan, rows: range) -> dict[str, Number]:
     """Return some rows of a study."""
-    with silence():
+    with suppress_pose_warnings():
         return kept_program(plan).rows(rows)
 
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from compoundkin.base.display import PrintsShort, short
+from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, Problem
 
 # So many pieces are under way for each worker: one that it computes, and one that waits for it.
@@ -20,7 +20,7 @@ UNTOLD = 16
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Workers(PrintsShort):
+class Workers(ShortRepr):
     """An executor, or None where all is computed here.
 
     `number` says how many workers it has now.
@@ -65,7 +65,7 @@ def _given(on: Any) -> Workers:
     made, counts = getattr(on, "get_executor", None), getattr(on, "nthreads", None)
     if not callable(made) or not callable(counts):
         remedy = "give a concurrent.futures.Executor, or a Dask client: cluster.get_client()"
-        raise InvalidInput(Problem("on", f"{short(on)} computes nothing", remedy))
+        raise InvalidInput(Problem("on", f"{short_repr(on)} computes nothing", remedy))
     if getattr(on, "asynchronous", False):
         raise InvalidInput(Problem("on", "the client is asynchronous", "distributed.Client(..., asynchronous=False)"))
     return Workers(made(pure=False), lambda: max(UNTOLD, sum(counts().values())))

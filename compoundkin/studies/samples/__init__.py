@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from compoundkin.base.display import short
-from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.display import short_repr
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.studies.samples.contract import DesignSample
 from compoundkin.studies.samples.grid_of_levels import GridSample
 from compoundkin.studies.samples.latin_hypercube import LatinHypercubeSample
@@ -54,6 +54,6 @@ def sample_from(data: Mapping[str, Any]) -> DesignSample:
 
 def _kind(sample: object) -> type[DesignSample]:
     if not isinstance(sample, str) or sample not in SAMPLES:
-        known = nearest(sample, list(SAMPLES)) if isinstance(sample, str) else f"known: {', '.join(SAMPLES)}"
-        raise InvalidInput(Problem("sample", f"there is no sample {short(sample)}", known))
+        known = suggestion(sample, list(SAMPLES)) if isinstance(sample, str) else f"known: {', '.join(SAMPLES)}"
+        raise InvalidInput(Problem("sample", f"there is no sample {short_repr(sample)}", known))
     return SAMPLES[sample]

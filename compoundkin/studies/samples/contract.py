@@ -6,10 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
-from compoundkin.base.argument_forms import is_whole
-from compoundkin.base.display import short
+from compoundkin.base.arguments import is_whole
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.variations.contract import Variation
 
 # Sobol's numbers have 30 bits, and strata of a Latin hypercube are told apart in doubles; a thousand million rows are
@@ -91,7 +91,7 @@ def held_count(count: object) -> int:
     if count is None:
         raise InvalidInput(Problem("count", "it is not said how many designs", "count=2**16"))
     if not is_whole(count) or not 1 <= int(str(count)) <= MOST_DESIGNS:
-        what = f"{short(count)} is no number of designs"
+        what = f"{short_repr(count)} is no number of designs"
         raise InvalidInput(Problem("count", what, f"1 to {MOST_DESIGNS}, as in count=2**16"))
     return int(str(count))
 
@@ -99,5 +99,5 @@ def held_count(count: object) -> int:
 def held_seed(seed: object) -> int:
     """Return a seed; raises InvalidInput for what is none."""
     if not is_whole(seed) or int(str(seed)) < 0:
-        raise InvalidInput(Problem("seed", f"{short(seed)} is no seed", "a whole number from 0"))
+        raise InvalidInput(Problem("seed", f"{short_repr(seed)} is no seed", "a whole number from 0"))
     return int(str(seed))

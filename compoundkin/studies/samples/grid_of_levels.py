@@ -10,10 +10,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from compoundkin.base.argument_forms import is_whole
-from compoundkin.base.display import short
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arguments import is_whole
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.studies.samples.contract import MOST_DESIGNS, DesignSample, held_count
 from compoundkin.studies.variations.contract import Variation
 
@@ -54,7 +54,7 @@ class GridSample(DesignSample):
         unknown = [name for name in given if name not in variations]
         if unknown:
             raise UnknownName(
-                Problem(f"sample.{name}", "it is not among the dimensions", nearest(name, list(variations)))
+                Problem(f"sample.{name}", "it is not among the dimensions", suggestion(name, list(variations)))
                 for name in unknown
             )
         # lists of values have their own levels
@@ -68,7 +68,7 @@ class GridSample(DesignSample):
             raise InvalidInput(problems)
         size = _size(variations, levels)
         if size > MOST_DESIGNS or count not in (None, size):
-            told = f", not {short(count)}" if count is not None else ""
+            told = f", not {short_repr(count)}" if count is not None else ""
             remedy = f"leave the count out; a grid has up to {MOST_DESIGNS}"
             raise InvalidInput(Problem("count", f"the grid has {size} designs{told}", remedy))
         return cls(size, {name: int(number) for name, number in levels.items()})
@@ -92,7 +92,7 @@ class GridSample(DesignSample):
 
 
 def _no_levels(number: Any) -> str:
-    return "it is not said how many levels it has" if number is None else f"{short(number)} is no number of levels"
+    return "it is not said how many levels it has" if number is None else f"{short_repr(number)} is no number of levels"
 
 
 def _size(variations: Mapping[str, Variation], levels: Mapping[str, Any]) -> int:

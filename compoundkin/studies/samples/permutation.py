@@ -7,7 +7,7 @@ from math import isqrt
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Each half is moved so often. Two rounds of each are enough for what tests of independence find; four are safe.
 ROUNDS = 4

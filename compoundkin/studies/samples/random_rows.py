@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.studies.samples.contract import UnitSample
 
 # Each count of Philox gives so many numbers.

@@ -9,8 +9,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, warn
-from compoundkin.base.series import Number
 from compoundkin.studies.samples.contract import UnitSample, columns_of
 from compoundkin.studies.variations.contract import Variation
 

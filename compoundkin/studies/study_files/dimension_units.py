@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 
 from compoundkin.model.fields import Key
 from compoundkin.model.laws.law_numbers import SEGMENTS
-from compoundkin.model.laws.program_segments import ProgramSegment
+from compoundkin.model.laws.motion_programs import ProgramSegment
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
-from compoundkin.programs.dimensions.free_dimension import LAW
+from compoundkin.programs.dimensions import LAW
 
 _ANGLES = ("angle", "turn", "sweep")
 

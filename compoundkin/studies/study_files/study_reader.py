@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, suggestion
 from compoundkin.files import load
 from compoundkin.files.parsed_document import heading
 from compoundkin.files.reader import read
@@ -123,7 +123,7 @@ def _driven(
     for name, raw in _table(given, keys.DRIVES, log).items() if keys.DRIVES in given else ():
         where = f"{keys.DRIVES}.{name}"
         if mechanism is not None and name not in angles:
-            log.report(bad(where, f"there is no driver {name!r}", nearest(name, list(angles))))
+            log.report(bad(where, f"there is no driver {name!r}", suggestion(name, list(angles))))
         for key, value in log.table(raw, keys.DRIVEN, where, angles.get(name)).items():
             found.setdefault(key, {})[name] = value
     return found

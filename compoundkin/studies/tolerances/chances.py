@@ -9,9 +9,9 @@ from typing import Self
 
 import numpy as np
 
-from compoundkin.base.display import short
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.given_numbers import real_numbers
 from compoundkin.studies.samples.contract import held_count, held_seed
 from compoundkin.studies.samples.random_rows import RandomSample
 
@@ -35,10 +35,10 @@ class Chances:
         """
         found = real_numbers("percentiles", percentiles)
         if found.ndim != 1 or not found.size or not ((found > 0) & (found < 100)).all():
-            what = f"{short(percentiles)} are no percentiles"
+            what = f"{short_repr(percentiles)} are no percentiles"
             raise InvalidInput(Problem("percentiles", what, "give numbers between 0 and 100, as (5, 50, 95)"))
         if not (np.isfinite(sigmas) and sigmas > 0):
-            what = f"{short(sigmas)} is no number of standard deviations"
+            what = f"{short_repr(sigmas)} is no number of standard deviations"
             raise InvalidInput(Problem("sigmas", what, "give 3"))
         sample = RandomSample(held_count(count), held_seed(seed))
         outermost = float(np.minimum(found, 100 - found).min())

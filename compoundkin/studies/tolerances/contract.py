@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 
 @dataclass(frozen=True)

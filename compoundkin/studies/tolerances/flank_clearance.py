@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.studies.tolerances.contract import ErrorSource
 
 

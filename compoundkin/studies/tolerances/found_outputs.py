@@ -6,13 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
-from compoundkin.base.display import counted
-from compoundkin.base.errors import FewDigits, NotAssembled, Problem, UnassembledPoses, warn
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
-from compoundkin.model.attributes import PARTS, RADIANS
-from compoundkin.model.component_names import AXES
+from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.display import count_phrase
+from compoundkin.base.errors import FewDigits, NotAssembled, Problem, UnassembledPoses, suppress_pose_warnings, warn
+from compoundkin.model.attributes import AXES, PARTS, RADIANS
 from compoundkin.studies.responses import Response
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.sampled_output import SampledOutput
@@ -76,10 +73,10 @@ def _tell_slopes(one: OutputTolerance) -> None:
 
 
 def _hold_nominal(designs: TolerancedDesigns) -> None:
-    with silence():
+    with suppress_pose_warnings():
         missing = int(np.count_nonzero(~designs.nominal.found.assembled))
     if missing:
-        what = f"{counted(missing, 'pose')} of the mechanism itself cannot be assembled"
+        what = f"{count_phrase(missing, 'pose')} of the mechanism itself cannot be assembled"
         raise NotAssembled(Problem("values", what, "give values at which it can, gaps(solve(...)) tells where"))
 
 

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.display import short
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number
-from compoundkin.model.component_names import AXES
+from compoundkin.model.attributes import AXES
 from compoundkin.studies.responses import StudiedPath
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.tolerances.dimension_tolerance import DimensionTolerance
@@ -59,11 +59,13 @@ def _tolerance(name: str, given: Any, sigmas: float) -> MakeSource:
 def _limits(where: str, given: Any) -> tuple[float, float]:
     found = real_numbers(where, given)
     if found.shape not in ((), (2,)) or not np.isfinite(found).all():
-        raise InvalidInput(Problem(where, f"{short(given)} is no tolerance", "give 0.05, or deviations (-0.02, 0.05)"))
+        raise InvalidInput(
+            Problem(where, f"{short_repr(given)} is no tolerance", "give 0.05, or deviations (-0.02, 0.05)")
+        )
     low, high = (-found, found) if found.ndim == 0 else found
     if low > high:
         remedy = f"give {-float(found)}" if found.ndim == 0 else f"give ({high}, {low})"
-        raise InvalidInput(Problem(where, f"the tolerance {short(given)} is less than nothing", remedy))
+        raise InvalidInput(Problem(where, f"the tolerance {short_repr(given)} is less than nothing", remedy))
     return float(low), float(high)
 
 

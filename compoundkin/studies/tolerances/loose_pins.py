@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import counted, short
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.given_numbers import real_numbers
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.display import count_phrase, short_repr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.tolerances.flank_clearance import FlankClearance
 from compoundkin.studies.tolerances.given_errors import GivenError
@@ -40,7 +40,7 @@ def _half(name: str, given: Any) -> float:
     where = f"clearance.{name}"
     found = real_numbers(where, given)
     if found.shape != () or not np.isfinite(found) or found < 0:
-        raise InvalidInput(Problem(where, f"{short(given)} is no clearance", "give half the play, 0.02"))
+        raise InvalidInput(Problem(where, f"{short_repr(given)} is no clearance", "give half the play, 0.02"))
     return float(found)
 
 
@@ -53,13 +53,13 @@ def loose_point(mechanism: Mechanism, name: str) -> str:
     link, _, letter = name.rpartition(".")
     if letter not in pins or (link and link not in pins[letter]):
         known = [*pins, *guides_of(mechanism), *(f"{one}.{pin}" for pin, links in pins.items() for one in links)]
-        raise UnknownName(Problem(where, "there is no such pin, slot or guide", nearest(name, known)))
+        raise UnknownName(Problem(where, "there is no such pin, slot or guide", suggestion(name, known)))
     able = [one for one in reversed(pins[letter]) if _is_alone(mechanism, one, letter)]
     if link and link not in able:
         what = f"another pair is at {letter} on {link}, and would be moved too"
         raise InvalidInput(Problem(where, what, _others(able, letter)))
     if not link and len(pins[letter]) > 2:
-        what = f"{counted(len(pins[letter]), 'link')} meet there, and it is open which are loose on the pin"
+        what = f"{count_phrase(len(pins[letter]), 'link')} meet there, and it is open which are loose on the pin"
         raise InvalidInput(Problem(where, what, _others(able, letter)))
     if not able:
         raise InvalidInput(Problem(where, "other pairs are at this point on each of its links", _others(able, letter)))

@@ -8,15 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.model.attributes import Dimension
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.tolerances.sampled_output import SampledOutput
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class OutputTolerance(PrintsShort):
+class OutputTolerance(ShortRepr):
     """An output by its name.
 
     Figures have numbers, courses arrays over the poses; angles are radians. `nominal` is its value at the mechanism's

@@ -7,12 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SampledOutput(PrintsShort):
+class SampledOutput(ShortRepr):
     """An output in the random designs that assemble over the whole motion.
 
     `values` are (designs,) of a figure, (designs, poses) of a course; `percents` say which percentiles there are.

@@ -8,7 +8,7 @@ from typing import Any
 
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.dimensions import StatedDimensions
 
 # The number of slots and guides that their clearance changes.
 OFFSET = "offset"

@@ -13,12 +13,7 @@ from compoundkin.studies.responses import studied_path
 from compoundkin.studies.responses.freed_dimensions import freed_by
 from compoundkin.studies.tolerances.chances import Chances
 from compoundkin.studies.tolerances.found_outputs import found_outputs
-from compoundkin.studies.tolerances.given_errors import (
-    GivenError,
-    error_sources,
-    freed,
-    given_tolerances,
-)
+from compoundkin.studies.tolerances.given_errors import GivenError, error_sources, freed, given_tolerances
 from compoundkin.studies.tolerances.loose_pins import given_clearances
 from compoundkin.studies.tolerances.stated_offsets import with_offsets
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from compoundkin.base.display import Shows, short, way
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.display import DisplaysHtml, display_function, short_repr
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.table import Table
 from compoundkin.model.mechanism import Mechanism
@@ -18,7 +18,7 @@ from compoundkin.studies.tolerances.tolerance_tables import band_table, contribu
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
+class ToleranceAnalysis(Mapping[str, OutputTolerance], DisplaysHtml):
     """Outputs by name, each with what tolerances do to it.
 
     `motion` is that of the mechanism as it stands, `sources` are what errors come from. `unassembled` of the random
@@ -65,12 +65,12 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Plot outputs with their bands; see `plots.bands`."""
-        return way("study_plot")(self, *names, **options)
+        return display_function("study_plot")(self, *names, **options)
 
     def __getitem__(self, name: str) -> OutputTolerance:
         """Return an output by its name; raises UnknownName."""
         if name not in self.outputs:
-            raise UnknownName(Problem(str(name), "there is no such output", nearest(str(name), list(self.outputs))))
+            raise UnknownName(Problem(str(name), "there is no such output", suggestion(str(name), list(self.outputs))))
         return self.outputs[name]
 
     def __contains__(self, name: object) -> bool:
@@ -83,5 +83,5 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
         return len(self.outputs)
 
     def __repr__(self) -> str:
-        outputs, sources = short(tuple(self.outputs)), short(tuple(one.name for one in self.sources))
+        outputs, sources = short_repr(tuple(self.outputs)), short_repr(tuple(one.name for one in self.sources))
         return f"ToleranceAnalysis({self.mechanism.title!r}: {outputs} by {sources})"

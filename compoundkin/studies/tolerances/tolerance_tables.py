@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table

@@ -8,10 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
-from compoundkin.base.silence import silence
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, suppress_pose_warnings
 from compoundkin.studies.responses import Designs, Response, StudiedPath
 from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.design_blocks import blocks
@@ -23,7 +22,7 @@ MOST_VALUES = 2**27
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TolerancedDesigns(PrintsShort):
+class TolerancedDesigns(ShortRepr):
     """The mechanism as it stands, and random designs within the tolerances."""
 
     path: StudiedPath
@@ -47,7 +46,7 @@ class TolerancedDesigns(PrintsShort):
         parts: dict[str, list[Number]] = {one.name: [] for one in responses}
         assembled = []
         for rows in blocks(self.sample.count, self.path.reference.inputs.poses):
-            with silence():
+            with suppress_pose_warnings():
                 designs = self.designs(rows)
                 assembled.append(assembled_range(designs).assembled)
                 for one in responses:

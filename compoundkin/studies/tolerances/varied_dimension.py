@@ -8,8 +8,8 @@ from typing import Self
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, warn
-from compoundkin.base.series import Number
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.variations.contract import Variation
 

@@ -6,9 +6,9 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from compoundkin.base.display import short
-from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.base.display import short_repr
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.studies.variations.around import AroundCentre
 from compoundkin.studies.variations.contract import Variation
 from compoundkin.studies.variations.distribution import Distribution
@@ -52,7 +52,7 @@ def variation_of(where: str, given: Any) -> Variation:
         found = kind.given_as(where, given)
         if found is not None:
             return found
-    raise InvalidInput(Problem(where, f"{short(given)} is nothing that a dimension can be", _REMEDY))
+    raise InvalidInput(Problem(where, f"{short_repr(given)} is nothing that a dimension can be", _REMEDY))
 
 
 def variation_from(where: str, data: Mapping[str, Any]) -> Variation:
@@ -62,7 +62,7 @@ def variation_from(where: str, data: Mapping[str, Any]) -> Variation:
     """
     fitting = [kind for kind in VARIATIONS if kind.keys[0] in data]
     if len(fitting) != 1:
-        what = f"{short(dict(data))} is nothing that a dimension can be"
+        what = f"{short_repr(dict(data))} is nothing that a dimension can be"
         keys = ", ".join(kind.keys[0] for kind in VARIATIONS)
         raise InvalidInput(Problem(where, what, f"just one of these keys: {keys}"))
     _hold_keys(where, fitting[0], data)
@@ -73,7 +73,7 @@ def _hold_keys(where: str, kind: type[Variation], data: Mapping[str, Any]) -> No
     known, needed = (*kind.keys, *kind.optional), " and ".join(kind.keys)
     problems = [Problem(where, f"it has no {key!r}", f"say {needed}") for key in kind.keys if key not in data]
     problems += [
-        Problem(f"{where}.{key}", "there is no such key", nearest(key, known)) for key in data if key not in known
+        Problem(f"{where}.{key}", "there is no such key", suggestion(key, known)) for key in data if key not in known
     ]
     if problems:
         raise InvalidInput(problems)

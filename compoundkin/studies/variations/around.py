@@ -8,11 +8,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from compoundkin.base.argument_forms import is_finite_real
-from compoundkin.base.arguments import checked
-from compoundkin.base.display import short
+from compoundkin.base.arguments import checked, is_finite_real
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.variations.contract import Variation
 from compoundkin.studies.variations.given_values import number_or_point, planar, written
 from compoundkin.studies.variations.normal_quantiles import normal_quantiles
@@ -74,10 +73,10 @@ class AroundCentre(Variation):
         """Return it of what is given; raises InvalidInput."""
         middle = number_or_point(_place(where, "centre"), centre)
         if not is_finite_real(within) or within <= 0:
-            what = f"{short(within)} is no distance above 0"
+            what = f"{short_repr(within)} is no distance above 0"
             raise InvalidInput(Problem(_place(where, "within"), what, "say how far from the centre values may be"))
         if sigmas is not None and (not is_finite_real(sigmas) or sigmas <= 0):
-            what = f"{short(sigmas)} is no number above 0"
+            what = f"{short_repr(sigmas)} is no number above 0"
             remedy = "sigmas=3: `within` is three standard deviations"
             raise InvalidInput(Problem(_place(where, "sigmas"), what, remedy))
         return cls(middle, float(within), None if sigmas is None else float(sigmas))

@@ -9,11 +9,11 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
-from compoundkin.base.display import short
-from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number
+from compoundkin.base.display import short_repr
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.studies.variations.contract import Variation
 from compoundkin.studies.variations.normal_quantiles import inner_units
 
@@ -77,7 +77,7 @@ class Distribution(CopiesFields, Variation):
             return None
         family = getattr(given, "dist", None)
         if family is None or not hasattr(given, "kwds"):
-            raise InvalidInput(Problem(where, f"{short(given)} is no distribution with its numbers", _WRITE))
+            raise InvalidInput(Problem(where, f"{short_repr(given)} is no distribution with its numbers", _WRITE))
         if family.name not in _families() or type(_families()[family.name]) is not type(family):
             raise InvalidInput(Problem(where, "it is no distribution that scipy.stats has by a name", _WRITE))
         shapes = family.shapes.split(", ") if family.shapes else []
@@ -100,7 +100,9 @@ class Distribution(CopiesFields, Variation):
     def _one(where: str, given: Any) -> float:
         found = real_numbers(where, given)
         if found.ndim:
-            raise InvalidInput(Problem(where, f"{short(given)} is not one number", "a dimension has one distribution"))
+            raise InvalidInput(
+                Problem(where, f"{short_repr(given)} is not one number", "a dimension has one distribution")
+            )
         return float(found)
 
 
@@ -108,8 +110,8 @@ def _family(where: str, name: object) -> Any:
     """Return the distributions of a name in scipy.stats; raises InvalidInput."""
     known = _families()
     if not isinstance(name, str) or name not in known:
-        what = f"scipy.stats has no distribution {short(name)}"
-        raise InvalidInput(Problem(where, what, nearest(name, ["norm", "uniform", "triang", *known])))
+        what = f"scipy.stats has no distribution {short_repr(name)}"
+        raise InvalidInput(Problem(where, what, suggestion(name, ["norm", "uniform", "triang", *known])))
     return known[name]
 
 

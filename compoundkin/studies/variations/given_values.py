@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import short
+from compoundkin.base.arguments import planar_numbers, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.given_numbers import planar_numbers, real_numbers
-from compoundkin.base.series import Number
 
 
 def number_or_point(where: str, given: Any) -> float | complex:
@@ -22,7 +22,7 @@ def number_or_point(where: str, given: Any) -> float | complex:
     """
     found = numbers_or_points(where, [given])
     if np.ndim(given) > 1 or len(found) != 1:
-        raise InvalidInput(Problem(where, f"{short(given)} is neither a number nor a point", "a point is (x, y)"))
+        raise InvalidInput(Problem(where, f"{short_repr(given)} is neither a number nor a point", "a point is (x, y)"))
     value: float | complex = found[0].item()
     return value
 
@@ -38,7 +38,7 @@ def numbers_or_points(where: str, given: Any) -> Number:
         if found.ndim == 2 and found.shape[1] == 2:
             found = planar(found)
     if found.ndim != 1:
-        raise InvalidInput(Problem(where, f"{short(given)} are neither numbers nor points", "a point is (x, y)"))
+        raise InvalidInput(Problem(where, f"{short_repr(given)} are neither numbers nor points", "a point is (x, y)"))
     if not np.isfinite(found).all():
         raise InvalidInput(Problem(where, "it is not finite"))
     return found

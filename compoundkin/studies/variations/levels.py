@@ -8,15 +8,15 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort, short
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.variations.contract import Variation
 from compoundkin.studies.variations.given_values import numbers_or_points, written
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Levels(PrintsShort, Variation):
+class Levels(ShortRepr, Variation):
     """Some values, each as likely.
 
     A grid has all of them, a table one in each row.
@@ -88,7 +88,7 @@ class Levels(PrintsShort, Variation):
         """Return a list of numbers or points as levels; raises InvalidInput."""
         found = numbers_or_points(where, given)
         if found.size == 0:
-            raise InvalidInput(Problem(where, f"{short(given)} has no values", "list at least one"))
+            raise InvalidInput(Problem(where, f"{short_repr(given)} has no values", "list at least one"))
         own = found.copy()
         own.flags.writeable = False
         return cls(own)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Sobol's numbers are multiples of 2^-30; 0 stands for all below the first of them, the half of which is taken.
 LEAST_UNIT = 2.0**-31

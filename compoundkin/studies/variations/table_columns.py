@@ -11,10 +11,10 @@ from types import MappingProxyType
 
 import numpy as np
 
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.given_numbers import real_numbers
-from compoundkin.base.series import Number
-from compoundkin.base.suffixes import form_of
+from compoundkin.base.suffixes import file_format
 from compoundkin.files.parquet_library import parquet
 from compoundkin.model.attributes import DEGREES
 
@@ -29,7 +29,7 @@ def table_columns(path: str | os.PathLike[str]) -> dict[str, Number]:
     writes do: "slot.angle [deg]" in the head of a CSV file, the unit of a field in Parquet; they are returned in
     radians. Raises InvalidInput for what is no such table.
     """
-    form = form_of("table", path)
+    form = file_format("table", path)
     if form not in _READERS:
         raise InvalidInput(Problem(str(path), "designs are not read from such a file", "write a .csv or .parquet"))
     try:

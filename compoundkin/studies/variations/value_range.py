@@ -8,9 +8,9 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from compoundkin.base.display import short
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.studies.variations.contract import Variation
 from compoundkin.studies.variations.given_values import number_or_point, parts_of, planar, written
 
@@ -58,7 +58,7 @@ class ValueRange(Variation):
         if not isinstance(given, tuple):
             return None
         if len(given) != 2:
-            what = f"{short(given)} is no range: that has two ends"
+            what = f"{short_repr(given)} is no range: that has two ends"
             raise InvalidInput(Problem(where, what, "write (40, 60), of points ((x, y), (x, y)), or a list of values"))
         return cls.between(where, *given)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.coloured_graphs import Coloured
@@ -154,7 +154,7 @@ def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
         return assur_groups(int(found[1]))[int(found[2]) - 1]
     listed = ("2-link group 1", "4-link group 1 or 2", "6-link group 1 to 10", "8-link group 1 to 173")
     known = [*also, *_OWN_GROUPS, *listed]
-    raise UnknownName(Problem(name, "there is no such Assur group", nearest(name, known)))
+    raise UnknownName(Problem(name, "there is no such Assur group", suggestion(name, known)))
 
 
 @checked

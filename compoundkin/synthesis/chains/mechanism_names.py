@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.synthesis.chains.chain_names import derived_names, has_rigid_part, variety_of
 from compoundkin.synthesis.chains.coloured_graphs import assorted, ordinal
 from compoundkin.synthesis.chains.joints import REVOLUTE, SLIDE, Joint, Joints
@@ -192,7 +192,7 @@ def _driven(joints: Joints, frame: int | None, driver: int) -> str:
 
 def _number(joints: Joints, link: str) -> int:
     if link not in joints.links:
-        raise UnknownName(Problem(link, "the graph has no such link", nearest(link, joints.links)))
+        raise UnknownName(Problem(link, "the graph has no such link", suggestion(link, joints.links)))
     return joints.links.index(link)
 
 

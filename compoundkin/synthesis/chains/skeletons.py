@@ -16,10 +16,10 @@ from typing import TypeAlias
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import wrapped
+from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
-from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME, Drive, Item, drawn, drive, link
+from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decomposed
 from compoundkin.synthesis.chains.chain import Chain

@@ -10,7 +10,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.kinematics.assembly.group_geometry import GroupGraph
 from compoundkin.kinematics.assembly.mode_count import exact_count
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Group

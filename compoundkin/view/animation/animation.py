@@ -13,28 +13,32 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import ChangePointWarning, InvalidInput, Problem, UnassembledPoses
-from compoundkin.base.series import Number
-from compoundkin.base.suffixes import Kind, form_of
+from compoundkin.base.suffixes import Kind, file_format
 from compoundkin.dynamics.forces import Forces
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
-from compoundkin.view.animation.films import Frames, Progress, gif, mp4, require_ffmpeg, require_pillow
-from compoundkin.view.animation.force_overlays import with_forces
-from compoundkin.view.animation.frame_caption import Caption
+from compoundkin.view.animation.films import FilmFrames, Progress, gif, mp4, require_ffmpeg, require_pillow
 from compoundkin.view.animation.moving_svg import smil
-from compoundkin.view.animation.overlays import Arrows, MovingCentre, moving_centres, with_arrows
+from compoundkin.view.animation.overlays import (
+    Arrows,
+    Caption,
+    MovingCentre,
+    moving_centres,
+    with_arrows,
+    with_force_arrows,
+)
 from compoundkin.view.animation.timeline import Timeline, timeline_of
-from compoundkin.view.sketch.asked_values import asked_labels, asked_paths
-from compoundkin.view.sketch.moving_sketch import MovingSketch, moving_sketch
+from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.picture import PAGE, Picture, checked_size
+from compoundkin.view.sketch.picture_options import label_kinds, path_letters, scene_in
 from compoundkin.view.sketch.shapes import Shape
-from compoundkin.view.sketch.shown_pose import scene_in
 from compoundkin.view.sketch.svg import NATURAL, pixel_size, pixels, require_cairo
-from compoundkin.view.sketch.vectors import wanted
+from compoundkin.view.sketch.vectors import vector_kinds
 
 # A mechanism's own range is shown in at least so many steps, as a full turn is.
 FEWEST = 72
@@ -90,7 +94,7 @@ class Animation(Savable):
     @cached_property
     def svg(self) -> str:
         """Its source as SVG that moves by itself. The first pose where that is not supported."""
-        scale = self.shown_size / self.longer
+        scale = self.displayed_size / self.longer
         return smil(self.timeline, self.caption, self.arrows, self.centres, scale)
 
     def save(self, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
@@ -105,15 +109,15 @@ class Animation(Savable):
     def content(self, form: str, progress: Progress | None = None) -> bytes:
         """Return the bytes of a file in the form "gif", "mp4" or "svg". The same every time."""
         if form == "svg":
-            (progress or _untold)(len(self), len(self))
+            (progress or _no_progress)(len(self), len(self))
             return self.svg.encode("utf-8")
-        size = pixel_size(self.sketch.window.width, self.frame(0).height, self.shown_size)
+        size = pixel_size(self.sketch.window.width, self.frame(0).height, self.displayed_size)
         write = {"gif": gif, "mp4": mp4}[form]
 
         def drawn(k: int) -> Number:
             return pixels(self.frame(k).svg, *size)
 
-        return write(Frames(drawn, len(self), self.timeline.hold, size), progress or _untold)
+        return write(FilmFrames(drawn, len(self), self.timeline.hold, size), progress or _no_progress)
 
     @cached_property
     def longer(self) -> float:
@@ -121,7 +125,7 @@ class Animation(Savable):
         return max(self.sketch.window.width, self.frame(0).height)
 
     @property
-    def shown_size(self) -> float:
+    def displayed_size(self) -> float:
         """The longer side of a frame in pixels."""
         return min(NATURAL * self.longer, PAGE) if self.size is None else self.size
 
@@ -134,7 +138,7 @@ class Animation(Savable):
 
 def ready_for(path: str | os.PathLike[str]) -> str:
     """Return the form of a file that can be written. Raises InvalidInput where it cannot, before anything is drawn."""
-    form = form_of("animation", path)
+    form = file_format("animation", path)
     if not Path(path).absolute().parent.is_dir():
         raise InvalidInput(Problem(str(path), "it cannot be written: there is no such folder", "make it first"))
     if form == "mp4":
@@ -146,7 +150,7 @@ def ready_for(path: str | os.PathLike[str]) -> str:
     return form
 
 
-def _untold(done: int, total: int) -> None:
+def _no_progress(done: int, total: int) -> None:
     """Tell nobody of progress."""
 
 
@@ -180,14 +184,14 @@ def animate(
     >>> len(animate(crank))
     72
     """
-    kinds, asked, shown_size = wanted(vectors), asked_labels(labels), checked_size(size)
+    kinds, asked, shown_size = vector_kinds(vectors), label_kinds(labels), checked_size(size)
     motion = what.motion if isinstance(what, Forces) else _motion(what)
     scene = scene_in(motion, None, None, design)
-    sketch = moving_sketch(motion, design, paths=asked_paths(scene.mechanism, paths), labels=asked)
+    sketch = moving_sketch(motion, design, paths=path_letters(scene.mechanism, paths), labels=asked)
     timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
     sketch, arrows = with_arrows(sketch, kinds, bool((timeline.ways < 0).any()))
     if isinstance(what, Forces):
-        sketch, arrows = with_forces(sketch, what, arrows)
+        sketch, arrows = with_force_arrows(sketch, what, arrows)
     names = [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
     shown = timeline.poses[timeline.frames]
     caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(asked))

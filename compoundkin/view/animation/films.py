@@ -16,8 +16,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.base.suffixes import suffix_for
 
 # Two colours of a palette differ by more than this, red, green and blue together: no eye misses what is between.
@@ -43,7 +43,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Frames:
+class FilmFrames:
     """The frames of a film, made one by one. They are arrays of pixels of one size, each shown for `hold` seconds."""
 
     frame: Callable[[int], Number]
@@ -52,12 +52,12 @@ class Frames:
     size: tuple[int, int]
 
 
-def palette(pixels: Number, most: int) -> Number:
+def colour_palette(pixels: Number, most: int) -> Number:
     """Return at most so many colours of some pixels, (..., 3). The most frequent come first, (colours, 3).
 
     What is drawn in one colour keeps it exactly; edges, whose colours lie between two, go to one nearby.
 
-    >>> palette(np.array([[255, 255, 255], [0, 0, 0], [255, 255, 255], [250, 250, 250]]), 4).tolist()
+    >>> colour_palette(np.array([[255, 255, 255], [0, 0, 0], [255, 255, 255], [250, 250, 250]]), 4).tolist()
     [[255, 255, 255], [0, 0, 0]]
     """
     flat = np.reshape(pixels, (-1, 3)).astype(np.int64) @ np.array([1 << 16, 1 << 8, 1])
@@ -86,7 +86,7 @@ def indices(pixels: Number, table: Number) -> Number:
     return np.asarray(table[(red * LEVELS + green) * LEVELS + blue])
 
 
-def gif(frames: Frames, progress: Progress) -> bytes:
+def gif(frames: FilmFrames, progress: Progress) -> bytes:
     """Return frames, arrays of pixels, as the bytes of a GIF. Each is shown for `hold` seconds.
 
     Raises InvalidInput where Pillow is not installed, and for more frames a second than a GIF can have.
@@ -97,7 +97,7 @@ def gif(frames: Frames, progress: Progress) -> bytes:
         what = f"a GIF has at most {100 // SHORTEST} frames a second"
         raise InvalidInput(Problem("fps", what, "ask for fewer, for more seconds, or for an .mp4"))
     known = {k: frames.frame(k) for k in sorted({count * n // SAMPLED for n in range(SAMPLED)})}
-    colours = palette(np.concatenate(list(known.values())), MOST_COLOURS)
+    colours = colour_palette(np.concatenate(list(known.values())), MOST_COLOURS)
     table = nearest_table(colours)
 
     def images() -> Iterator[Any]:
@@ -152,7 +152,7 @@ def require_ffmpeg() -> str:
     return found
 
 
-def mp4(frames: Frames, progress: Progress) -> bytes:
+def mp4(frames: FilmFrames, progress: Progress) -> bytes:
     """Return frames, arrays of pixels, as the bytes of an MP4 file. Each is shown for `hold` seconds.
 
     Raises InvalidInput where ffmpeg is not installed or fails, with what it says.
@@ -183,7 +183,7 @@ def _words(program: str, size: tuple[int, int], rate: Fraction, path: Path) -> S
     return [*start, *read, "-i", "-", "-an", *even, *code, *colours, *same, str(path)]
 
 
-def _hand_over(process: subprocess.Popen[bytes], frames: Frames, progress: Progress) -> None:
+def _hand_over(process: subprocess.Popen[bytes], frames: FilmFrames, progress: Progress) -> None:
     assert process.stdin is not None
     try:
         for k in range(frames.count):

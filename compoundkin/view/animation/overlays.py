@@ -1,26 +1,38 @@
-"""What goes with a moving sketch: arrows of velocities and accelerations, and instant centres."""
+"""What accompanies a moving sketch: arrows of velocities, accelerations and forces, instant centres, the caption."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
-from compoundkin.base.series import Number
-from compoundkin.view.sketch.centre_pictures import DOT, TOGETHER, centre_name
-from compoundkin.view.sketch.label_places import Label, around, placed, text_half
-from compoundkin.view.sketch.moving_sketch import MovingSketch
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.dynamics.forces import Forces
+from compoundkin.model.attributes import unit_suffix
+from compoundkin.view.animation.timeline import pose_times
+from compoundkin.view.sketch.centre_pictures import DOT, TOGETHER, centre_number
+from compoundkin.view.sketch.force_arrows import ForceCourse
+from compoundkin.view.sketch.force_pictures import drawn_force_courses, force_scales
+from compoundkin.view.sketch.kinematic_sketch import MovingSketch
+from compoundkin.view.sketch.labels import BELOW, Label, label_around, lines_below, lines_of_text, placed, text_half
 from compoundkin.view.sketch.picture import MARGIN, Window
-from compoundkin.view.sketch.shapes import CircleShape, Shape, Text, leaves, moved
-from compoundkin.view.sketch.sketch_style import LETTER, SMALL
-from compoundkin.view.sketch.vectors import VectorScale, vector_shapes
+from compoundkin.view.sketch.picture_options import pose_notes
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, Text, leaves, moved_shapes, sheet
+from compoundkin.view.sketch.sketch_style import LETTER, LINE, SMALL
+from compoundkin.view.sketch.vectors import VectorScale, scale_shapes, vector_shapes
 
 # So near to the edge of a picture a centre is left out.
 EDGE = 2.0
+
+
 # The name of a centre stands so far beside it where no better place is known.
 BESIDE = 9.0 - 9.0j
+
+
 FAR = 22.0
 
 
@@ -59,7 +71,7 @@ class MovingCentre:
 
     def shapes(self, k: int) -> list[Shape]:
         """Draw it at the k-th assembled pose; nothing where it is off the picture."""
-        return moved(self.marks, complex(self.places[k])) if self.shown[k] else []
+        return moved_shapes(self.marks, complex(self.places[k])) if self.shown[k] else []
 
 
 def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple[MovingSketch, tuple[Arrows, ...]]:
@@ -70,13 +82,13 @@ def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple
     made: list[Arrows] = []
     for scale in filter(None, map(sketch.scale, kinds)):
         rates = sketch.rates(scale.kind)
-        made.append(Arrows(scale, {letter: places_of(sketch, letter) for letter in rates}, rates))
+        made.append(Arrows(scale, {letter: point_places(sketch, letter) for letter in rates}, rates))
     tips = [tip for arrows in made for tip in _tips(arrows, back)]
     larger = sketch.holding(np.concatenate(tips), MARGIN / 2.0) if tips else sketch
-    return larger, tuple(replace(one, places={k: places_of(larger, k) for k in one.places}) for one in made)
+    return larger, tuple(replace(one, places={k: point_places(larger, k) for k in one.places}) for one in made)
 
 
-def places_of(sketch: MovingSketch, letter: str) -> Number:
+def point_places(sketch: MovingSketch, letter: str) -> Number:
     """Tell where a point is on the picture, (poses,)."""
     return np.broadcast_to(sketch.window.at(sketch.scene.places(letter)), (sketch.scene.count,))
 
@@ -101,10 +113,10 @@ def moving_centres(sketch: MovingSketch) -> tuple[MovingCentre, ...]:
         places = np.asarray(window.at(np.broadcast_to(row, sketch.motion.inputs.poses)[scene.known]))
         same = next((names for names, other in apart if _always_together(places, other)), None)
         if same is None:
-            apart.append(([centre_name(scene, *pair)], places))
+            apart.append(([centre_number(scene, *pair)], places))
         else:
-            same.append(centre_name(scene, *pair))
-    found = [MovingCentre(" ".join(names), places, _seen(window, places)) for names, places in apart]
+            same.append(centre_number(scene, *pair))
+    found = [MovingCentre(" ".join(names), places, _centre_on_picture(window, places)) for names, places in apart]
     return _beside(sketch, [one for one in found if one.shown.any()])
 
 
@@ -113,7 +125,7 @@ def _always_together(one: Number, other: Number) -> bool:
     return bool(known.any() and np.all(np.abs(one - other)[known] < TOGETHER))
 
 
-def _seen(window: Window, places: Number) -> Number:
+def _centre_on_picture(window: Window, places: Number) -> Number:
     with np.errstate(invalid="ignore"):
         across = (places.real >= EDGE) & (places.real <= window.width - EDGE)
         return np.isfinite(places) & across & (places.imag >= EDGE) & (places.imag <= window.height - EDGE)
@@ -125,7 +137,7 @@ def _beside(sketch: MovingSketch, centres: Sequence[MovingCentre]) -> tuple[Movi
     shapes = list(leaves(sketch.shapes(k)))
     taken = [Label(f"text {n}", text_half(s.text, LETTER), (s.at,), (0.0,)) for n, s in enumerate(texts_in(shapes))]
     here = [one for one in centres if one.shown[k]]
-    wanted = [around(c.name, complex(c.places[k]), text_half(c.name, SMALL), 5.0, 1 + 1j) for c in here]
+    wanted = [label_around(c.name, complex(c.places[k]), text_half(c.name, SMALL), 5.0, 1 + 1j) for c in here]
     found = placed([*taken, *wanted], shapes, sketch.window.width, sketch.window.height)
     offs = {c.name: complex(found[c.name] - c.places[k]) for c in here}
     # farther off a name would seem to belong to nothing once the centre has moved on
@@ -135,3 +147,166 @@ def _beside(sketch: MovingSketch, centres: Sequence[MovingCentre]) -> tuple[Movi
 def texts_in(shapes: Sequence[Shape]) -> list[Text]:
     """Return the texts among shapes."""
     return [shape for shape in shapes if isinstance(shape, Text)]
+
+
+def with_force_arrows(
+    sketch: MovingSketch, forces: Forces, others: tuple[Arrows, ...] = ()
+) -> tuple[MovingSketch, tuple[Arrows, ...]]:
+    """Return the arrows of forces after others, and the sketch with room for all."""
+    courses = drawn_force_courses(sketch, forces)
+    scales = force_scales(sketch, forces, courses)
+    known = sketch.scene.known
+    tips = [sketch.window.at(one.at[known]) + np.conjugate(_finite(one.force[known])) * scale.per_unit
+            for scale in scales[:1] for one in courses]  # fmt: skip
+    larger = sketch.holding(np.concatenate(tips), MARGIN / 2.0) if tips else sketch
+    kept = (replace(one, places={k: point_places(larger, k) for k in one.places}) for one in others)
+    return larger, (*kept, *(_arrows(larger, scale, courses) for scale in scales))
+
+
+def _arrows(sketch: MovingSketch, scale: VectorScale, courses: tuple[ForceCourse, ...]) -> Arrows:
+    """The arrows of one kind."""
+    known = sketch.scene.known
+    own = {f"{one.shown.link} {one.shown.name}": one for one in courses if one.shown.kind == scale.kind}
+    places = {key: np.asarray(sketch.window.at(one.at[known])) for key, one in own.items()}
+    return Arrows(scale, places, {key: one.force[known] for key, one in own.items()})
+
+
+def _finite(values: Number) -> Number:
+    return np.where(np.isfinite(values), values, 0.0)
+
+
+LEFT = 16.0
+
+
+# A gauge is so long: this part of the picture's width, but no longer than this.
+GAUGE, LONGEST_GAUGE = 0.3, 160.0
+
+
+# Times are shown with so many digits of the whole.
+DIGITS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Gauge:
+    """A line with a dot that shows where a driver is, or the time. Its `values` are those over the assembled poses."""
+
+    text: str
+    values: Number
+    start: complex
+    length: float
+
+    @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """The line and what it stands for."""
+        stop = self.start + self.length
+        return Polyline((self.start, stop), "edge"), Text(stop + 10.0, self.text, "note", "start")
+
+    @property
+    def dot(self) -> CircleShape:
+        """The dot, as seen from where it is."""
+        return CircleShape(0j, 3.2, "dot")
+
+    @property
+    def places(self) -> Number:
+        """Where the dot is, (poses,)."""
+        low, span = self.values.min(), np.ptp(self.values)
+        return self.start + self.length * (self.values - low) / (span or 1.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Caption(ShortRepr):
+    """The lines below a moving sketch; the first of them change with the pose."""
+
+    sketch: MovingSketch
+    poses: Number  # those that are ever shown as frames
+    names: tuple[str, ...]
+    scales: tuple[VectorScale, ...]
+    is_told: bool = True  # else there are scales only
+
+    @property
+    def window(self) -> Window:
+        """The window of the sketch."""
+        return self.sketch.window
+
+    @property
+    def description(self) -> str:
+        """What is shown, in a sentence for those who do not see it."""
+        mechanism = self.sketch.scene.mechanism
+        return f"Motion of {mechanism.title}: {mechanism.in_numbers}"
+
+    def notes(self, k: int) -> list[str]:
+        """Return the time and the drivers' values at the k-th assembled pose."""
+        if not self.is_told:
+            return []
+        scene, motion = self.sketch.scene, self.sketch.motion
+        here = replace(scene, pose=(scene.pose[0], int(scene.known[k])))
+        times = [] if motion.time is None else [f"at {self._times[k]:.{self._decimals}f} s"]
+        return [*times, *pose_notes(here)]
+
+    def shapes(self, k: int) -> tuple[list[Shape], float]:
+        """Return the texts at the k-th assembled pose, and the picture's height. The height is that with them."""
+        lines = lines_of_text(self.notes(k), self._room)
+        lines += [""] * (self._changing - len(lines)) + lines_of_text(self.names, self._room)
+        found, height = lines_below(lines, self.window.height)
+        return self._scaled([shape for shape in found if not isinstance(shape, Text) or shape.text], height)
+
+    def gauges(self) -> tuple[list[Gauge], list[Shape], float]:
+        """Return lines with dots in the place of texts that change. What else stands there, and the height with all."""
+        told = list(self._gauged()) if self.is_told else []
+        moving = [(text, values) for text, values in told if np.ptp(values) > 0]
+        start = complex(LEFT, self.window.height + BELOW)
+        length = min(GAUGE * self.window.width, LONGEST_GAUGE)
+        found = [Gauge(text, v, start + 1j * LINE * n, length) for n, (text, v) in enumerate(moving)]
+        lines = ["" for _ in moving] + lines_of_text([*self._still(told), *self.names], self._room)
+        texts, height = lines_below(lines, self.window.height)
+        texts = [shape for shape in texts if not isinstance(shape, Text) or shape.text]
+        return found, *self._scaled(texts, height)
+
+    @property
+    def _room(self) -> float:
+        return self.window.width - 2.0 * LEFT
+
+    @cached_property
+    def _changing(self) -> int:
+        """How many lines the notes take at most, so that pictures are equally high."""
+        return max((len(lines_of_text(self.notes(int(k)), self._room)) for k in self.poses), default=0)
+
+    @cached_property
+    def _times(self) -> Number:
+        """The times of the assembled poses, seconds."""
+        return pose_times(self.sketch.motion, self.sketch.design)[self.sketch.scene.known]
+
+    @cached_property
+    def _decimals(self) -> int:
+        span = float(np.max(np.abs(self._times))) or 1.0
+        return int(max(0, DIGITS - 1 - np.floor(np.log10(span))))
+
+    def _gauged(self) -> Iterator[tuple[str, Number]]:
+        """What a gauge shows, with its values over the assembled poses."""
+        scene, motion = self.sketch.scene, self.sketch.motion
+        if motion.time is not None:
+            low, high = self._times.min(), self._times.max()
+            yield f"time, {low:.6g} to {high:.6g} s", self._times
+        shape = motion.inputs.designs, motion.inputs.poses
+        for step in scene.driven:
+            name = step.drive.name
+            values = np.broadcast_to(motion.inputs.drives[name][0], shape)[scene.pose[0]][scene.known]
+            shown = np.rad2deg(values) if step.pair.free_is_angle else values
+            unit = unit_suffix(step.pair.free_is_angle, scene.mechanism.unit)
+            yield f"{name}, {shown.min():.5g} to {shown.max():.5g}{unit}", np.asarray(values, dtype=float)
+
+    def _still(self, told: Sequence[tuple[str, Number]]) -> list[str]:
+        """The notes of what does not change."""
+        notes = self.notes(0)
+        return [note for note, (_, values) in zip(notes, told, strict=True) if np.ptp(values) == 0]
+
+    def _scaled(self, texts: list[Shape], height: float) -> tuple[list[Shape], float]:
+        for scale in self.scales:
+            texts += scale_shapes(scale, height)
+            height += LINE
+        return texts, height
+
+    def paper(self, height: float) -> Polygon:
+        """Return the paper of a picture so high."""
+        wide = self.window.width
+        return sheet(wide, height)

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.view.sketch.scene import Scene
 
@@ -40,7 +40,7 @@ class TimelineLeg:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Timeline(PrintsShort):
+class Timeline(ShortRepr):
     """The legs of an animation in their order. `returns` where it ends as it begins, and `seconds` how long it takes.
 
     `hold` is for how long a frame is shown, `frames` the places of the frames in `poses` and `ways`.
@@ -138,7 +138,7 @@ def _clock(motion: Motion, design: int) -> Number:
     """When each pose is reached: seconds of a motion in time, else the ways of the drivers in parts of the whole."""
     shape = motion.inputs.designs, motion.inputs.poses
     if motion.time is not None:
-        return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(times_of(motion, design))))])
+        return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(pose_times(motion, design))))])
     ways = [np.abs(np.diff(np.broadcast_to(c[0], shape)[design])) for c in motion.inputs.drives.values()]
     parts = [way / way.sum() for way in ways if way.sum() > 0]
     steps = np.max(parts, axis=0) if parts else np.ones(shape[1] - 1)
@@ -155,7 +155,7 @@ def _angles(motion: Motion) -> list[Number]:
     return [rows for name, rows in motion.inputs.drives.items() if driven[name].pair.free_is_angle]
 
 
-def times_of(motion: Motion, design: int) -> Number:
+def pose_times(motion: Motion, design: int) -> Number:
     """Return the times of all poses of a motion in time, seconds."""
     assert motion.time is not None
     full = np.broadcast_to(np.asarray(motion.time, dtype=float), motion.shape)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.view.page.player import framed, player
 from compoundkin.view.page.report_page import Page, page_of
+from compoundkin.view.page.viewer import framed_player, player
 
-__all__ = ["Page", "framed", "page_of", "player"]
+__all__ = ["Page", "framed_player", "page_of", "player"]

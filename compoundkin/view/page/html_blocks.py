@@ -7,10 +7,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import singledispatch, singledispatchmethod
 
-from compoundkin.model.attributes import readable
-from compoundkin.view.page.html_tables import Names, ShownTable, table_html
-from compoundkin.view.page.markup import element, hidden, lines, safe
-from compoundkin.view.page.mathml import Unread, mathml
+from compoundkin.model.attributes import with_superscripts
+from compoundkin.view.page.html_tables import HtmlTable, Names, table_html
+from compoundkin.view.page.markup import element, lines, safe, screen_reader_text
+from compoundkin.view.page.mathml import UnknownLatex, mathml
 from compoundkin.view.report.report_data import (
     Alert,
     Block,
@@ -21,7 +21,7 @@ from compoundkin.view.report.report_data import (
     StepBlock,
     TableBlock,
 )
-from compoundkin.view.report.wording import counted, typeset, written
+from compoundkin.view.report.wording import column_texts, counted, typeset
 from compoundkin.view.sketch.svg import link_names
 
 # A notebook shows so many rows of a table; reports and the objects themselves have all.
@@ -52,10 +52,10 @@ def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
 
 def plain_table(table: TableBlock, caption: str = "") -> str:
     """Write a table whose first column names its rows. It is in a box that scrolls where it is wider than the page."""
-    rows = table.shown_rows
-    cells = [written(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
+    rows = table.selected_rows
+    cells = [column_texts(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
     sides = [RIGHT if column.is_number else LEFT for column in table.columns]
-    heads = (element("th", _heading(c), scope="col", style=s) for c, s in zip(table.columns, sides, strict=True))
+    heads = (element("th", _column_heading(c), scope="col", style=s) for c, s in zip(table.columns, sides, strict=True))
     found = [element("tr", "".join(_cells(row, sides))) for row in zip(*cells, strict=True)]
     more = len(table.rows) - min(len(rows), MOST_ROWS)
     if more > 0:
@@ -75,8 +75,8 @@ def plain_figure(svg: str, caption: str) -> str:
     return f'<figure style="margin:0 0 .5em">\n{fitted}<figcaption>{caption}</figcaption>\n</figure>'
 
 
-def _heading(column: Column) -> str:
-    return safe(f"{column.name} [{readable(column.unit)}]" if column.unit else column.name)
+def _column_heading(column: Column) -> str:
+    return safe(f"{column.name} [{with_superscripts(column.unit)}]" if column.unit else column.name)
 
 
 def _cells(row: Iterable[str], sides: Iterable[str]) -> Iterator[str]:
@@ -168,7 +168,7 @@ class Blocks:
         if isinstance(before, Paragraph) and before.text.endswith(":"):
             caption = before.text.rpartition(". ")[2].removesuffix(":")
         poses = self.poses.get(section.key, ()) if number == 1 else ()
-        return table_html(ShownTable(table, f"{section.key}-table-{number}", caption, self.names, poses))
+        return table_html(HtmlTable(table, f"{section.key}-table-{number}", caption, self.names, poses))
 
     def _step(self, section: Section, step: StepBlock, k: int) -> str:
         """A step; those in solving order are about the links of their groups."""
@@ -198,7 +198,9 @@ class Blocks:
     def _(self, block: Alert) -> str:
         remedy = f"\n<p><b>Remedy:</b> {safe(block.remedy)}.</p>" if block.remedy else ""
         return element(
-            "div", f"<p><strong>{hidden('Warning:')} {safe(typeset(block.text))}</strong></p>{remedy}", class_="alert"
+            "div",
+            f"<p><strong>{screen_reader_text('Warning:')} {safe(typeset(block.text))}</strong></p>{remedy}",
+            class_="alert",
         )
 
 
@@ -206,7 +208,7 @@ def _formula(block: FormulaBlock) -> str:
     """A formula as mathematics where it comes as such, read out as its text; else as it is written."""
     written = element("code", safe(typeset(block.text)))
     if block.latex:
-        with suppress(Unread):
+        with suppress(UnknownLatex):
             shown = element("span", mathml(block.latex), aria_hidden="true", class_="maths")
-            return element("p", f"{shown}{hidden(block.text)}", class_="formula")
+            return element("p", f"{shown}{screen_reader_text(block.text)}", class_="formula")
     return element("p", written, class_="formula")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from compoundkin.view.page.markup import element, hidden, lines, safe
+from compoundkin.view.page.markup import element, lines, safe, screen_reader_text
 from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.sketch import sketch_style
 from compoundkin.view.sketch.sketch_style import page_css
@@ -16,7 +16,7 @@ from compoundkin.view.sketch.sketch_style import page_css
 ASSETS = Path(__file__).parent / "assets"
 # Those that pictures do not have. Words in `good`, `bad` and `link` keep a contrast of 4.5 : 1 with every ground they
 # stand on (WCAG 2.2, 1.4.3).
-OWN: dict[str, tuple[str, str]] = {
+PAGE_COLOURS: dict[str, tuple[str, str]] = {
     "ground": ("#f5f6f8", "#0d0f13"),
     "soft": ("#eef1f4", "#1d2129"),
     "rule": ("#d9dde3", "#2e343d"),
@@ -44,7 +44,7 @@ SPACES, STOPS = re.compile(r" ?(=>|[=,:;?*{}()\[\]&|]) ?"), re.compile(r"(?<=[:;
 # A line of comment.
 REMARK = re.compile(r"//.*|/\*[^*]*\*/")
 # What is said of a line at its end, where nothing can be a text.
-TOLD = re.compile(r" +// [^\"'`]*$")
+END_REMARK = re.compile(r" +// [^\"'`]*$")
 SCRIPTS = ("tables.js", "light.js")
 THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
 
@@ -59,12 +59,12 @@ def asset(name: str) -> str:
     text = (ASSETS / name).read_text(encoding="utf-8").strip()
     if name.startswith("vendor/"):
         return text
-    kept = (TOLD.sub("", line.strip()) for line in text.splitlines())
+    kept = (END_REMARK.sub("", line.strip()) for line in text.splitlines())
     told = (line for line in kept if line and not REMARK.fullmatch(line))
-    return "\n".join(map(_narrow_script if name.endswith("js") else _narrow_style, told))
+    return "\n".join(map(_minified_script if name.endswith("js") else _minified_style, told))
 
 
-def _narrow_script(line: str) -> str:
+def _minified_script(line: str) -> str:
     """Return a line of a script without spaces that say nothing. Texts and patterns stay as they are."""
     if PLAIN.search(line):
         return line
@@ -72,26 +72,26 @@ def _narrow_script(line: str) -> str:
     return "".join(part if k % 2 else SPACES.sub(r"\1", part) for k, part in enumerate(parts))
 
 
-def _narrow_style(line: str) -> str:
+def _minified_style(line: str) -> str:
     """Return a line of a style sheet without spaces that say nothing."""
     return line if PLAIN.search(line) or '"' in line else STOPS.sub("", line)
 
 
-def vendored(name: str, licence: str, gives: str = "") -> str:
+def vendored_library(name: str, licence: str, gives: str = "") -> str:
     """Return a library as part of a page. With its licence, and in a function, so that its names stay its own.
 
     What it `gives` is then `compoundkin.uPlot`, or whatever its name is.
 
-    >>> vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot").splitlines()[-2:]
+    >>> vendored_library("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot").splitlines()[-2:]
     ['(window.compoundkin ??= {}).uPlot = uPlot;', '})();']
     """
     given = f"\n(window.compoundkin ??= {{}}).{gives} = {gives};" if gives else ""
     return f"/*\n{asset(f'vendor/{licence}')}\n*/\n(() => {{\n{asset(f'vendor/{name}')}{given}\n}})();"
 
 
-def palette() -> str:
+def page_palette() -> str:
     """Return the style rules that name all colours. Paper that is printed on is light."""
-    colours = {"paper": sketch_style.PAPER, "ink": sketch_style.INK, **OWN}
+    colours = {"paper": sketch_style.PAPER, "ink": sketch_style.INK, **PAGE_COLOURS}
     colours |= {f"g{k}": pair for k, pair in enumerate(sketch_style.COLOURS)}
     light, dark = ("".join(f"--{name}:{pair[k]};" for name, pair in colours.items()) for k in (0, 1))
     swatches = "\n".join(f".g{k}{{background:var(--g{k})}}" for k in range(len(sketch_style.COLOURS)))
@@ -142,13 +142,15 @@ class Document:
         yield f'<meta name="generator" content="compoundkin {safe(self.version)}">'
         yield element("title", safe(self.title))
         yield f'<link rel="icon" href="{ICON}">'
-        yield from (f"<style>\n{text}\n</style>" for text in (palette(), asset("page.css"), page_css(), *self.styles))
+        yield from (
+            f"<style>\n{text}\n</style>" for text in (page_palette(), asset("page.css"), page_css(), *self.styles)
+        )
         # before anything is painted, so that no page flashes in the other theme
         yield _script(asset("theme.js"))
 
     def _scripts(self) -> Iterator[str]:
         yield asset("page.js")
-        yield vendored("sortable.min.js", "sortable.LICENSE.txt")
+        yield vendored_library("sortable.min.js", "sortable.LICENSE.txt")
         yield from map(asset, SCRIPTS)
         yield from self.scripts
 
@@ -208,5 +210,5 @@ def _badges(outcome: Outcome) -> Iterator[str]:
 
 def _badge(good: bool, text: str) -> str:
     mark = f'<span aria-hidden="true">{"✓" if good else "✗"}</span>'
-    missing = "" if good else hidden("Attention:")
+    missing = "" if good else screen_reader_text("Attention:")
     return element("span", f"{mark} {missing}{safe(text)}", class_=f"badge {'good' if good else 'bad'}")

@@ -1,20 +1,23 @@
-"""A table of a report as HTML, sorted and copied by full precision; which links a name in it is about."""
+"""Tables of a report as HTML: sorted and copied with all digits, rows linked to the links that they are about."""
 
 from __future__ import annotations
 
 import json
 import re
+from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import isfinite
 
-from compoundkin.model.attributes import readable
+import numpy as np
+
+from compoundkin.model.attributes import with_superscripts
 from compoundkin.structure import Structure, roman
-from compoundkin.view.page.html_cells import cell_html, of_kind, packed_cells
-from compoundkin.view.page.markup import broken, element, hidden, lines, safe
+from compoundkin.view.page.markup import breakable, element, lines, safe, screen_reader_text
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
-from compoundkin.view.report.wording import listed, written
-from compoundkin.view.sketch.scene import groups_of
+from compoundkin.view.report.wording import column_texts, listed
+from compoundkin.view.sketch.scene import link_groups
 from compoundkin.view.sketch.sketch_style import COLOURS
 from compoundkin.view.sketch.svg import link_names
 
@@ -45,7 +48,7 @@ class Names:
         >>> names.about("|G.velocity|"), names.about("slot"), names.about("none")
         (('bar',), ('bar', 'frame'), ())
         """
-        for name in _readings(text):
+        for name in _name_readings(text):
             for known in (self.pairs, self.points):
                 if name in known:
                     return known[name]
@@ -79,14 +82,14 @@ def names_of(structure: Structure | None) -> Names:
              **{name: tuple(members) for name, members in written}}  # fmt: skip
     points = {letter: tuple(links) for letter, links in mechanism.carriers.items()}
     titles = ("frame and driven links", *(_title(group.name, group.class_, group.links) for group in structure.groups))
-    return Names(groups_of(structure), pairs, points, titles)
+    return Names(link_groups(structure), pairs, points, titles)
 
 
 def _title(name: str, class_: int, links: Links) -> str:
     return f"{name}, class {roman(class_)}: {listed(links)}"
 
 
-def _readings(text: str) -> Iterator[str]:
+def _name_readings(text: str) -> Iterator[str]:
     """A name as it is; without the bars of a length; without what follows its last dots."""
     name = text.strip("|")
     yield name
@@ -96,7 +99,7 @@ def _readings(text: str) -> Iterator[str]:
 
 
 @dataclass(frozen=True)
-class ShownTable:
+class HtmlTable:
     """A table with its name on the page and what it is called. It has the poses of its rows, if they are poses."""
 
     table: TableBlock
@@ -106,7 +109,7 @@ class ShownTable:
     poses: Sequence[int] = ()
 
 
-def table_html(shown: ShownTable) -> str:
+def table_html(shown: HtmlTable) -> str:
     """Return the table in a box of its own that scrolls, with its buttons."""
     parts = [element("caption", safe(shown.caption), class_="unseen"), _head(shown), _body(shown)]
     grid = element("table", lines(parts), class_="sortable asc n-last", id=shown.key)
@@ -114,7 +117,7 @@ def table_html(shown: ShownTable) -> str:
     return element("div", f"{_tools(shown)}\n{box}", class_="grid")
 
 
-def _tools(shown: ShownTable) -> str:
+def _tools(shown: HtmlTable) -> str:
     """The buttons of a table; those that only scripts serve are shown by scripts."""
     more = f"Show all {len(shown.table.rows):,} rows"
     told = {"aria_expanded": "false", "data_more": more, "data_fewer": "Show fewer rows"}
@@ -122,47 +125,47 @@ def _tools(shown: ShownTable) -> str:
     return element("div", lines([*folded, _button("copy", "Copy", shown)]), class_="tools")
 
 
-def _button(kind: str, text: str, shown: ShownTable, **more: str) -> str:
-    inside = f"{safe(text)} {hidden(f'table {shown.caption}')}" if kind == "copy" else safe(text)
+def _button(kind: str, text: str, shown: HtmlTable, **more: str) -> str:
+    inside = f"{safe(text)} {screen_reader_text(f'table {shown.caption}')}" if kind == "copy" else safe(text)
     return element("button", inside, type="button", class_=kind, aria_controls=shown.key, **more)
 
 
-def _head(shown: ShownTable) -> str:
+def _head(shown: HtmlTable) -> str:
     return element("thead", element("tr", lines(_heading(column, shown) for column in shown.table.columns)))
 
 
-def _heading(column: Column, shown: ShownTable) -> str:
-    name = broken(column.name) if column.name else hidden("result")
-    unit = f' <span class="unit">[{safe(readable(column.unit))}]</span>' if column.unit else ""
+def _heading(column: Column, shown: HtmlTable) -> str:
+    name = breakable(column.name) if column.name else screen_reader_text("result")
+    unit = f' <span class="unit">[{safe(with_superscripts(column.unit))}]</span>' if column.unit else ""
     button = element("button", f"{name}{unit}", type="button", class_="sort")
     kind = "number" if column.is_number else None
     quantity = f' data-quantity="{safe(column.name)}"' if shown.poses else ""
-    return f'<th scope="col"{of_kind(kind)}{_links(shown.names.about(column.name))}{quantity}>{button}</th>'
+    return f'<th scope="col"{class_attribute(kind)}{_links_attribute(shown.names.about(column.name))}{quantity}>{button}</th>'
 
 
-def _body(shown: ShownTable) -> str:
+def _body(shown: HtmlTable) -> str:
     table = shown.table
-    texts = [written(column, [row[k] for row in table.rows], "\n") for k, column in enumerate(table.columns)]
+    texts = [column_texts(column, [row[k] for row in table.rows], "\n") for k, column in enumerate(table.columns)]
     needed = None if table.shown is None else set(table.shown)
     rows = (_row(shown, k, [column[k] for column in texts], needed) for k in range(len(table.rows)))
     return element("tbody", lines(rows))
 
 
-def _row(shown: ShownTable, k: int, texts: Sequence[str], needed: set[int] | None) -> str:
+def _row(shown: HtmlTable, k: int, texts: Sequence[str], needed: set[int] | None) -> str:
     table, row = shown.table, shown.table.rows[k]
-    links = _of_row(shown, row)
+    links = _links_of_row(shown, row)
     kind = "more" if needed is not None and k not in needed else None
     pose = f' data-pose="{shown.poses[k]}"' if shown.poses else ""
     figure = f' data-figure="{safe(json.dumps(table.figures[k]))}"' if k < len(table.figures) else ""
     packed = packed_cells(table.columns, row, texts) if pose and not figure and not links else None
     if packed is not None:
-        return f"<tr{of_kind(kind)}{pose}{packed[0]}>{packed[1]}</tr>"
+        return f"<tr{class_attribute(kind)}{pose}{packed[0]}>{packed[1]}</tr>"
     cells = [cell_html(column, cell, text) for column, cell, text in zip(table.columns, row, texts, strict=True)]
-    cells[0] = _first(shown, row[0], texts[0], links) or cells[0]
-    return f"<tr{of_kind(kind)}{_links(links)}{pose}{figure}>{''.join(cells)}</tr>"
+    cells[0] = _row_head(shown, row[0], texts[0], links) or cells[0]
+    return f"<tr{class_attribute(kind)}{_links_attribute(links)}{pose}{figure}>{''.join(cells)}</tr>"
 
 
-def _of_row(shown: ShownTable, row: Sequence[Cell]) -> tuple[str, ...]:
+def _links_of_row(shown: HtmlTable, row: Sequence[Cell]) -> tuple[str, ...]:
     """The links that a row is about: what its first words name."""
     for cell in row:
         if isinstance(cell, str) and (links := shown.names.about(cell)):
@@ -172,11 +175,11 @@ def _of_row(shown: ShownTable, row: Sequence[Cell]) -> tuple[str, ...]:
     return ()
 
 
-def _first(shown: ShownTable, cell: Cell, text: str, links: tuple[str, ...]) -> str:
+def _row_head(shown: HtmlTable, cell: Cell, text: str, links: tuple[str, ...]) -> str:
     """The head of a row: the cell of its name, a button where it names links."""
     if not isinstance(cell, str) or not cell:
         return ""
-    inside = broken(text)
+    inside = breakable(text)
     if links:
         number = shown.names.colour(links)
         swatch = f'<i class="swatch g{number}"></i>' if number is not None else ""
@@ -184,5 +187,73 @@ def _first(shown: ShownTable, cell: Cell, text: str, links: tuple[str, ...]) -> 
     return f'<th scope="row">{inside}</th>'
 
 
-def _links(names: tuple[str, ...]) -> str:
+def _links_attribute(names: tuple[str, ...]) -> str:
     return f' data-links="{link_names(names)}"' if names else ""
+
+
+RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
+
+
+# Cells with more letters than this are broken into lines, and get room for them.
+LONG = 24
+
+
+# The column that tells the units of others.
+UNIT = "unit"
+
+
+def cell_html(column: Column, cell: Cell, text: str) -> str:
+    """Return a cell of a table that is read as some text."""
+    if isinstance(cell, bool):
+        result, mark, word = RESULTS[cell]
+        inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
+        return f'<td data-sort="{int(cell)}" data-copy="{word}">{inside}</td>'
+    kind = "number" if column.is_number else "long" if len(text) > LONG else None
+    inside = "<br>".join(map(safe, (with_superscripts(text) if column.name == UNIT else text).split("\n")))
+    return f"<td{class_attribute(kind)}{''.join(_exact_attributes(column, cell, text))}>{inside}</td>"
+
+
+def _exact_attributes(column: Column, cell: Cell, text: str) -> Iterator[str]:
+    """What a number is sorted by and copied as, where that is not what is shown: every digit of it."""
+    if not column.is_number and not isinstance(cell, tuple):
+        return
+    digits = [_digits(column, value) for value in (cell if isinstance(cell, tuple) else (cell,))]
+    if digits[0] != text:
+        yield f' data-sort="{digits[0]}"'
+    if len(digits) > 1:
+        yield f' data-copy="{", ".join(digits)}"'
+
+
+def packed_cells(columns: Sequence[Column], row: Sequence[Cell], texts: Sequence[str]) -> tuple[str, str] | None:
+    """Return the attribute of a row of numbers, and its cells.
+
+    The attribute has all digits. A script gives each cell what `cell_html` writes. None for a row of anything else.
+    """
+    numbers = [_cell_number(column, cell) for column, cell in zip(columns, row, strict=True)]
+    known = [number for number in numbers if number is not None]
+    if len(known) < len(numbers):
+        return None
+    packed = b64encode(np.array(known, "<f8").tobytes()).decode("ascii")
+    return f' data-n="{packed}"', "".join(f"<td>{safe(text)}</td>" for text in texts)
+
+
+def _cell_number(column: Column, cell: Cell) -> float | None:
+    """A cell as a number, NaN where it is not known; None where it is something else."""
+    if not column.is_number or isinstance(cell, bool | str | tuple):
+        return None
+    if cell is None or not isfinite(cell):
+        return float("nan")
+    return float(cell) if abs(cell) > column.floor else 0.0
+
+
+def _digits(column: Column, value: Cell) -> str:
+    if isinstance(value, str):
+        return safe(value)
+    if value is None or isinstance(value, tuple) or not isfinite(value):
+        return ""
+    return repr(value) if abs(value) > column.floor else "0"
+
+
+def class_attribute(kind: str | None) -> str:
+    """Return the class of an element as it is written, if it has one."""
+    return f' class="{kind}"' if kind else ""

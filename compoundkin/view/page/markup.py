@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 
 # Characters that a page may not hold, not even escaped. Source: HTML Living Standard, 13.2.3.5.
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
@@ -19,30 +19,30 @@ _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
 _BREAK = re.compile(r"([._])(?=\w)")
 
 
-def exact(values: Number) -> str | float | None:
+def packed_doubles(values: Number) -> str | float | None:
     """Return numbers as doubles, those of a script. One number where they are all the same, None where none is known.
 
-    >>> exact(np.array([1.0, 2.0]))
+    >>> packed_doubles(np.array([1.0, 2.0]))
     'd:AAAAAAAA8D8AAAAAAAAAQA=='
-    >>> exact(np.array([3.0, 3.0])), exact(np.array([np.nan]))
+    >>> packed_doubles(np.array([3.0, 3.0])), packed_doubles(np.array([np.nan]))
     (3.0, None)
     """
     return _packed(values, "<f8", "d:")
 
 
-def brief(values: Number) -> str | float | None:
-    """Pack as `exact`, with seven digits: half as long.
+def packed_floats(values: Number) -> str | float | None:
+    """Pack as `packed_doubles`, with seven digits: half as long.
 
-    >>> brief(np.array([1.0, 2.0]))
+    >>> packed_floats(np.array([1.0, 2.0]))
     'f:AACAPwAAAEA='
     """
     return _packed(values, "<f4", "f:")
 
 
-def shown_parts(values: Number, floor: float) -> dict[str, Number]:
+def component_values(values: Number, floor: float) -> dict[str, Number]:
     """Return the components of a quantity. What is rounding is zero, as in the report's tables.
 
-    >>> shown_parts(np.array([2.0 + 1e-15j]), 1e-12)
+    >>> component_values(np.array([2.0 + 1e-15j]), 1e-12)
     {'x': array([2.]), 'y': array([0.])}
     """
     parts = {"x": values.real, "y": values.imag} if np.iscomplexobj(values) else {"": values}
@@ -71,10 +71,10 @@ def safe(text: str) -> str:
     return escape(_FORBIDDEN.sub("\ufffd", text))
 
 
-def broken(text: str) -> str:
+def breakable(text: str) -> str:
     """Return a name as text that may be broken after its dots and underscores.
 
-    >>> broken("bar.angular_velocity")
+    >>> breakable("bar.angular_velocity")
     'bar.<wbr>angular_<wbr>velocity'
     """
     return _BREAK.sub(r"\1<wbr>", safe(text))
@@ -99,7 +99,7 @@ def lines(parts: Iterable[str]) -> str:
     return "\n".join(part for part in parts if part)
 
 
-def hidden(text: str) -> str:
+def screen_reader_text(text: str) -> str:
     """Return text for screen readers only."""
     return element("span", safe(text), class_="unseen")
 

@@ -25,7 +25,7 @@ _TOKEN = re.compile(r"\s+|\\[a-zA-Z]+|\\.|\d+(?:\.\d+)?(?:e[+-]?\d+)?|.", re.DOT
 _WORDS = (r"\text", r"\operatorname")
 
 
-class Unread(ValueError):
+class UnknownLatex(ValueError):
     """LaTeX that is not of the small part."""
 
 
@@ -58,7 +58,7 @@ class _Reader:
 
     def next(self) -> str:
         if self.at >= len(self.tokens):
-            raise Unread("it ends too early")
+            raise UnknownLatex("it ends too early")
         self.at += 1
         return str(self.tokens[self.at - 1])
 
@@ -111,12 +111,12 @@ class _Reader:
             return f'<mover accent="true">{self.group()}<mo>{DOTS[token]}</mo></mover>'
         if token == r"\begin":
             return self.matrix()
-        return self.bracket(token) if token in "()[]" else _simple(token)
+        return self.bracket(token) if token in "()[]" else _single_token(token)
 
     def matrix(self) -> str:
         """Return a matrix in brackets, row by row."""
         if self.words() != "bmatrix":
-            raise Unread("no matrix")
+            raise UnknownLatex("no matrix")
         self.depth += 1
         rows: list[list[list[str]]] = [[[]]]
         while self.peek() != r"\end":
@@ -131,7 +131,7 @@ class _Reader:
             self.next()
         self.next()
         if self.words() != "bmatrix":
-            raise Unread("no end of a matrix")
+            raise UnknownLatex("no end of a matrix")
         self.depth -= 1
         cells = ("".join(f"<mtd>{''.join(cell)}</mtd>" for cell in row) for row in rows)
         table = "".join(f"<mtr>{row}</mtr>" for row in cells)
@@ -139,14 +139,14 @@ class _Reader:
 
     def bracket(self, token: str, stretches: bool = False) -> str:
         if token not in "()[]":
-            raise Unread(token)
+            raise UnknownLatex(token)
         self.depth += 1 if token in "([" else -1
         return f"<mo>{token}</mo>" if stretches else f'<mo stretchy="false">{token}</mo>'
 
     def words(self) -> str:
         """Tell what stands in braces, as it is, escapes undone."""
         if self.next() != "{":
-            raise Unread("no brace")
+            raise UnknownLatex("no brace")
         found = ""
         while (token := self.next()) != "}":
             found += self.escaped(token) if token.startswith("\\") else token
@@ -159,7 +159,7 @@ class _Reader:
         return token[1:]
 
 
-def _simple(token: str) -> str:
+def _single_token(token: str) -> str:
     if token in SIGNS:
         return f"<mo>{SIGNS[token]}</mo>"
     if token in OTHER_SIGNS:
@@ -174,7 +174,7 @@ def _simple(token: str) -> str:
         return f"<mn>{token}</mn>"
     if len(token) == 1 and token.isalpha():
         return f"<mi>{safe(token)}</mi>"
-    raise Unread(token)
+    raise UnknownLatex(token)
 
 
 # Before these a browser may break a long equation; inside of a term it may not.

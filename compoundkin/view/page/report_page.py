@@ -1,12 +1,15 @@
-"""A report with its pictures as one HTML file: the mechanism taken apart, its graph, the outputs at all poses."""
+"""The page of a report: its pictures, the moving sketch beside the text, plots of studies, all in one HTML file."""
 
 from __future__ import annotations
 
 import os
 import tempfile
 import webbrowser
+from base64 import b64encode
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import singledispatch
+from importlib.util import find_spec
 from pathlib import Path
 from typing import ClassVar, TypeAlias
 
@@ -17,22 +20,28 @@ from compoundkin.base.version import VERSION
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
+from compoundkin.studies.optimisation.optimum import Optimum
+from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.html_blocks import ABOUT, Blocks
-from compoundkin.view.page.html_document import Document
+from compoundkin.view.page.html_document import Document, asset, vendored_library
 from compoundkin.view.page.html_tables import names_of
+from compoundkin.view.page.live.compact_data import compact
+from compoundkin.view.page.live.live_assets import FIGURES, PANEL_SCRIPTS, PANEL_STYLES, is_live, scripts_of, styles_of
 from compoundkin.view.page.markup import data_script, element, safe
-from compoundkin.view.page.moving_document import with_viewer
-from compoundkin.view.page.study_pictures import study_pictures
-from compoundkin.view.page.viewer import viewer_of
+from compoundkin.view.page.viewer import PANEL_KEY, PANEL_TITLE, Viewer, panel_section, viewer_of
+from compoundkin.view.plot import Plot, bands, contributions, improvement, scatter_matrix, starts
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
+from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Outcome, Section, TableBlock
-from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch import Picture, draw
 
 # Of more links than this no picture is legible, and drawing takes long.
 MOST_LINKS = 100
 
+
 Subject: TypeAlias = Structure | Motion
+
 
 # Which view of the structure stands at the head of which section, and what is said below it.
 VIEWS = {
@@ -47,19 +56,23 @@ VIEWS = {
     ),
     "derivation": ("circle", "The circle diagram: a line for each instant centre, numbered in the order of the steps."),
 }
+
+
 OUTPUTS = "outputs"
+
+
 # More cells than these make a page slow and large: the table then has the poses of the report.
 MOST_CELLS = 12_000
 
 
-def figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
+def section_figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
     """Return the figures at the heads of a report's sections, by their keys."""
-    return dict(_figures(sections, subject)) if subject is not None and _drawn(subject) else {}
+    return dict(_view_figures(sections, subject)) if subject is not None and _is_legible(subject) else {}
 
 
-def sketch(subject: Subject) -> str:
+def sketch_figure(subject: Subject) -> str:
     """Return the kinematic sketch of one pose as a figure. It is "" where there is none."""
-    if not _drawn(subject):
+    if not _is_legible(subject):
         return ""
     try:
         picture = draw(subject)
@@ -70,30 +83,30 @@ def sketch(subject: Subject) -> str:
     )
 
 
-def figure(picture: Picture, caption: str) -> str:
+def picture_figure(picture: Picture, caption: str) -> str:
     """Return a picture with what is said below it. It is in a box that scrolls where it would become too small."""
     told = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
     box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **told)
     return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
 
 
-def _figures(sections: Sequence[Section], subject: Subject) -> Iterator[tuple[str, str]]:
+def _view_figures(sections: Sequence[Section], subject: Subject) -> Iterator[tuple[str, str]]:
     for section in sections:
         if section.key in VIEWS:
             view, caption = VIEWS[section.key]
             try:
-                yield section.key, figure(draw(subject, kind=view), caption)
+                yield section.key, picture_figure(draw(subject, kind=view), caption)
             except CompoundkinError:
                 # what has faults cannot be taken apart; the report says why
                 continue
 
 
-def _drawn(subject: Subject) -> bool:
+def _is_legible(subject: Subject) -> bool:
     return len(subject.mechanism.links) <= MOST_LINKS
 
 
 @dataclass(frozen=True, eq=False)
-class Whole(Sample):
+class EveryPose(Sample):
     """A sample that shows every pose."""
 
     @property
@@ -102,7 +115,7 @@ class Whole(Sample):
         return tuple(range(self.poses))
 
 
-def all_poses(
+def with_every_pose(
     sections: Sequence[Section], motion: Motion, outputs: Sequence[str], design: int
 ) -> tuple[Sequence[Section], tuple[int, ...]]:
     """Return sections with the outputs at every pose, and the rows' poses. The rows are those of the table.
@@ -110,13 +123,13 @@ def all_poses(
     `outputs` are those that the report was made with.
     """
     section = next((one for one in sections if one.key == OUTPUTS), None)
-    table = _table(section)
+    table = _first_table(section)
     if section is None or table is None:
         return sections, ()
     sample = Sample(motion, design)
     if len(sample.rows) == sample.poses or sample.poses * len(table.columns) > MOST_CELLS:
         return sections, sample.rows
-    every = Whole(motion, design)
+    every = EveryPose(motion, design)
     whole = outputs_table(every, outputs_at_poses(every, chosen_outputs(motion, outputs)))
     if [c.name for c in whole.columns] != [c.name for c in table.columns]:
         # the report is about other outputs
@@ -126,7 +139,7 @@ def all_poses(
     return tuple(changed if one is section else one for one in sections), tuple(range(sample.poses))
 
 
-def _table(section: Section | None) -> TableBlock | None:
+def _first_table(section: Section | None) -> TableBlock | None:
     """The first table of a section."""
     blocks = section.blocks if section else ()
     return next((block for block in blocks if isinstance(block, TableBlock)), None)
@@ -150,9 +163,9 @@ class Page(Savable):
 
         It is shown where there is one; the file's path is returned.
         """
-        path = temporary()
+        path = temporary_page()
         self.save(path)
-        shown_in_browser(path)
+        open_in_browser(path)
         return path
 
     def __repr__(self) -> str:
@@ -173,14 +186,14 @@ def page_of(
     known = subject.structure if isinstance(subject, Motion) else subject
     poses: dict[str, Sequence[int]] = {}
     if motion is not None:
-        sections, poses[OUTPUTS] = all_poses(sections, motion, outputs, design)
-    pictures = figures(sections, subject) | study_pictures(studied)
+        sections, poses[OUTPUTS] = with_every_pose(sections, motion, outputs, design)
+    pictures = section_figures(sections, subject) | study_figures(studied)
     blocks = Blocks(names_of(known), pictures, poses)
     document = _document(title, sections, outcome, blocks)
     moving = None if motion is None else viewer_of(motion, design, outputs)
     if moving is not None:
         return Page(with_viewer(document, moving).html, title)
-    return Page(replace(document, viewer=sketch(subject) if subject is not None else "").html, title)
+    return Page(replace(document, viewer=sketch_figure(subject) if subject is not None else "").html, title)
 
 
 def _document(title: str, sections: Sequence[Section], outcome: Outcome, blocks: Blocks) -> Document:
@@ -190,16 +203,96 @@ def _document(title: str, sections: Sequence[Section], outcome: Outcome, blocks:
     return Document(title, outcome, contents, blocks.about(sections), text, VERSION, data=(data,))
 
 
-def temporary() -> Path:
+def temporary_page() -> Path:
     """Return a new file for a page that is only looked at."""
     handle, name = tempfile.mkstemp(prefix="compoundkin-", suffix=suffix_for("page", "html"))
     os.close(handle)
     return Path(name)
 
 
-def shown_in_browser(path: Path) -> bool:
+def open_in_browser(path: Path) -> bool:
     """Tell whether a browser could be asked to show a file."""
     try:
         return webbrowser.open(path.resolve().as_uri())
     except (OSError, webbrowser.Error):
         return False
+
+
+# What draws the plots.
+PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plot_panel.js", "plots.js")
+
+
+def with_viewer(document: Document, moving: Viewer) -> Document:
+    """Return a document with the moving sketch beside its text.
+
+    Before that stand the panel of dimensions, where they can be changed, and the plots.
+    """
+    live = is_live(moving.data)
+    first = ((PANEL_KEY, PANEL_TITLE, panel_section()),) if live else ()
+    first = (*first, ("motion", "Motion", moving.section)) if moving.plots else first
+    data = (*document.data, data_script("ck-motion", compact(moving.data)))
+    library = vendored_library("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
+    last, style = ((*FIGURES, *PANEL_SCRIPTS), PANEL_STYLES) if live else ((), ())
+    scripts = *map(asset, scripts_of(moving.data)), library, *map(asset, (*PLOTS, *last))
+    styles = asset("vendor/uPlot.min.css"), *map(asset, (*styles_of(moving.data), *style))
+    sections = (*(text for _, _, text in first), *document.sections)
+    before = tuple((key, title) for key, title, _ in first)
+    changed = replace(document, viewer=moving.html, sections=sections, before=before)
+    return replace(changed, data=data, scripts=scripts, styles=styles)
+
+
+# More outputs than these are no page: the tables have all.
+MOST_OUTPUTS = 6
+
+
+# The key of a section, its plot, and what is said below it.
+SectionPlot: TypeAlias = tuple[str, Plot, str]
+
+
+def study_figures(found: object) -> dict[str, str]:
+    """Return the plots of what is reported as figures, by the keys of sections.
+
+    They are none without Matplotlib, and of what is neither a study nor the like.
+    """
+    pictures: dict[str, str] = {}
+    for key, plot, caption in _study_plots(found) if find_spec("matplotlib") else ():
+        pictures[key] = pictures.get(key, "") + _plot_figure(plot, caption)
+    return pictures
+
+
+def _plot_figure(plot: Plot, caption: str) -> str:
+    """A plot with what is said below it; as an image, for its names would meet those of others."""
+    source = f"data:image/svg+xml;base64,{b64encode(plot.content('svg')).decode('ascii')}"
+    image = f'<img src="{source}" alt="{safe(caption)}" style="max-width:100%;height:auto">'
+    return element("figure", f"{image}\n<figcaption>{safe(caption)}</figcaption>")
+
+
+@singledispatch
+def _study_plots(found: object) -> Iterator[SectionPlot]:
+    yield from ()
+
+
+@_study_plots.register
+def _(found: StudyResult) -> Iterator[SectionPlot]:
+    if any(one.is_figure for one in found.columns):
+        told = "Dimensions and figures against each other; above the diagonal their rank correlations."
+        yield "figures", scatter_matrix(found, title=""), told
+    if any(one.width for one in found.columns):
+        yield "figures", bands(found, title=""), "Quantities over the motion, between percentiles of the designs."
+
+
+@_study_plots.register
+def _(found: ToleranceAnalysis) -> Iterator[SectionPlot]:
+    outputs = list(found.values())[:MOST_OUTPUTS]
+    if any(one.is_course for one in outputs):
+        names = [one.name for one in outputs if one.is_course]
+        yield "bands", bands(found, *names, title=""), "Errors over the motion."
+    for one in outputs:
+        said = f"What contributes to the error of {one.name}."
+        yield "contributions", contributions(found, one.name, title=""), said
+
+
+@_study_plots.register
+def _(found: Optimum) -> Iterator[SectionPlot]:
+    yield "optimum", improvement(found, title=""), "What became better: the mechanism as it stood, and the best one."
+    yield "minima", starts(found, title=""), "Where the searches began and ended."

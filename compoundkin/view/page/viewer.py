@@ -1,4 +1,4 @@
-"""The viewer: a sketch that moves under a slider, its switches, and the plots that go with it."""
+"""The viewer: a moving sketch with slider, switches and plots, on a page with a panel of dimensions or alone."""
 
 from __future__ import annotations
 
@@ -11,21 +11,30 @@ import numpy as np
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY, course_figure
-from compoundkin.model.elements import FRAME
-from compoundkin.view.page.markup import element, hidden, lines, safe
-from compoundkin.view.page.moving_data import MotionData
-from compoundkin.view.page.plot_data import plot_data
-from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch
-from compoundkin.view.sketch.svg import FONT, elements, link_names, number
+from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY, motion_figure
+from compoundkin.model.geometry import FRAME
+from compoundkin.view.page.html_document import POLICY, asset, page_palette
+from compoundkin.view.page.live.compact_data import compact
+from compoundkin.view.page.live.live_assets import is_live, scripts_of, styles_of, without_panel
+from compoundkin.view.page.markup import data_script, element, lines, safe, screen_reader_text
+from compoundkin.view.page.motion_data import MotionData, plot_data
+from compoundkin.view.report.pose_sample import Sample
+from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch
+from compoundkin.view.sketch.sketch_style import page_css
+from compoundkin.view.sketch.svg import FONT, elements, link_names, svg_number
 
 # So many names below the sketch are stops of the keyboard.
 MOST_STOPS = 12
+
+
 # How much faster or slower than that the motion may be played.
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2")
+
+
 # Plots of a page go to accelerations.
 MOST_ORDER = 2
+
+
 # What can be shown in the sketch, as it is called: its key, the words, and what they say at length.
 SWITCHES = (
     (VELOCITY, "velocities", "velocity vectors of all points"),
@@ -55,7 +64,7 @@ def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> V
     """Return `viewer` with the outputs that a report has where none are named. None where nothing can move."""
     try:
         chosen = chosen_outputs(motion, outputs)
-        return viewer(motion, design, tuple(name for name in chosen if not course_figure(name)[1]))
+        return viewer(motion, design, tuple(name for name in chosen if not motion_figure(name)[1]))
     except (InvalidInput, NotAssembled):
         return None
 
@@ -67,7 +76,7 @@ def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> View
     """
     moving = MotionData(Sample(motion, design), tuple(outputs))
     data = {**moving.data, "plots": plot_data(moving)}
-    return Viewer(player_html(moving, data), _plots(moving) if len(moving.chosen) > 1 else "", data)
+    return Viewer(player_html(moving, data), _plots_html(moving) if len(moving.chosen) > 1 else "", data)
 
 
 def player_html(moving: MotionData, data: dict[str, Any]) -> str:
@@ -76,7 +85,7 @@ def player_html(moving: MotionData, data: dict[str, Any]) -> str:
         "div",
         lines(
             [
-                element("figure", lines([_sketch(moving), _legend(moving)]), class_="moving"),
+                element("figure", lines([_sketch_html(moving), _legend(moving)]), class_="moving"),
                 _transport(moving),
                 element("p", "", class_="said", role="status"),
                 element("p", "", class_="reason"),
@@ -93,12 +102,12 @@ def _unseen_caption(text: str) -> str:
     return element("caption", safe(text), class_="unseen")
 
 
-def _sketch(moving: MotionData) -> str:
+def _sketch_html(moving: MotionData) -> str:
     """The sketch at the pose shown first; every part is an element with its own place."""
     sketch = moving.sketch
     title = f"Moving kinematic sketch of {moving.motion.mechanism.title}"
-    size = f"0 0 {number(sketch.window.width)} {number(sketch.window.height)}"
-    parts = [*_parts(sketch)]
+    size = f"0 0 {svg_number(sketch.window.width)} {svg_number(sketch.window.height)}"
+    parts = [*_parts_html(sketch)]
     inside = [
         *elements(sketch.still),
         *(element("g", "", class_=name) for name in ("traces", "rays")),
@@ -108,16 +117,16 @@ def _sketch(moving: MotionData) -> str:
     return element("svg", lines(inside), viewBox=size, role="img", aria_label=title, style=FONT, class_="sketch")
 
 
-def _parts(sketch: MovingSketch) -> Iterator[str]:
+def _parts_html(sketch: MovingSketch) -> Iterator[str]:
     k = int(np.searchsorted(sketch.scene.known, sketch.pose)) if sketch.scene.known is not None else 0
     for part in sketch.parts:
         at = complex(sketch.places(part)[k])
-        place = f"translate({number(at.real)} {number(at.imag)})"
+        place = f"translate({svg_number(at.real)} {svg_number(at.imag)})"
         shapes = "".join(elements(part.shapes))
-        yield f'<g data-links="{link_names([part.link])}"{_kind(part)} transform="{place}">{shapes}</g>'
+        yield f'<g data-links="{link_names([part.link])}"{_part_attributes(part)} transform="{place}">{shapes}</g>'
 
 
-def _kind(part: MovingPart) -> str:
+def _part_attributes(part: MovingPart) -> str:
     """What else is to be known of a part: the letter of its point; that it is a name."""
     letter = f' data-letter="{safe(part.letter)}"' if part.letter else ""
     return letter + (' class="name"' if part.is_label else "")
@@ -143,7 +152,7 @@ def _transport(moving: MotionData) -> str:
         f'aria-label="Pose" aria-valuetext="pose {moving.start + 1} of {last + 1}">'
     )
     options = "".join(f'<option value="{s}"{" selected" if s == "1" else ""}>{s}&times;</option>' for s in SPEEDS)
-    speed = element("label", f'{hidden("Speed of playing")}<select class="speed">{options}</select>')
+    speed = element("label", f'{screen_reader_text("Speed of playing")}<select class="speed">{options}</select>')
     play = element("button", "<span>Play</span>", type="button", class_="play", aria_pressed="false")
     back = element("button", "&lsaquo;", type="button", class_="back", aria_label="One pose back")
     forth = element("button", "&rsaquo;", type="button", class_="forth", aria_label="One pose forth")
@@ -157,10 +166,10 @@ def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     """What may be shown or not; only what the motion has."""
     has = {kind: kind in data["vectors"] for kind in (VELOCITY, ACCELERATION)}
     has |= {"forces": "forces" in data, "centres": bool(data["centres"]), "names": True}
-    boxes = [_box(key, word, told, key == "names") for key, word, told in SWITCHES if has[key]]
+    boxes = [_checkbox(key, word, told, key == "names") for key, word, told in SWITCHES if has[key]]
     carriers = moving.motion.mechanism.carriers
     letters = [letter for letter in moving.sketch.scene.letters if FRAME not in carriers[letter]]
-    paths = [_box(f"path {letter}", letter, f"path of {letter}", False) for letter in letters]
+    paths = [_checkbox(f"path {letter}", letter, f"path of {letter}", False) for letter in letters]
     more = (
         element("details", element("summary", "paths") + element("div", lines(paths), class_="boxes")) if paths else ""
     )
@@ -168,7 +177,7 @@ def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     return element("fieldset", lines([legend, element("div", lines(boxes), class_="boxes"), more]), class_="switches")
 
 
-def _box(key: str, word: str, told: str, on: bool) -> str:
+def _checkbox(key: str, word: str, told: str, on: bool) -> str:
     checked = " checked" if on else ""
     return f'<label title="{safe(told)}"><input type="checkbox" data-show="{safe(key)}"{checked}> {safe(word)}</label>'
 
@@ -187,7 +196,7 @@ def _notes(moving: MotionData, data: dict[str, Any]) -> Iterator[str]:
         yield element("p", f"At 1&times; it plays {text} than it runs.", class_="note")
 
 
-def _plots(moving: MotionData) -> str:
+def _plots_html(moving: MotionData) -> str:
     """The place of the plots, and what else may be plotted."""
     mechanism, order = moving.motion.mechanism, moving.motion.order
     of_points = OF_POINTS[: min(order, MOST_ORDER) + 1]
@@ -200,3 +209,98 @@ def _plots(moving: MotionData) -> str:
     add = element("button", "Plot it", type="button", class_="add")
     row = element("div", lines([choice, add]), class_="more") if names else ""
     return element("div", lines([element("div", "", class_="panels"), row]), class_="plots")
+
+
+# A notebook keeps every output that it shows: a few dozen kilobytes each are enough.
+MOST_POSES = 181
+
+
+# The frame is so high, in pixels: the sketch as it is on a page so wide, the controls below it, those of changes.
+WIDTH, HIGHEST, CONTROLS, CHANGES = 640.0, 448.0, 190.0, 72.0
+
+
+PLAYER_STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}.sketch{max-height:448px}"
+
+
+def player(motion: Motion, design: int = 0) -> str:
+    """Return a document that shows one design under a slider and a button.
+
+    The button plays the motion; the document asks for nothing else.
+
+    Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> player(solve(load_named("crank-rocker"))).splitlines()[0]
+    '<!DOCTYPE html>'
+    """
+    moving = MotionData(Sample(motion, design), most=MOST_POSES, with_centres=False)
+    return _document(moving, moving.data)
+
+
+def _document(moving: MotionData, data: dict[str, Any]) -> str:
+    styles = page_palette(), page_css(), asset("page.css"), *map(asset, styles_of(data)), PLAYER_STYLE
+    head = [
+        '<meta charset="utf-8">',
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+        element("title", safe(data["title"])),
+        *(element("style", text) for text in styles),
+    ]
+    scripted = "<script>document.documentElement.classList.add('scripted')</script>"
+    body = [
+        scripted,
+        player_html(moving, data),
+        data_script("ck-motion", compact(without_panel(data))),
+        *(f"<script>{asset(name)}</script>" for name in scripts_of(data)),
+    ]
+    return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'
+
+
+def framed_player(motion: Motion) -> str:
+    """Return the player of a motion's first design in a frame, for notebooks. Raises what `player` does."""
+    moving = MotionData(Sample(motion), most=MOST_POSES, with_centres=False)
+    data, window = moving.data, moving.sketch.window
+    document = _document(moving, data)
+    below = CONTROLS + (CHANGES if is_live(data) else 0.0)
+    height = min(HIGHEST, WIDTH * window.height / window.width, window.height * 1.1) + below
+    style = f"width:100%;max-width:{WIDTH:.0f}px;height:{height:.0f}px;border:1px solid #8886;border-radius:8px"
+    title = f"{motion.mechanism.title}, moving"
+    return f'<iframe srcdoc="{safe(document)}" title="{safe(title)}" style="{style}" sandbox="allow-scripts"></iframe>'
+
+
+PANEL_KEY, PANEL_TITLE = "dimensions", "Dimensions"
+
+
+PANEL_HINT = (
+    "Change a number, and the mechanism follows. Arrow keys step it, with Shift ten times as far; "
+    "a field that is focused says in which range the mechanism assembles."
+)
+
+
+# What can be taken along: its key, the words of its button, what they say at length.
+SHARE_BUTTONS = (
+    ("toml", "Copy as TOML", "Copy the mechanism with these dimensions as a mechanism file"),
+    ("link", "Copy link", "Copy the address of this page with these dimensions"),
+    ("csv", "CSV", "Save drivers, outputs and points at all poses"),
+    ("svg", "SVG", "Save the sketch as it is shown"),
+)
+
+
+def panel_section() -> str:
+    """Return the section of dimensions, without any yet.
+
+    >>> panel_section().splitlines()[0]
+    '<section id="dimensions" aria-labelledby="dimensions-title">'
+    """
+    buttons = [
+        element("button", safe(words), type="button", data_share=key, title=told) for key, words, told in SHARE_BUTTONS
+    ]
+    body = [
+        element("h2", PANEL_TITLE, id=f"{PANEL_KEY}-title"),
+        element("p", PANEL_HINT, class_="hint"),
+        element("div", "", class_="dimensions"),
+        element("div", lines(buttons), class_="share", role="group", aria_label="Take along"),
+        element("p", "", class_="told"),
+        '<textarea class="taken" readonly hidden aria-label="Text to copy"></textarea>',
+    ]
+    return element("section", f"\n{lines(body)}\n", id=PANEL_KEY, aria_labelledby=f"{PANEL_KEY}-title")

@@ -1,4 +1,4 @@
-"""What a plot shows, as rows of real numbers: designs x poses, in the units that people read."""
+"""Plotted quantities as rows of real numbers (designs x poses) in display units, and the gaps and change points marked along them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.gaps import Gap, gaps
 from compoundkin.kinematics.quantities import Quantity, whole_and_part
 from compoundkin.kinematics.quantity_owners import known_owners
 from compoundkin.model.attributes import (
@@ -22,12 +23,14 @@ from compoundkin.model.attributes import (
     SPEED,
     TIME,
     VALUE,
-    course_figure,
+    motion_figure,
     unit_of,
-    vector_of,
+    vector_and_part,
 )
 
 POSE, DRIVEN = "pose", "driver"
+
+
 # The scale of angles, in degrees.
 TURN = 360.0
 
@@ -79,14 +82,14 @@ class Plotted(Quantity):
         return tuple(self.part(name) for name in PARTS) if self.is_vector else (self,)
 
 
-def shown(motion: Motion, name: str) -> Plotted:
+def plotted_quantity(motion: Motion, name: str) -> Plotted:
     """Return the quantity of a name. A component or the length of a vector as "G.velocity.x", "G.velocity.length".
 
     Raises UnknownName with the nearest name there is.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
-    >>> shown(solve(load_named("six-bar")), "G.velocity.length").label
+    >>> plotted_quantity(solve(load_named("six-bar")), "G.velocity.length").label
     'G.velocity.length [mm/s]'
     """
     whole, part = whole_and_part(motion, name)
@@ -102,12 +105,12 @@ def rate_name(motion: Motion, name: str) -> str:
     >>> rate_name(solve(load_named("six-bar")), "bar.angle")
     'bar.angular_velocity'
     """
-    own = shown(motion, name)
-    vector, part = vector_of(name)
+    own = plotted_quantity(motion, name)
+    vector, part = vector_and_part(name)
     owner, _, attribute = vector.rpartition(".") if "." in vector else (vector, "", "")
     for candidate in RATE_OF.get(f"{attribute}.{part}" if part else attribute, ()):
         try:
-            found = shown(motion, f"{owner}.{candidate}")
+            found = plotted_quantity(motion, f"{owner}.{candidate}")
         except UnknownName:
             continue
         if not own.is_vector and not found.is_vector:
@@ -116,7 +119,7 @@ def rate_name(motion: Motion, name: str) -> str:
     raise UnknownName(Problem(name, "a phase plot needs a quantity whose rate has a name", remedy))
 
 
-def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
+def horizontal_axis(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
     """Tell what a plot runs along, and whether it is always known.
 
     It may not be where the mechanism cannot be assembled.
@@ -133,7 +136,7 @@ def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
             raise InvalidInput(Problem(TIME, "this is no motion in time", "solve(..., time=...)"))
         return Plotted(TIME, unit_of("", "time"), _shaped(motion, motion.time), dimension="time"), True
     if against in (None, DRIVEN):
-        return driver(motion), True
+        return moving_driver(motion), True
     found = _named(motion, str(against))
     if found.is_vector:
         listed = ", ".join(f"{against}.{part}" for part in PARTS)
@@ -144,17 +147,17 @@ def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
 
 def _named(motion: Motion, against: str) -> Plotted:
     try:
-        return shown(motion, against)
+        return plotted_quantity(motion, against)
     except UnknownName:
         if "." in against:
             raise
-        known = nearest(against, [TIME, DRIVEN, POSE, *known_owners(motion)])
+        known = suggestion(against, [TIME, DRIVEN, POSE, *known_owners(motion)])
         raise UnknownName(Problem(against, "there is nothing of this name to draw against", known)) from None
 
 
-def driver(motion: Motion) -> Plotted:
+def moving_driver(motion: Motion) -> Plotted:
     """Return the first driver that moves; the first of all where none does."""
-    rows = {name: shown(motion, f"{name}.{VALUE}") for name in motion.drives}
+    rows = {name: plotted_quantity(motion, f"{name}.{VALUE}") for name in motion.drives}
     if not rows:
         raise InvalidInput(Problem(DRIVEN, "the mechanism has no driver", f"against={POSE!r}"))
     moving = [name for name, row in rows.items() if np.ptp(row.values, axis=-1).any()]
@@ -162,12 +165,12 @@ def driver(motion: Motion) -> Plotted:
     return replace(rows[name], name=name)
 
 
-def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
+def plotted_quantities(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
     """Return the quantities of names, else the mechanism's outputs. The outputs are what it states as such."""
-    chosen = names or [name for name in motion.mechanism.outputs if not course_figure(name)[1]]
+    chosen = names or [name for name in motion.mechanism.outputs if not motion_figure(name)[1]]
     if not chosen:
         raise InvalidInput(Problem("quantities", "nothing is named", "name some: plot(motion, 'G.velocity')"))
-    return tuple(shown(motion, name) for name in chosen)
+    return tuple(plotted_quantity(motion, name) for name in chosen)
 
 
 def _rows(motion: Motion, found: Quantity) -> Plotted:
@@ -193,3 +196,81 @@ def _pace(motion: Motion) -> float:
 def _shaped(motion: Motion, values: Any) -> Number:
     full = np.broadcast_to(np.asarray(values), motion.shape)
     return full.reshape(motion.inputs.designs, motion.inputs.poses)
+
+
+# A curve that varies less than this part of its size is constant but for rounding.
+CONSTANT = 1e-9
+
+
+@dataclass(frozen=True)
+class Blank:
+    """A part of one design's motion without assembled poses. Its places are along the motion (pose 0, 1, 2 ...).
+
+    `limits` tells for its begin and its end whether it is a limit position or the end of a guide; otherwise
+    the motion ends there.
+    """
+
+    design: int
+    begin: float
+    end: float
+    limits: tuple[bool, bool]
+
+
+@dataclass(frozen=True)
+class Events:
+    """All that is marked in plots of a motion, in places along it."""
+
+    blanks: tuple[Blank, ...]
+    changes: tuple[tuple[int, float], ...]  # design and place of every change point
+
+    def beside(self, design: int, poses: int) -> Number:
+        """Return a design's last poses before and first ones after limit positions."""
+        found = []
+        for blank in self.blanks:
+            if blank.design == design:
+                places = (np.floor(blank.begin), np.ceil(blank.end))
+                found += [int(s) for s, is_limit in zip(places, blank.limits, strict=True) if is_limit]
+        return np.array([s for s in found if 0 <= s < poses], dtype=int)
+
+
+def events(motion: Motion) -> Events:
+    """Return the gaps and change points of a motion.
+
+    >>> import warnings
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     motion = solve(load_named("triple-rocker"), {"driver": np.deg2rad([80.0, 88.0, 90.0])})
+    >>> [round(blank.begin, 3) for blank in events(motion).blanks]     # the limit is interpolated 88.98 degrees
+    [1.488]
+    """
+    found = gaps(motion) if np.any(motion.failed) else ()
+    changes = [
+        (design, float(place))
+        for _, places in sorted(motion.change_points.items())
+        for design, row in enumerate(places)
+        for place in row[np.isfinite(row)]
+    ]
+    return Events(tuple(_blank(motion, gap) for gap in found), tuple(dict.fromkeys(changes)))
+
+
+def interpolated(row: Number, place: float) -> float:
+    """Return a quantity at a place, linear between poses as drivers and times are."""
+    return float(np.interp(place, np.arange(len(row)), row))
+
+
+def _blank(motion: Motion, gap: Gap) -> Blank:
+    design = int(np.ravel_multi_index(gap.design, motion.shape[:-1])) if gap.design else 0
+    begin = float(gap.first) if gap.open_begin else _place(motion, design, dict(gap.begin), gap.first - 1, gap.first)
+    end = float(gap.last) if gap.open_end else _place(motion, design, dict(gap.end), gap.last + 1, gap.last)
+    return Blank(design, begin, end, (not gap.open_begin, not gap.open_end))
+
+
+def _place(motion: Motion, design: int, values: dict[str, float], good: int, bad: int) -> float:
+    """The place between two poses where the drivers have these values."""
+    rows = {n: np.broadcast_to(motion.drives[n].value, motion.shape).reshape(motion.failed.shape) for n in values}
+    moved = {name: float(row[design, bad] - row[design, good]) for name, row in rows.items()}
+    name = max(moved, key=lambda n: abs(moved[n]), default=None)
+    if name is None or moved[name] == 0.0:
+        return (good + bad) / 2.0
+    return good + (values[name] - float(rows[name][design, good])) / moved[name] * (bad - good)

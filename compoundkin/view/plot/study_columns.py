@@ -1,4 +1,4 @@
-"""Columns of a study as plots show them: angles in degrees, and the designs that are drawn of very many."""
+"""Data of studies and tolerance analyses for plots: columns in display units, toleranced outputs by name, bins."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number
-from compoundkin.model.attributes import GREATEST
-from compoundkin.model.component_names import component_names
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.model.attributes import GREATEST, component_names, with_superscripts
 from compoundkin.studies.runs.study_program import StudyColumn
 from compoundkin.studies.runs.study_result import StudyResult
-from compoundkin.view.plot.plotted_rows import Plotted
+from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
+from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
+from compoundkin.view.plot import canvas
+from compoundkin.view.plot.canvas import value_text
+from compoundkin.view.plot.plotted_rows import Plotted, horizontal_axis
 from compoundkin.view.report.wording import counted
 
 # More points than these are a blot, and their drawing takes long.
@@ -23,7 +26,7 @@ MOST_POINTS = 3000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StudyColumns(PrintsShort):
+class StudyColumns(ShortRepr):
     """What plots read of a study: columns by name, and which designs are assembled."""
 
     found: StudyResult
@@ -57,7 +60,7 @@ class StudyColumns(PrintsShort):
         """Return the columns of a name: two of a point or vector. Raises UnknownName with the nearest."""
         names = (name,) if name in self.columns else component_names(name)
         if names[0] not in self.columns:
-            remedy = nearest(name, list(self.columns))
+            remedy = suggestion(name, list(self.columns))
             raise UnknownName(Problem(name, "the study has no such column of numbers", remedy))
         return tuple(self.columns[one] for one in names)
 
@@ -101,10 +104,10 @@ class StudyColumns(PrintsShort):
     def values(self, column: StudyColumn, rows: Number | None = None) -> Plotted:
         """Return a column as it is shown, or some rows of it."""
         own = np.asarray(self.found[column.name])
-        return shown_of(column.name, column.unit, own if rows is None else own[rows])
+        return displayed_values(column.name, column.unit, own if rows is None else own[rows])
 
 
-def shown_of(name: str, unit: str, values: Number) -> Plotted:
+def displayed_values(name: str, unit: str, values: Number) -> Plotted:
     """Return values as they are shown, angles in degrees."""
     found = Plotted(name, unit, np.asarray(values, dtype=float)).shown
     known = np.abs(found.values[np.isfinite(found.values)])
@@ -124,10 +127,108 @@ def drawn_rows(rows: Number, most: int = MOST_POINTS) -> Number:
     return np.sort(np.random.default_rng(0).choice(rows, most, replace=False))
 
 
-def headed(title: str, *said: str) -> str:
+def title_with_summary(title: str, *said: str) -> str:
     """Return the title of a plot with what is said of its designs.
 
-    >>> headed("Press", "", "9 designs")
+    >>> title_with_summary("Press", "", "9 designs")
     'Press: 9 designs'
     """
     return ": ".join(filter(None, (title, "; ".join(filter(None, said)))))
+
+
+def toleranced_outputs(found: ToleranceAnalysis, name: str) -> list[OutputTolerance]:
+    """Return the outputs of a name: both components of a vector. Raises UnknownName."""
+    both = component_names(name)
+    return [found[one] for one in (both if name not in found.outputs and both[0] in found.outputs else [name])]
+
+
+def toleranced_output(found: ToleranceAnalysis, name: str) -> OutputTolerance:
+    """Return the output of a name. Raises InvalidInput for a vector."""
+    one, *others = toleranced_outputs(found, name)
+    if others:
+        raise InvalidInput(Problem(name, "it is a vector", f"take {one.name} or {others[0].name}"))
+    return one
+
+
+def toleranced_curves(found: ToleranceAnalysis, names: Sequence[str]) -> list[OutputTolerance]:
+    """Return the outputs of names with values at every pose.
+
+    Of no names they are all that there are. Raises UnknownName, InvalidInput where there is none.
+    """
+    among = [one for name in names for one in toleranced_outputs(found, name)] if names else list(found.values())
+    wrong = next((one for one in among if names and not one.is_course), None)
+    if wrong is not None:
+        what, remedy = "it is one number of the whole motion", "contributions() and histogram() draw it"
+        raise InvalidInput(Problem(wrong.name, what, remedy))
+    courses = [one for one in among if one.is_course]
+    if not courses:
+        what = "no output of the analysis has values at every pose"
+        raise InvalidInput(Problem("quantities", what, "contributions() and histogram() draw figures"))
+    return courses
+
+
+def checked_pose(one: OutputTolerance, pose: int | None) -> int | None:
+    """Return the pose that is meant.
+
+    Without one it is that of the greatest deviation; None of a figure. Raises InvalidInput where there is no such pose.
+    """
+    if not one.is_course:
+        if pose is not None:
+            raise InvalidInput(Problem("pose", f"{one.name} is one number of the whole motion", "leave it out"))
+        return None
+    poses = len(one.nominal)
+    if pose is None:
+        known = np.isfinite(one.deviation)
+        return int(np.argmax(np.where(known, one.deviation, -1.0)))
+    if not 0 <= pose < poses:
+        raise InvalidInput(Problem("pose", f"there is no pose {pose}", f"0 to {poses - 1}"))
+    return pose
+
+
+def value_at(values: Number, pose: int | None) -> float:
+    """Return the value of a figure, or of a course at a pose."""
+    return float(values if pose is None else np.asarray(values)[pose])
+
+
+def place_words(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
+    """Say which output it is, and at which pose: "rocker.angle at crank 20 deg"."""
+    if pose is None:
+        return one.name
+    x, _ = horizontal_axis(found.motion, None)
+    return (
+        f"{one.name} at {x.name} {value_text(float(x.values[0, pose]), x.scale)} {with_superscripts(x.unit)}".rstrip()
+    )
+
+
+def value_words(one: OutputTolerance, value: float) -> str:
+    """Write a value of an output with its unit, angles in degrees."""
+    shown = displayed_values(one.name, one.unit, np.array([value]))
+    return f"{value_text(float(shown.values[0]))} {with_superscripts(shown.unit)}".rstrip()
+
+
+# Bins in a histogram of very many values, and of those with far outliers.
+MOST_BINS = 60
+
+
+def histogram_bins(values: Number, scale: float, most: int = MOST_BINS) -> Number:
+    """Return the edges of bins by the rule of Freedman and Diaconis.
+
+    Around constants there are three, of which the middle one holds all.
+
+    Source: D. Freedman, P. Diaconis, On the histogram as a density estimator (1981).
+
+    >>> histogram_bins(np.array([2.0, 2.0]), 2.0).tolist()
+    [1.0, 1.6666666666666665, 2.333333333333333, 3.0]
+    >>> len(histogram_bins(np.arange(10**6.0), 1e6)), len(histogram_bins(np.array([np.nan]), 0.0))
+    (61, 2)
+    """
+    known = values[np.isfinite(values)]
+    still = canvas.constant_limits(known, scale)
+    if not len(known):
+        return np.array([0.0, 1.0])
+    if still is not None:
+        return np.linspace(*still, 4)
+    quarters = np.subtract(*np.percentile(known, [75.0, 25.0]))
+    width = 2.0 * quarters / len(known) ** (1.0 / 3.0)
+    wished = np.ptp(known) / width if width > 0.0 else most
+    return np.linspace(known.min(), known.max(), int(np.clip(np.ceil(wished), 1, most)) + 1)

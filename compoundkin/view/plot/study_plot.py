@@ -1,21 +1,48 @@
-"""What studies, tolerance analyses and searches of better dimensions draw of themselves."""
+"""Plots of studies and tolerance analyses: percentile bands, histograms of a figure, contributions of tolerances.
+
+`study_plot` chooses the one that suits a result.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import singledispatch
+from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
+from compoundkin.base.arguments import checked, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import with_superscripts
 from compoundkin.studies.optimisation.optimum import Optimum
+from compoundkin.studies.runs.study_program import StudyColumn
 from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
-from compoundkin.view.plot.contribution_bars import contributions
-from compoundkin.view.plot.figure_histogram import histogram
-from compoundkin.view.plot.improvement_plot import improvement
-from compoundkin.view.plot.percentile_bands import bands
-from compoundkin.view.plot.plot_style import Plot
-from compoundkin.view.plot.scatter_matrix import scatter_matrix
-from compoundkin.view.plot.study_columns import StudyColumns
-from compoundkin.view.plot.toleranced_outputs import outputs_of
+from compoundkin.view.plot import canvas, plot_style
+from compoundkin.view.plot.canvas import HEADROOM, PointLabel, broken_label, value_text
+from compoundkin.view.plot.optimisation_plots import improvement
+from compoundkin.view.plot.plot_style import COLOURS, INK, Plot
+from compoundkin.view.plot.plotted_rows import Plotted, horizontal_axis
+from compoundkin.view.plot.scatter_plots import scatter_matrix
+from compoundkin.view.plot.study_columns import (
+    StudyColumns,
+    checked_pose,
+    displayed_values,
+    histogram_bins,
+    place_words,
+    title_with_summary,
+    toleranced_curves,
+    toleranced_output,
+    toleranced_outputs,
+    value_at,
+    value_words,
+)
+from compoundkin.view.report.wording import counted
 
 
 @singledispatch
@@ -36,7 +63,7 @@ def _(found: StudyResult, *names: str, **options: Any) -> Plot:
 @study_plot.register
 def _(found: ToleranceAnalysis, *names: str, **options: Any) -> Plot:
     """Bands of courses, the contributions to one figure."""
-    shown = [one for name in names for one in outputs_of(found, name)] or list(found.values())
+    shown = [one for name in names for one in toleranced_outputs(found, name)] or list(found.values())
     if len(shown) == 1 and not shown[0].is_course:
         return contributions(found, shown[0].name, **options)
     return bands(found, *names, **options)
@@ -46,3 +73,425 @@ def _(found: ToleranceAnalysis, *names: str, **options: Any) -> Plot:
 def _(found: Optimum, *names: str, **options: Any) -> Plot:
     """What became better."""
     return improvement(found, *names, **options)
+
+
+BANDS_BASE_HEIGHT, BANDS_PANEL_HEIGHT = 1.8, 2.2
+
+
+# Percentiles that are drawn: the outermost two are the edges of the lightest band, and so on to the one in the middle.
+BAND_PERCENTILES = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
+
+
+# How dark the outermost band is, and the innermost one.
+LIGHT, DARK = 0.15, 0.5
+
+
+# Percentiles of random designs within tolerances.
+SAMPLED: Mapping[str, Any] = MappingProxyType({"color": COLOURS[1], "linestyle": (0, (4, 2)), "linewidth": 0.9})
+
+
+@dataclass(frozen=True, eq=False)
+class Bands:
+    """A panel: pairs of edges, and lines, each with its name.
+
+    The outermost edges come first.
+    """
+
+    title: Plotted
+    edges: tuple[tuple[str, Number, Number], ...]
+    lines: tuple[tuple[str, Number, dict[str, Any]], ...]
+
+    @property
+    def drawn(self) -> Number:
+        """All values that are drawn."""
+        rows = [row for _, low, high in self.edges for row in (low, high)]
+        return np.concatenate([*rows, *(row for _, row, _ in self.lines)])
+
+
+@checked
+def bands(
+    found: StudyResult | ToleranceAnalysis,
+    *names: str,
+    percentiles: Sequence[float] = BAND_PERCENTILES,
+    relative: bool = True,
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw how far quantities lie apart in a study or within tolerances.
+
+    They are drawn over the driver, or over the time of a motion in time. `names` are quantities at every pose, of
+    vectors both components; without any, all that there are. Of a study the bands lie between percentiles of its
+    assembled designs, each with the one as far from the other end; a percentile of 50 is a line. Of tolerances they are
+    the worst case and as many standard deviations as limits lie from the middle, with the percentiles of random designs
+    beside them; what is drawn is the error, unless `relative` is False.
+
+    Raises UnknownName for quantities that there are not, InvalidInput for figures or without Matplotlib.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.studies.tolerances.tolerance import tolerance
+    >>> found = tolerance(load_named("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
+    >>> bands(found).figure.axes[0].get_ylabel()
+    'error of rocker.angle\\n[deg]'
+    """
+    told, motion, panels = _panels(found, names, percentiles, relative)
+    x, is_input = horizontal_axis(motion, None)
+    text = title_with_summary(motion.mechanism.title if title is None else title, told)
+    with plot_style.styled():
+        height = BANDS_BASE_HEIGHT + BANDS_PANEL_HEIGHT * len(panels)
+        figure, axes = canvas.panels(len(panels), text, size or (canvas.WIDTH, height), sharex=True)
+        if is_input and np.ptp(x.values) > 0:
+            axes[0].set_xlim(x.values.min(), x.values.max())
+        for one, panel in zip(axes, panels, strict=True):
+            _draw(one, x, panel)
+            canvas.axis_labels(one, x if one is axes[-1] else None, panel.title, canvas.PANEL)
+            if not np.isfinite(panel.drawn).any():
+                canvas.write_empty(one)
+        canvas.legend_below(figure, axes[0].get_legend_handles_labels()[0])
+        return canvas.finished(figure, ())
+
+
+def _panels(
+    found: StudyResult | ToleranceAnalysis, names: Sequence[str], percentiles: Sequence[float], relative: bool
+) -> tuple[str, Motion, tuple[Bands, ...]]:
+    """What is said below the panels, the motion that they are over, and the panels."""
+    ordered = checked_percentiles(percentiles)
+    if isinstance(found, StudyResult):
+        among = StudyColumns(found)
+        panels = tuple(_study_bands(among, one, ordered) for one in among.courses(names))
+        return among.told(), found.reference, panels
+    told = [counted(found.count, "random design"), _missing(found.unassembled)]
+    panels = tuple(_tolerance_bands(found, one, relative) for one in toleranced_curves(found, names))
+    return ", ".join(filter(None, told)), found.motion, panels
+
+
+def _missing(number: int) -> str:
+    return f"{number:,} cannot be assembled" if number else ""
+
+
+def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
+    """Return percentiles, lowest first. Raises InvalidInput for what is none."""
+    found: list[float] = np.unique(real_numbers("percentiles", percentiles)).tolist()
+    wrong = [one for one in found if not 0.0 <= one <= 100.0]
+    if wrong or not found:
+        what = f"{wrong[0]:g} is no percentile" if wrong else "there is none"
+        raise InvalidInput(Problem("percentiles", what, "numbers from 0 to 100, such as (5, 50, 95)"))
+    return found
+
+
+def percentile_curves(values: Number, chosen: Number, percentiles: Sequence[float]) -> Number:
+    """Return percentiles of the chosen designs at every pose, (percentiles, poses).
+
+    They are NaN where no design is known.
+
+    >>> values = np.array([[0.0, np.nan], [1.0, np.nan], [4.0, np.nan], [9.0, 9.0]])
+    >>> percentile_curves(values, np.array([True, True, True, False]), [50.0]).tolist()
+    [[1.0, nan]]
+    """
+    found = np.full((len(percentiles), values.shape[-1]), np.nan)
+    # pose by pose: all at once would need the memory of all designs again
+    for pose in range(values.shape[-1]):
+        known = values[:, pose][chosen & np.isfinite(values[:, pose])]
+        if len(known):
+            found[:, pose] = np.percentile(known, percentiles, overwrite_input=True)
+    return found
+
+
+def _study_bands(among: StudyColumns, column: StudyColumn, percentiles: Sequence[float]) -> Bands:
+    courses = percentile_curves(np.asarray(among.found[column.name]), among.assembled, percentiles)
+    quantity = displayed_values(column.name, column.unit, courses)
+    rows = dict(zip(percentiles, quantity.values, strict=True))
+    lower = [one for one in percentiles if one < 50.0 and 100.0 - one in rows]
+    single = [one for one in percentiles if one not in lower and 100.0 - one not in lower]
+    edges = tuple((_between(one), rows[one], rows[100.0 - one]) for one in lower)
+    lines = tuple((_percentile(one), rows[one], {"color": COLOURS[0]}) for one in single)
+    return Bands(quantity, edges, lines)
+
+
+def _between(low: float) -> str:
+    return "all designs" if low == 0.0 else f"{low:g} to {100.0 - low:g} %"
+
+
+def _percentile(one: float) -> str:
+    return "median" if one == 50.0 else f"{one:g} %"
+
+
+def _tolerance_bands(found: ToleranceAnalysis, one: OutputTolerance, relative: bool) -> Bands:
+    base, sigmas = one.nominal if relative else 0.0 * one.nominal, found.chances.sigmas
+
+    def shown(values: Any) -> Number:
+        return displayed_values(one.name, one.unit, values - base).values
+
+    spread = sigmas * one.deviation
+    edges = (
+        ("worst case", shown(one.low), shown(one.high)),
+        (f"±{sigmas:g} standard deviations", shown(one.mean - spread), shown(one.mean + spread)),
+    )
+    whole = displayed_values(one.name, one.unit, one.high - base)
+    quantity = replace(whole, name=f"error of {one.name}") if relative else whole
+    lines = [("nominal", shown(one.nominal), {"color": INK, "linewidth": 1.0})]
+    # one name for all of them: the legend is one line
+    word = ", ".join(f"{own:g}" for own in one.sample.percents)
+    for k, row in enumerate(one.sample.percentiles):
+        lines.append((f"_{k}" if k else f"{word} % of random designs", shown(row), dict(SAMPLED)))
+    return Bands(quantity, edges, tuple(lines))
+
+
+def _draw(axes: Any, x: Plotted, panel: Bands) -> None:
+    across = x.values[0]
+    for k, (name, low, high) in enumerate(panel.edges):
+        shade = _shade(LIGHT + (DARK - LIGHT) * k / max(1, len(panel.edges) - 1))
+        axes.fill_between(across, low, high, facecolor=shade, edgecolor=COLOURS[0], linewidth=0.4, label=name)
+    for name, values, look in panel.lines:
+        axes.plot(across, values, label=name, **look)
+    still = canvas.constant_limits(panel.drawn, panel.title.scale)
+    if still is not None:
+        axes.set_ylim(*still)
+    else:
+        axes.margins(y=HEADROOM)
+
+
+def _shade(dark: float) -> tuple[float, ...]:
+    """The colour of a band, on white: bands that could be seen through would be darker than in the legend."""
+    from matplotlib.colors import to_rgb
+
+    return tuple(1.0 - dark * (1.0 - part) for part in to_rgb(COLOURS[0]))
+
+
+SIZE = (7.0, 4.0)
+
+
+HISTOGRAM_PERCENTILES = (5.0, 50.0, 95.0)
+
+
+# Room above the bars for the values of percentiles, a part of their height.
+HISTOGRAM_MARGIN = 0.25
+
+
+# Places of the curve of a normal distribution.
+PLACES = 400
+
+
+@dataclass(frozen=True, eq=False)
+class FigureDistribution:
+    """What a histogram shows: values, percentiles, named lines, a normal distribution."""
+
+    title: str
+    told: str
+    values: Plotted
+    percentiles: Sequence[float]
+    lines: tuple[tuple[str, float], ...] = ()
+    normal: tuple[float, float] | None = None
+
+
+@checked
+def histogram(
+    found: StudyResult | ToleranceAnalysis,
+    name: str,
+    *,
+    pose: int | None = None,
+    percentiles: Sequence[float] | None = None,
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw how often a figure has which values, in a study or within tolerances.
+
+    `name` is an output with one number for each design, or within tolerances a quantity at the `pose` of that index, or
+    else the pose of the greatest deviation. Counted are assembled designs. `percentiles` are dashed, with their values.
+    Within tolerances the worst case is drawn too, and the normal distribution of the deviation found by slopes.
+
+    Raises UnknownName for what there is not, InvalidInput for courses of a study, vectors, or without Matplotlib.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.studies.study import study
+    >>> asked = "rocker.angle.stroke"
+    >>> result = study(load_named("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, asked, count=64).run()
+    >>> int(sum(patch.get_height() for patch in histogram(result, asked).figure.axes[0].patches))
+    64
+    """
+    asked = None if percentiles is None else checked_percentiles(percentiles)
+    if isinstance(found, StudyResult):
+        shown = _study_distribution(found, name, pose, asked)
+    else:
+        shown = _tolerance_distribution(found, name, pose, asked)
+    labels: list[PointLabel] = []
+    with plot_style.styled():
+        text = title_with_summary(shown.title if title is None else title, shown.told)
+        figure, (axes,) = canvas.panels(1, text, size or SIZE)
+        _draw_histogram(axes, shown, labels)
+        axes.set_xlabel(shown.values.label)
+        canvas.legend_below(figure, axes.get_legend_handles_labels()[0])
+        return canvas.finished(figure, labels)
+
+
+def _study_distribution(
+    found: StudyResult, name: str, pose: int | None, percentiles: Sequence[float] | None
+) -> FigureDistribution:
+    if pose is not None:
+        raise InvalidInput(Problem("pose", "a study has one number of each design here", "leave it out"))
+    among = StudyColumns(found)
+    shown = among.values(among.figure(name), np.flatnonzero(among.assembled))
+    return FigureDistribution(
+        among.title, among.told(), shown, HISTOGRAM_PERCENTILES if percentiles is None else percentiles
+    )
+
+
+def _tolerance_distribution(
+    found: ToleranceAnalysis, name: str, pose: int | None, percentiles: Sequence[float] | None
+) -> FigureDistribution:
+    one = toleranced_output(found, name)
+    at = checked_pose(one, pose)
+    sample = one.sample.values
+    values = displayed_values(one.name, one.unit, sample if at is None else sample[:, at])
+
+    def shown(own: Number) -> float:
+        return float(displayed_values(one.name, one.unit, np.array([value_at(own, at)])).values[0])
+
+    lines = (("worst case", shown(one.low)), ("_", shown(one.high)))
+    told = f"{place_words(found, one, at)}, {counted(one.sample.count, 'random design')}"
+    normal = shown(one.mean), shown(one.deviation)
+    return FigureDistribution(found.mechanism.title, told, values, percentiles or found.percentiles, lines, normal)
+
+
+def _draw_histogram(axes: Any, shown: FigureDistribution, labels: list[PointLabel]) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    values = shown.values.values[np.isfinite(shown.values.values)]
+    if not len(values):
+        canvas.write_empty(axes)
+        axes.set_xticks([])
+        return
+    edges = histogram_bins(values, shown.values.scale)
+    counts, _, _ = axes.hist(values, bins=edges, color=COLOURS[0], alpha=0.75)
+    axes.set_ylim(0.0, (1.0 + HISTOGRAM_MARGIN) * float(np.max(counts)))
+    if shown.normal is not None and shown.normal[1] > 0.0:
+        _normal(axes, shown.normal, len(values) * (edges[1] - edges[0]))
+    for name, place in shown.lines:
+        axes.axvline(place, color=COLOURS[1], linewidth=1.2, label=name)
+    _percentiles(axes, shown, values, labels)
+    axes.set_ylabel("designs")
+    axes.yaxis.set_major_locator(MaxNLocator(canvas.UPWARDS, integer=True))
+    canvas.set_round_ticks(axes.xaxis, shown.values.is_angle, canvas.ACROSS)
+
+
+def _normal(axes: Any, normal: tuple[float, float], area: float) -> None:
+    """The normal distribution of a mean and a deviation, of the same area as the bars."""
+    mean, deviation = normal
+    z = np.linspace(-4.0, 4.0, PLACES)
+    density = area * np.exp(-(z**2) / 2.0) / (deviation * np.sqrt(2.0 * np.pi))
+    axes.plot(mean + deviation * z, density, color=INK, linewidth=1.2, label="normal, by slopes")
+    axes.set_ylim(0.0, max(axes.get_ylim()[1], (1.0 + HISTOGRAM_MARGIN) * float(density.max())))
+
+
+def _percentiles(axes: Any, shown: FigureDistribution, values: Number, labels: list[PointLabel]) -> None:
+    top, scale = axes.get_ylim()[1], shown.values.scale
+    for one, value in zip(shown.percentiles, np.percentile(values, shown.percentiles), strict=True):
+        axes.axvline(value, color=INK, linestyle="--", linewidth=1.0)
+        word = "median" if one == 50.0 else f"{one:g} %"
+        labels.append(PointLabel(axes, float(value), 0.97 * top, f"{word}: {value_text(float(value), scale)}", 1.0))
+
+
+BARS_BASE_HEIGHT, BAR_HEIGHT = 1.7, 0.27
+
+
+# More bars are one, of all others together.
+MOST = 16
+
+
+# Characters of a name in a line.
+NAME_CHARACTERS = 26
+
+
+# Room behind the bars for their values, a part of the longest.
+BEHIND = 0.28
+
+
+@dataclass(frozen=True, eq=False)
+class ContributionRows:
+    """What each source contributes, the greatest share first.
+
+    Shares are those of the variance in percent, parts those of the worst case.
+    """
+
+    names: tuple[str, ...]
+    shares: Number
+    parts: Number
+    unit: str
+
+
+@checked
+def contributions(
+    found: ToleranceAnalysis,
+    name: str,
+    *,
+    pose: int | None = None,
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw what each tolerance and loose pin contributes to the error of an output.
+
+    At the left stand shares of the variance, at the right parts of the worst case; the greatest come first. `name` is a
+    figure, or a quantity at the `pose` of that index; without it the pose at which the standard deviation is greatest.
+
+    Raises UnknownName for outputs that there are not, InvalidInput for a vector, a pose that there is not, or without
+    Matplotlib.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.studies.tolerances.tolerance import tolerance
+    >>> found = tolerance(load_named("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
+    >>> [axes.get_xlabel() for axes in contributions(found, "rocker.angle", pose=30).figure.axes]
+    ['share of the variance [%]', 'part of the worst case [deg]']
+    """
+    one = toleranced_output(found, name)
+    at = checked_pose(one, pose)
+    rows = contribution_rows(one, at)
+    with plot_style.styled():
+        text = title_with_summary(
+            found.motion.mechanism.title if title is None else title, _contribution_heading(found, one, at)
+        )
+        height = BARS_BASE_HEIGHT + BAR_HEIGHT * len(rows.names)
+        figure, axes = canvas.panels(1, text, size or (canvas.WIDTH, height), 2, sharey=True)
+        _draw_contributions(axes[0], rows, rows.shares, "share of the variance [%]", COLOURS[0])
+        _draw_contributions(
+            axes[1],
+            rows,
+            rows.parts,
+            f"part of the worst case{f' [{with_superscripts(rows.unit)}]' if rows.unit else ''}",
+            COLOURS[1],
+        )
+        axes[0].invert_yaxis()
+        return canvas.finished(figure, ())
+
+
+def contribution_rows(one: OutputTolerance, pose: int | None, most: int = MOST) -> ContributionRows:
+    """Return what each source contributes at a pose. Small ones are together."""
+    shares, parts = (
+        np.array([value_at(own[name], pose) for name in own]) for own in (one.contributions, one.worst_parts)
+    )
+    shown = displayed_values(one.name, one.unit, np.abs(parts))
+    order = np.lexsort((-shown.values, -shares))
+    names = tuple(one.contributions)
+    first, rest = (order, order[:0]) if len(order) <= most else (order[: most - 1], order[most - 1 :])
+    others = [f"{len(rest)} others"] if len(rest) else []
+    rows = [np.append(own[first], [own[rest].sum()] * len(others)) for own in (100.0 * shares, shown.values)]
+    return ContributionRows((*(names[k] for k in first), *others), rows[0], rows[1], shown.unit)
+
+
+def _draw_contributions(axes: Any, rows: ContributionRows, values: Number, label: str, colour: str) -> None:
+    places = np.arange(len(rows.names))
+    axes.barh(places, values, color=colour, height=0.7)
+    axes.grid(visible=False, axis="y")
+    longest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
+    axes.set_xlim(0.0, (1.0 + BEHIND) * longest or 1.0)
+    axes.set_xlabel(label)
+    axes.set_yticks(places, [broken_label(name, NAME_CHARACTERS) for name in rows.names])
+    axes.tick_params(axis="y", length=0)
+    for place, value in zip(places, values, strict=True):
+        text = "-" if not np.isfinite(value) else value_text(float(f"{value:.3g}"), longest)
+        axes.annotate(text, (value if np.isfinite(value) else 0.0, place), (4, 0), textcoords="offset points",
+                      va="center", fontsize=plot_style.SMALL_PRINT)  # fmt: skip
+
+
+def _contribution_heading(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
+    """What the bars are of: the output and where, with its errors."""
+    worst, deviation = (value_words(one, value_at(own, pose)) for own in (one.worst, one.deviation))
+    return f"{place_words(found, one, pose)}, worst case ±{worst}, standard deviation {deviation}"

@@ -13,10 +13,10 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.reached_region import Workspace
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import unit_of
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.view.plot import canvas, plot_style
+from compoundkin.view.plot.canvas import PointLabel
 from compoundkin.view.plot.plot_style import COLOURS, GREY, INK, Plot
-from compoundkin.view.plot.point_labels import PointLabel
 
 SIZE = (7.0, 6.2)
 # The region is shaded, the mechanism stands behind it.
@@ -62,8 +62,8 @@ def workspace(
             for k, curve in enumerate(curves):
                 axes.plot(curve.real, curve.imag, color=shade, label="" if k else f"{kind} boundary", zorder=4)
         unit = unit_of(found.mechanism.unit, "length")
-        canvas.plane(axes, f"x [{unit}]", f"y [{unit}]")
-        canvas.legend(axes)
+        canvas.plane_axes(axes, f"x [{unit}]", f"y [{unit}]")
+        canvas.draw_legend(axes)
         return canvas.finished(figure, labels)
 
 
@@ -116,7 +116,7 @@ def _mechanism(axes: Any, pose: Motion, point: str, labels: list[PointLabel]) ->
         axes.plot([z.real], [z.imag], marker="o", markersize=5, color=MECHANISM, zorder=2.5, linestyle="none",
                   markerfacecolor=MECHANISM if on_frame else "white")  # fmt: skip
     z = _place(pose, point)
-    canvas.dot(axes, [z.real], [z.imag], INK, 5.0)
+    canvas.draw_dots(axes, [z.real], [z.imag], INK, 5.0)
     labels.append(PointLabel(axes, z.real, z.imag, point, 1 + 1j, GREY))
 
 

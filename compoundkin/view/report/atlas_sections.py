@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.structure import Structure, roman
 from compoundkin.synthesis.alternatives import MOST_CHOICES, Alternative, alternatives
 from compoundkin.synthesis.chains import AssurGroup, Chain, assur_groups, chain_name, chains, inversions, trusses
@@ -22,7 +22,7 @@ _FEWEST = 3
 _MOST_MOBILITY = 3
 # Of more ways to the same end a reader needs the first only.
 LISTED = 4
-_NONE = "By count it has no freedom, so that there is nothing to drive."
+_NO_FREEDOM = "By count it has no freedom, so that there is nothing to drive."
 
 
 def atlas_report(
@@ -37,7 +37,7 @@ def atlas_report(
     >>> [section.key for section in report.sections], len(report.sections[0].blocks[1].rows)
     (['chains'], 2)
     """
-    _checked(links, mobility, with_groups)
+    _check_numbers(links, mobility, with_groups)
     sections = []
     if with_inversions or not (with_trusses or with_groups):
         sections.append(Section("chains", "", tuple(_chains(chains(links, mobility, patient=True), links, mobility))))
@@ -50,7 +50,7 @@ def atlas_report(
     return Report(f"Atlas: {links} links", tuple(sections), NOT_SOLVED)
 
 
-def _checked(links: int, mobility: int, with_groups: bool) -> None:
+def _check_numbers(links: int, mobility: int, with_groups: bool) -> None:
     if not _FEWEST - with_groups <= links <= MOST_MADE:
         what = f"there is no list of chains with {links} links"
         raise InvalidInput(Problem("--links", what, f"give {_FEWEST} to {MOST_MADE}; up to {MOST_LINKS} are at hand"))
@@ -139,7 +139,7 @@ def alternatives_section(structure: Structure) -> Section:
         found, about = alternatives(structure), "Every link as the frame, every pair as the driven one"
     except InvalidInput:
         found, about = _with_present_frame(structure), "The frame as it is, every pair as the driven one"
-    return Section("alternatives", "Alternatives", tuple(_blocks(structure, found, about)))
+    return Section("alternatives", "Alternatives", tuple(_alternative_blocks(structure, found, about)))
 
 
 def _with_present_frame(structure: Structure) -> tuple[Alternative, ...]:
@@ -149,10 +149,12 @@ def _with_present_frame(structure: Structure) -> tuple[Alternative, ...]:
         return ()
 
 
-def _blocks(structure: Structure, found: Sequence[Alternative], about: str) -> Iterator[Paragraph | TableBlock]:
+def _alternative_blocks(
+    structure: Structure, found: Sequence[Alternative], about: str
+) -> Iterator[Paragraph | TableBlock]:
     if not found:
         many = f"There are more than {MOST_CHOICES} choices: too many for a table."
-        yield Paragraph(_NONE if structure.mobility.freedoms < 1 else many)
+        yield Paragraph(_NO_FREEDOM if structure.mobility.freedoms < 1 else many)
         return
     total = sum(choice.alike for choice in found)
     text = f"{about}: {counted(total, 'choice')}, {len(found)} of them different."
@@ -161,7 +163,7 @@ def _blocks(structure: Structure, found: Sequence[Alternative], about: str) -> I
     columns = (Column("frame"), Column("driven"), Column("name"), Column("groups"), Column("class"),
                Column("configurations", style="each"), Column("closed form"),
                Column("alike", style="each"))  # fmt: skip
-    yield TableBlock(columns, tuple(_choice(choice) for choice in found))
+    yield TableBlock(columns, tuple(_choice_row(choice) for choice in found))
 
 
 def _sentences(found: Sequence[Alternative]) -> Iterator[str]:
@@ -173,20 +175,20 @@ def _sentences(found: Sequence[Alternative]) -> Iterator[str]:
     dyadic = [choice for choice in found if choice.dyadic]
     drives = ["; ".join(map(str, choice.drivers)) for choice in dyadic if choice.frame == FRAME]
     if drives:
-        yield f"Drive {_or(drives)} instead and the mechanism becomes dyadic."
+        yield f"Drive {_joined_by_or(drives)} instead and the mechanism becomes dyadic."
     elif dyadic:
         ways = [f"fix {choice.frame} and drive {'; '.join(map(str, choice.drivers))}" for choice in dyadic]
-        yield f"With this frame no driver makes the mechanism dyadic, but {_or(ways)} and it becomes so."
+        yield f"With this frame no driver makes the mechanism dyadic, but {_joined_by_or(ways)} and it becomes so."
     else:
         yield "No choice makes the mechanism dyadic."
 
 
-def _or(texts: Sequence[str]) -> str:
+def _joined_by_or(texts: Sequence[str]) -> str:
     more = f" (or {len(texts) - LISTED} others)" if len(texts) > LISTED else ""
     return ", or ".join(texts[:LISTED]) + more
 
 
-def _choice(choice: Alternative) -> tuple[str | int | None, ...]:
+def _choice_row(choice: Alternative) -> tuple[str | int | None, ...]:
     drivers = "; ".join(map(str, choice.drivers)) + (" *" if choice.present else "")
     if choice.faults:
         return choice.frame, drivers, choice.title, "not determined", "-", None, "-", choice.alike

@@ -16,9 +16,9 @@ from compoundkin.analysis.centres.derivation import derive
 from compoundkin.base.arrays import degrees
 from compoundkin.model.attributes import unit_of
 from compoundkin.structure import Structure
+from compoundkin.view.report.pose_sample import ROUNDING, Sample
 from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
-from compoundkin.view.report.shown_poses import ROUNDING, Sample
-from compoundkin.view.report.wording import counted, listed, number
+from compoundkin.view.report.wording import counted, listed, number_text
 
 # A direction this close to 0 or 180 degrees is rounding.
 NEARLY = 1e-9
@@ -78,10 +78,14 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
     Raises NotDetermined where nothing moves, InvalidInput for a motion of order 0.
     """
     shown = CentresSample(sample)
-    primary = Paragraph("Each is given by a pair."), _table(shown, shown.primary, "pair")
-    secondary = (Paragraph(_rule(shown)), _table(shown, shown.secondary, "lines")) if shown.secondary else ()
+    primary = Paragraph("Each is given by a pair."), _centres_table(shown, shown.primary, "pair")
+    secondary = (
+        (Paragraph(_kennedy_sentence(shown)), _centres_table(shown, shown.secondary, "lines"))
+        if shown.secondary
+        else ()
+    )
     return (
-        Section("centres", "Instant centres", (Paragraph(_place(sample)), *_count(shown))),
+        Section("centres", "Instant centres", (Paragraph(_pose_text(sample)), *_count_blocks(shown))),
         Section("primary", "Primary centres", primary),
         *([Section("secondary", "Secondary centres", secondary)] if secondary else []),
         _velocities(shown),
@@ -94,8 +98,8 @@ def centre_blocks(found: Centres) -> tuple[Block, ...]:
     if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
         return derivation_section(found.motion.structure).blocks
     shown = CentresSample(sample, found)
-    tables = _table(shown, shown.primary, "pair"), _table(shown, shown.secondary, "lines")
-    return (Paragraph(_place(sample)), *_count(shown), *(table for table in tables if table.rows))
+    tables = _centres_table(shown, shown.primary, "pair"), _centres_table(shown, shown.secondary, "lines")
+    return (Paragraph(_pose_text(sample)), *_count_blocks(shown), *(table for table in tables if table.rows))
 
 
 def derivation_section(structure: Structure) -> Section:
@@ -114,33 +118,36 @@ def _derived(step: DerivationStep) -> str:
     return _two_lines(step.text) if step.kind == "crossing" else step.text
 
 
-def _place(sample: Sample) -> str:
-    at = [f"{d.name} {number(float(d.values[0]))}{f' {d.unit}' if d.unit != 'length' else ''}" for d in sample.drivers]
+def _pose_text(sample: Sample) -> str:
+    at = [
+        f"{d.name} {number_text(float(d.values[0]))}{f' {d.unit}' if d.unit != 'length' else ''}"
+        for d in sample.drivers
+    ]
     unit = sample.motion.mechanism.unit or "the unit of the file"
     return f"At {listed(at)}. Coordinates in {unit}, in the frame's axes." if at else f"Coordinates in {unit}."
 
 
-def _rule(shown: CentresSample) -> str:
+def _kennedy_sentence(shown: CentresSample) -> str:
     text = "Three centres of three links lie on a line (Aronhold-Kennedy): each is where two such lines cross."
     if {"trial", "rates"} & set(shown.kinds.values()):
         text += " Where lines are lacking, trial positions or the drivers' rates help; the derivation has more."
     return text
 
 
-def _count(shown: CentresSample) -> Iterator[Block]:
+def _count_blocks(shown: CentresSample) -> Iterator[Block]:
     n, primary, secondary = len(shown.sample.motion.mechanism.links), len(shown.primary), len(shown.secondary)
     yield FormulaBlock(f"N = n (n - 1) / 2 = {n} * {n - 1} / 2 = {len(shown.centres)}")
     yield Paragraph(f"{primary} of the {counted(len(shown.centres), 'centre')} are primary, {secondary} secondary.")
 
 
-def _table(shown: CentresSample, found: Sequence[Centre], how: str) -> TableBlock:
+def _centres_table(shown: CentresSample, found: Sequence[Centre], how: str) -> TableBlock:
     """A row for each centre; directions and conditioning only where there is something to say."""
     unit = unit_of(shown.sample.motion.mechanism.unit, "length")
     floor = ROUNDING * shown.sample.motion.size
     columns = [Column("centre"), Column("x", unit, "each", floor), Column("y", unit, "each", floor, follows=True)]
     values: list[Iterable[Cell]] = [[_name(centre.links) for centre in found], *_coordinates(shown, found)]
     directions = [_direction(shown, centre) for centre in found]
-    poor = [_poor(shown, centre) for centre in found]
+    poor = [_low_conditioning(shown, centre) for centre in found]
     if any(value is not None for value in directions):
         columns.append(Column("at infinity, direction", "deg", "each", NEARLY))
         values.append(directions)
@@ -165,7 +172,7 @@ def _direction(shown: CentresSample, centre: Centre) -> float | None:
     return 0.0 if 180.0 - angle < NEARLY else angle
 
 
-def _poor(shown: CentresSample, centre: Centre) -> float | None:
+def _low_conditioning(shown: CentresSample, centre: Centre) -> float | None:
     value = float(shown.of(centre.conditioning))
     return value if shown.of(centre.found) and value < POOR else None
 
@@ -189,7 +196,7 @@ def _velocities(shown: CentresSample) -> Section:
     motion = shown.sample.motion
     text, unit, scale = _reference(shown)
     rows = []
-    thought = motion.mechanism.led_links
+    thought = motion.mechanism.auxiliary_links
     for name in (name for name in motion.mechanism.links if name not in thought):
         by_centres = float(shown.of(shown.centres.velocities.angular_velocity(name))) / scale
         solved = float(shown.of(motion.links[name].angular_velocity)) / scale

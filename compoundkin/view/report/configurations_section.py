@@ -16,7 +16,7 @@ from compoundkin.kinematics.solution import first_configuration
 from compoundkin.structure import Group, Structure
 from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.wording import counted, listed, number
+from compoundkin.view.report.wording import counted, listed, number_text
 
 # A reader needs no more rows than this of a table; the JSON report has all.
 MOST_ROWS = 40
@@ -50,12 +50,12 @@ def configurations_section(found: Configurations) -> Section:
     )
     at = {name: float(first_entry(value)) for name, value in found.values.items()}
     angles = "The angles are those of the links from the frame's x axis."
-    text = f"{_drivers(structure, at)}: {found.count_in_words} {angles}"
+    text = f"{_drivers_text(structure, at)}: {found.count_in_words} {angles}"
     curve = [Paragraph(CURVE.format(listed(found.curve.links)))] if found.curve else []
     return Section("configurations", "Configurations", (Paragraph(text), *curve, _table(columns, rows, keys=2)))
 
 
-def _drivers(structure: Structure, values: Mapping[str, float]) -> str:
+def _drivers_text(structure: Structure, values: Mapping[str, float]) -> str:
     shown = (
         f"{name} = {_with_unit(structure.driven_angles.get(name, False), value)}" for name, value in values.items()
     )
@@ -63,12 +63,12 @@ def _drivers(structure: Structure, values: Mapping[str, float]) -> str:
 
 
 def _with_unit(angle: bool, value: float) -> str:
-    return f"{number(float(degrees(value)))} degrees" if angle else number(value)
+    return f"{number_text(float(degrees(value)))} degrees" if angle else number_text(value)
 
 
 def circuits_report(found: Circuits) -> Report:
     """Report circuits, branches, limit positions, change points and toggle positions of one driver."""
-    page = _Page(found)
+    page = _CircuitSections(found)
     sections = (page.circuits(), page.branches(), *page.limits(), *page.changes(), *page.toggles())
     return Report(found.structure.mechanism.title, sections, NOT_SOLVED, found.structure)
 
@@ -81,7 +81,7 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
     With several drivers the first one is moved, the others stay at their first values.
     """
     structure, drives = motion.structure, motion.mechanism.drives
-    modes = prod(solver.modes or _modes(solver.group) for solver in motion.solving_order.solvers)
+    modes = prod(solver.modes or _estimated_modes(solver.group) for solver in motion.solving_order.solvers)
     if not drives or motion.inputs.designs > 1 or modes > MOST_MODES:
         return ()
     first = {name: float(first_entry(values[0])) for name, values in motion.inputs.drives.items()}
@@ -90,11 +90,11 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
         found = circuits(structure, drives[0].name, others, design=design)
     except CompoundkinError:
         return ()
-    page = _Page(replace(found, start=_begun(found, motion, design)))
+    page = _CircuitSections(replace(found, start=_start_on_circuits(found, motion, design)))
     return page.circuits(), *page.limits()
 
 
-def _begun(found: Circuits, motion: Motion, design: int) -> CircuitPlace | None:
+def _start_on_circuits(found: Circuits, motion: Motion, design: int) -> CircuitPlace | None:
     """Where on the circuits the motion begins, in whatever modes it was solved."""
     first = first_configuration(motion, design)
     try:
@@ -103,13 +103,13 @@ def _begun(found: Circuits, motion: Motion, design: int) -> CircuitPlace | None:
         return None
 
 
-def _modes(group: Group) -> int:
+def _estimated_modes(group: Group) -> int:
     """The modes of a group without signs, for an estimate of the work: six of a triad of pins, many of any other."""
     pins = all(pair.is_simple and pair.free_is_angle for pair in (*group.inner, *group.outer))
     return TRIAD_MODES if pins and len(group.bodies) <= TRIAD_BODIES else MOST_MODES + 1
 
 
-class _Page:
+class _CircuitSections:
     """The sections of a report on circuits."""
 
     def __init__(self, found: Circuits) -> None:
@@ -129,7 +129,7 @@ class _Page:
     def _said(self) -> Iterator[str]:
         found = self.found
         branches = f"{len(found.branches)} {'branch' if len(found.branches) == 1 else 'branches'}"
-        others = f", with {_drivers(found.structure, found.fixed)}" if found.fixed else ""
+        others = f", with {_drivers_text(found.structure, found.fixed)}" if found.fixed else ""
         limits = counted(len(found.limits), "limit position")
         yield f"{counted(len(found.circuits), 'circuit')}, {branches}, {limits} of the driver {found.driver}{others}."
         if found.consistent:
@@ -146,7 +146,7 @@ class _Page:
         return f"from {self._number(circuit.low)} to {self._number(circuit.high)}{unit}"
 
     def _number(self, value: float) -> str:
-        return number(self._in_unit(value))
+        return number_text(self._in_unit(value))
 
     def _in_unit(self, value: float) -> float:
         return float(degrees(value)) if self.angle else value

@@ -11,18 +11,18 @@ from compoundkin.analysis.interference.interference_of_motion import interferenc
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
+from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
-from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.wording import counted, joined, listed, number
+from compoundkin.view.report.wording import counted, joined_links, listed, number_text
 
 # So many clearances are listed, the least first.
-MOST = 12
+MOST_CLEARANCES = 12
 # Of more designs than these the first ones are told.
 MOST_DESIGNS = 3
 INTERFERENCE = "interference"
 
 
-def found_interference(motion: Motion) -> Interference | InvalidInput | None:
+def interference_or_error(motion: Motion) -> Interference | InvalidInput | None:
     """Return what touches, None where there are no outlines.
 
     Where they cannot be compared it is the reason.
@@ -46,7 +46,7 @@ def interference_sections(sample: Sample, found: Interference | InvalidInput | N
     return (Section(INTERFERENCE, "Interference", blocks),)
 
 
-def compared(outcome: Outcome, found: Interference | InvalidInput | None) -> Outcome:
+def with_interference(outcome: Outcome, found: Interference | InvalidInput | None) -> Outcome:
     """Return what a report comes to, with what touches."""
     if not isinstance(found, Interference):
         return outcome
@@ -66,12 +66,12 @@ def interference_blocks(sample: Sample, found: Interference) -> Iterator[Block]:
         yield Paragraph(f"{counted(found.missing, 'pose')} that cannot be assembled are left out.")
     yield from (Alert(f"{touch_sentence(sample, one)}.") for one in touches)
     if clearances:
-        yield TableBlock(_columns(sample), tuple(_row(sample, one) for one in clearances[:MOST]))
-    if len(clearances) > MOST:
-        yield Paragraph(f"... and {counted(len(clearances) - MOST, 'pair')} of links farther apart.")
+        yield TableBlock(_columns(sample), tuple(_row(sample, one) for one in clearances[:MOST_CLEARANCES]))
+    if len(clearances) > MOST_CLEARANCES:
+        yield Paragraph(f"... and {counted(len(clearances) - MOST_CLEARANCES, 'pair')} of links farther apart.")
     if found.neighbours:
-        names = ", ".join(joined(two) for two in found.neighbours[:MOST])
-        more = f", {len(found.neighbours) - MOST} more" if len(found.neighbours) > MOST else ""
+        names = ", ".join(joined_links(two) for two in found.neighbours[:MOST_CLEARANCES])
+        more = f", {len(found.neighbours) - MOST_CLEARANCES} more" if len(found.neighbours) > MOST_CLEARANCES else ""
         yield Paragraph(f"Neighbours whose shapes about their joint are not compared: {names}{more}.")
 
 
@@ -91,19 +91,21 @@ def touch_sentences(motion: Motion, found: Interference | InvalidInput | None) -
 def touch_sentence(sample: Sample, touch: LinkTouch) -> str:
     """Return one touch in words. "crank and frame touch from crank 75.5225 deg to 104.478 deg, first at (0, 7)"."""
     layers = f"{'layer' if len(touch.layers) == 1 else 'layers'} {listed(map(str, touch.layers))}"
-    where = f"first at ({number(touch.at.real)}, {number(touch.at.imag)})"
+    where = f"first at ({number_text(touch.at.real)}, {number_text(touch.at.imag)})"
     two = f"{touch.one} and {touch.other} on {layers}"
     if sample.poses == 1:
-        return f"{two} touch, at ({number(touch.at.real)}, {number(touch.at.imag)})"
-    spans = [f"{one.name} {_shown(one, touch.begin)} to {_shown(one, touch.end)}" for one in sample.varying]
+        return f"{two} touch, at ({number_text(touch.at.real)}, {number_text(touch.at.imag)})"
+    spans = [
+        f"{one.name} {_driver_value(one, touch.begin)} to {_driver_value(one, touch.end)}" for one in sample.varying
+    ]
     if touch.times is not None:
-        spans = [f"{number(touch.times[0])} s to {number(touch.times[1])} s", *spans]
+        spans = [f"{number_text(touch.times[0])} s to {number_text(touch.times[1])} s", *spans]
     if touch.open_begin and touch.open_end and touch.first <= touch.last:
         return f"{two} touch all the way from {'; '.join(spans)}"
     return f"{two} touch from {'; '.join(spans)}, {where}"
 
 
-def _shown(driver: Quantity, values: Mapping[str, float]) -> str:
+def _driver_value(driver: Quantity, values: Mapping[str, float]) -> str:
     """Return a driver's value with its unit."""
     value = degrees(values[driver.name]) if driver.is_angle else values[driver.name]
     return f"{value + 0.0:.9g} {driver.unit}".rstrip()

@@ -1,4 +1,4 @@
-"""The report of a motion, and those on its checks and its instant centres alone."""
+"""Reports of a motion, of its checks or its instant centres alone, and of a simulation."""
 
 from __future__ import annotations
 
@@ -10,30 +10,40 @@ import numpy as np
 from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
-from compoundkin.base.given_numbers import hold_design
+from compoundkin.base.arguments import check_design
+from compoundkin.base.arrays import degrees
 from compoundkin.dynamics.loaded_motions import loaded_forces
+from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
+from compoundkin.model.attributes import DEGREES, PER_SECOND, unit_of
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
-from compoundkin.view.report.findings_table import finding_sentence, findings_table, with_forces
 from compoundkin.view.report.forces_section import force_checks_sections, forces_section
-from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.interference_section import (
-    compared,
-    found_interference,
+    interference_or_error,
     interference_sections,
     touch_sentences,
+    with_interference,
 )
 from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
 from compoundkin.view.report.performance_section import performance_section
-from compoundkin.view.report.published_section import Comparison, comparisons, published_section
-from compoundkin.view.report.report_data import Alert, Outcome, Paragraph, Section
+from compoundkin.view.report.pose_sample import Sample
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.structure_sections import about_section, counted_sections
-from compoundkin.view.report.wording import counted
+from compoundkin.view.report.verification_sections import (
+    Comparison,
+    comparisons,
+    finding_sentence,
+    findings_table,
+    gaps_of,
+    gaps_section,
+    published_section,
+    with_force_findings,
+)
+from compoundkin.view.report.wording import brief, counted, number_text
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
@@ -62,10 +72,10 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
-    forces, touching = loaded_forces(motion), found_interference(motion)
-    outcome = compared(outcome_of(motion, with_forces(check, forces), published), touching)
+    forces, touching = loaded_forces(motion), interference_or_error(motion)
+    outcome = with_interference(outcome_of(motion, with_force_findings(check, forces), published), touching)
     sections = (
-        about_section(structure, motion_in_short(outcome), told),
+        about_section(structure, motion_summary(outcome), told),
         *counted_sections(structure, motion=motion),
         solving_section(structure, motion),
         drivers_section(structure, sample),
@@ -97,12 +107,12 @@ def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] =
     )
 
 
-def motion_in_short(outcome: Outcome) -> str:
+def motion_summary(outcome: Outcome) -> str:
     """Return the one line that says whether all is well."""
-    return f"{'; '.join(_results(outcome))}."
+    return f"{'; '.join(_outcome_clauses(outcome))}."
 
 
-def _results(outcome: Outcome) -> Iterator[str]:
+def _outcome_clauses(outcome: Outcome) -> Iterator[str]:
     if outcome.assembled < outcome.poses:
         yield f"{outcome.assembled:,} of {counted(outcome.poses, 'pose')} assembled"
     else:
@@ -123,31 +133,98 @@ def check_report(motion: Motion) -> Report:
     It also says where its first design is not assembled.
     """
     sample, check, forces = Sample(motion), verify(motion), loaded_forces(motion)
-    both = with_forces(check, forces)
-    touching = found_interference(motion)
-    outcome = compared(outcome_of(motion, both), touching)
+    both = with_force_findings(check, forces)
+    touching = interference_or_error(motion)
+    outcome = with_interference(outcome_of(motion, both), touching)
     alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in both.findings if not f.passed)
     alerts += tuple(Alert(f"{sentence}.") for sentence in touch_sentences(motion, touching))
     failed = (Section("failed", "What failed", alerts),) if alerts else ()
-    about = Section("about", "", (Paragraph(motion_in_short(outcome)),))
+    about = Section("about", "", (Paragraph(motion_summary(outcome)),))
     of_forces = force_checks_sections(sample, forces)
     outlines = interference_sections(sample, touching)
-    sections = (about, *_missing(sample), checks_section(sample, check), *of_forces, *outlines, *failed)
+    sections = (about, *_gap_sections(sample), checks_section(sample, check), *of_forces, *outlines, *failed)
     return Report(motion.mechanism.title, sections, outcome, motion)
 
 
 def centres_report(motion: Motion, design: int = 0) -> Report:
     """Report a design's instant centres at the first pose. It says why where the pose cannot be assembled."""
-    hold_design(design, motion.inputs.designs)
+    check_design(design, motion.inputs.designs)
     motion = motion_of_design(motion, design)
     sample = Sample(motion)
     closed = bool(sample.assembled[0])
     # in a report on the whole motion the section of its own gaps has that key
-    missing = tuple(replace(section, key="centres") for section in _missing(sample))
+    missing = tuple(replace(section, key="centres") for section in _gap_sections(sample))
     sections = centres_sections(sample) if closed else missing
     return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed), 0, 0, 0, 0), motion)
 
 
-def _missing(sample: Sample) -> tuple[Section, ...]:
+def _gap_sections(sample: Sample) -> tuple[Section, ...]:
     missing = gaps_of(sample)
     return (gaps_section(sample, missing),) if missing else ()
+
+
+# An energy below this part of the greatest is rounding.
+ENERGY_ROUNDING = 1e-12
+
+
+def simulation_report(found: Simulation) -> Report:
+    """Report a simulation."""
+    motion = found.motion
+    poses, closed = motion.failed.size, np.count_nonzero(motion.failed == 0)
+    outcome = Outcome(True, int(poses), int(closed), 0, 0, 0, 0)
+    return Report(motion.mechanism.title, (_simulation_section(found),), outcome, motion)
+
+
+def whole_simulation_report(found: Simulation, outputs: Sequence[str] = ()) -> Report:
+    """Report a simulation and all there is to say of its motion."""
+    whole = report_of_motion(found.motion, outputs)
+    about, *others = whole.sections
+    return replace(whole, sections=(about, _simulation_section(found), *others))
+
+
+def _simulation_section(found: Simulation) -> Section:
+    return Section("simulation", "Simulation", tuple(_simulation_blocks(found)))
+
+
+def _simulation_blocks(found: Simulation) -> Iterator[Block]:
+    units = found.motion.mechanism.units
+    times = np.ravel(found.times)
+    told = f"{number_text(float(times[-1]))} s in {counted(found.steps, 'step')}, each to {brief(found.tolerance)}"
+    energy = f"the energy balance is off by at most {brief(float(found.energy.worst))} of its peak"
+    unit = "" if units is None else f" ({number_text(float(found.energy.peak))} {units.moment})"
+    yield Paragraph(f"Free under masses and loads for {told}; {energy}{unit}.")
+    yield Paragraph("Drivers, whose coordinates were found:")
+    yield _drivers_table(found)
+    yield Paragraph("Energies; the work is that of loads without a potential and of drivers that are prescribed:")
+    yield _energies_table(found)
+    if found.events:
+        yield Paragraph("What happened:")
+        rows = tuple((one.time, one.name, one.text, "it ends" if one.stops else "") for one in found.events)
+        yield TableBlock((Column("time", "s", "each"), Column("what"), Column("in words"), Column("then")), rows)
+
+
+def _drivers_table(found: Simulation) -> TableBlock:
+    """Where each driver begins and ends, how far it goes, how fast."""
+    motion, rows = found.motion, list[tuple[Cell, ...]]()
+    for name, drive in motion.drives.items():
+        value, rate = np.ravel(drive.value), np.ravel(drive.rate)
+        unit = DEGREES if drive.is_angle else unit_of(motion.mechanism.unit, "length")
+        shown, fast = (degrees(value), degrees(rate)) if drive.is_angle else (value, rate)
+        ends = shown[0], shown[-1], np.nanmin(shown), np.nanmax(shown), np.nanmax(np.abs(fast))
+        rows.append((name, unit, *map(float, ends), f"{unit}{PER_SECOND[1]}"))
+    numbers = (Column(word, style="each") for word in ("begins", "ends", "least", "greatest", "fastest"))
+    return TableBlock((Column("driver"), Column("unit"), *numbers, Column("speed in")), tuple(rows), keys=1)
+
+
+def _energies_table(found: Simulation) -> TableBlock:
+    """Each energy at the beginning and the end, and its extremes."""
+    energy, units = found.energy, found.motion.mechanism.units
+    unit = "" if units is None else units.moment
+    named = {"kinetic": energy.kinetic, "potential": energy.potential, "work": energy.work}
+    rows: list[tuple[Cell, ...]]
+    rows = [(name, unit, *map(float, (own[0], own[-1], own.min(), own.max()))) for name, own in named.items()]
+    numbers = (
+        Column(word, style="each", floor=ENERGY_ROUNDING * energy.peak)
+        for word in ("at first", "at last", "least", "greatest")
+    )
+    return TableBlock((Column("energy"), Column("unit"), *numbers), tuple(rows), keys=1)

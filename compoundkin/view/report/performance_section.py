@@ -1,37 +1,84 @@
-"""The section Performance: strokes, dead points, time ratios, transmission, advantage, paths and types of linkages."""
+"""Performance: strokes, dead points, time ratios, transmission, advantage, dwells, coupler curves, linkage types."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
-from compoundkin.analysis.characteristics.curve_features import PathFeatures, simple_shape
-from compoundkin.analysis.characteristics.output_figures import OutputFigures
-from compoundkin.model.attributes import DEGREES, STROKE
-from compoundkin.view.report.range_rows import (
-    at_of,
-    first,
-    number_of,
-    place_column,
-    ranges_blocks,
-    shown,
-    unit,
+from compoundkin.analysis.characteristics.characteristics_of_motion import (
+    DWELL,
+    STRAIGHT,
+    Characteristics,
+    characteristics,
 )
-from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, TableBlock
-from compoundkin.view.report.shown_poses import Sample
+from compoundkin.analysis.characteristics.curve_features import PathFeatures, simple_shape
+from compoundkin.analysis.characteristics.figure import PlacedFigure, Range
+from compoundkin.analysis.characteristics.output_figures import OutputFigures
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
+from compoundkin.base.arguments import check_design
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.one_design import motion_of_design
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.model.attributes import (
+    ADVANTAGE,
+    DEGREES,
+    LENGTH,
+    RADIANS,
+    STROKE,
+    TIME,
+    TRANSMISSION_ANGLE,
+    TRANSMISSION_INDEX,
+    VELOCITY_RATIO,
+)
+from compoundkin.view.report.pose_sample import Sample
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_forms import Report
+from compoundkin.view.report.verification_sections import gaps_of, gaps_section
 from compoundkin.view.report.wording import counted, listed
-from compoundkin.view.report.wording import number as written
+from compoundkin.view.report.wording import number_text as written
+
+
+def characteristics_report(
+    motion: Motion,
+    outputs: Sequence[str] = (),
+    design: int = 0,
+    dwell: float | None = None,
+    straight: float | None = None,
+) -> Report:
+    """Report the figures of a motion, and where it is not assembled."""
+    outputs = tuple(outputs)
+    check_design(design, motion.inputs.designs)
+    motion = motion_of_design(motion, design)
+    sample, chosen = Sample(motion), chosen_outputs(motion, outputs)
+    named = bool(outputs or motion.mechanism.outputs)
+    figures = characteristics(
+        motion, chosen, 0, DWELL if dwell is None else dwell, STRAIGHT if straight is None else straight
+    )
+    section = performance_section(sample, figures, (), named)
+    found = gaps_of(sample)
+    missing = (gaps_section(sample, found),) if found else ()
+    closed = int(np.count_nonzero(motion.failed == 0))
+    outcome = Outcome(True, int(motion.failed.size), closed, 0, 0, 0, 0)
+    return Report(motion.mechanism.title, (*missing, section), outcome, motion, outputs)
+
 
 # Dwells are told that take at least this part of the motion: a slider-crank stays at its dead points for less.
 LONG = 0.125
+
+
 # A straight stretch, or an arc, is told that is at least this part of the path's extent.
 STRETCH = 0.25
+
+
 # An arc of a greater radius, by the path's extent, is told as straight.
 FLAT = 10.0
+
+
 # What rows of dead points are, as figures of the motion.
 DEAD = "dead"
+
+
 # So many loops of four links are told one by one.
 MOST_LOOPS = 12
 
@@ -43,14 +90,14 @@ def performance_section(
 
     Extremes of quantities that are told elsewhere are left out. Warnings are of outputs that somebody named.
     """
-    return Section("performance", "Performance", tuple(_blocks(sample, found, told, named)))
+    return Section("performance", "Performance", tuple(_performance_blocks(sample, found, told, named)))
 
 
-def _blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: bool) -> Iterator[Block]:
+def _performance_blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: bool) -> Iterator[Block]:
     yield from (Paragraph(note) for note in found.notes)
     yield from (Alert(f"{warning}.") for warning in found.warnings if named)
     yield from _strokes(found)
-    yield from _pieces(found)
+    yield from _piece_blocks(found)
     yield from _dead_points(sample, found)
     yield from ranges_blocks(sample, found, told)
     yield from _dwells(found)
@@ -66,38 +113,43 @@ def _strokes(found: Characteristics) -> Iterator[Block]:
         if not one.output.is_point and one.stroke is not None:
             back = one.quick_return
             ways = (back.forth, back.back, back.time_ratio, back.imbalance) if back else (None,) * 4
-            rows.append((one.name, unit(one.stroke), *map(number_of, (one.stroke, *ways))))
+            rows.append((one.name, display_unit(one.stroke), *map(optional_value, (one.stroke, *ways))))
             figures.append((STROKE, *one.output.names[:2]))
     if not rows:
         return
-    way = next((unit(one.quick_return.forth) for one in found.outputs if one.quick_return), "")
+    way = next((display_unit(one.quick_return.forth) for one in found.outputs if one.quick_return), "")
     columns = Column("output"), Column("unit"), *(Column(name, unit, "each") for name, unit in
                (("stroke", ""), ("forth", way), ("back", way), ("time ratio", ""), ("imbalance", DEGREES)))  # fmt: skip
     yield TableBlock(columns, tuple(rows), figures=tuple(figures))
 
 
-def _pieces(found: Characteristics) -> Iterator[Block]:
+def _piece_blocks(found: Characteristics) -> Iterator[Block]:
     """How far each output goes in each part of the motion that can be assembled."""
     for one in found.outputs:
         for piece in one.pieces if len(one.pieces) > 1 else ():
             (name, begin), end = next(iter(piece.begin.items())), next(iter(piece.end.values()))
-            way = f"from {name} {written(shown(begin))} to {written(shown(end))} {unit(end)}".rstrip()
-            ends = f"{written(shown(piece.least))} to {written(shown(piece.greatest))} {unit(piece.least)}".rstrip()
-            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {written(shown(piece.stroke))}.")
+            way = f"from {name} {written(display_value(begin))} to {written(display_value(end))} {display_unit(end)}".rstrip()
+            ends = f"{written(display_value(piece.least))} to {written(display_value(piece.greatest))} {display_unit(piece.least)}".rstrip()
+            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {written(display_value(piece.stroke))}.")
 
 
 def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
     """Where outputs turn back, and where the driver cannot go on."""
     place = sample.places[0]
     points = [(one, point) for one in found.outputs for point in one.dead_points]
-    rows = [(one.name, unit(point.value), number_of(point.value), at_of(point)) for one, point in points]
+    rows = [
+        (one.name, display_unit(point.value), optional_value(point.value), place_of(point)) for one, point in points
+    ]
     if rows:
         columns = Column("dead point of"), Column("unit"), Column("value", style="each"), place_column(sample, "at")
         figures = tuple((DEAD, *one.output.names[:2]) for one, _ in points)
         yield TableBlock(columns, tuple(rows), figures=figures)
     for limit in found.dead_points:
-        told = f"{place.name} {written(first(limit.at))} {place.unit}".rstrip()
-        values = [f"{name} {written(shown(value))} {unit(value)}".rstrip() for name, value in limit.values.items()]
+        told = f"{place.name} {written(first_value(limit.at))} {place.unit}".rstrip()
+        values = [
+            f"{name} {written(display_value(value))} {display_unit(value)}".rstrip()
+            for name, value in limit.values.items()
+        ]
         reason = f", where {limit.reason}" if limit.reason else ""
         yield Paragraph(f"A dead point of the driver is at {told}{reason}{': ' + listed(values) if values else ''}.")
 
@@ -109,9 +161,9 @@ def _dwells(found: Characteristics) -> Iterator[Block]:
             far = LONG * (one.motion.inputs.poses - 1)
             for dwell in (dwell for dwell in one.dwells if dwell.poses >= far):
                 (name, begin), (_, end) = next(iter(dwell.begin.items())), next(iter(dwell.end.items()))
-                way = f"from {name} {written(shown(begin))} to {written(shown(end))} {unit(begin)}".rstrip()
-                span = f"{written(shown(dwell.span))} {unit(dwell.span)}".rstrip()
-                value = f"{written(shown(dwell.value))} {unit(dwell.value)}".rstrip()
+                way = f"from {name} {written(display_value(begin))} to {written(display_value(end))} {display_unit(begin)}".rstrip()
+                span = f"{written(display_value(dwell.span))} {display_unit(dwell.span)}".rstrip()
+                value = f"{written(display_value(dwell.value))} {display_unit(dwell.value)}".rstrip()
                 yield Paragraph(f"{one.name} dwells at {value} within {one.dwell:.3g} of its stroke {way}, for {span}.")
 
 
@@ -159,3 +211,113 @@ def _full_turns(found: Characteristics) -> Iterator[Block]:
     if 0 < len(turning) <= MOST_LOOPS:
         others = "" if len(turning) == len(found.full_turns) else "; no other link"
         yield Paragraph(f"Full turns over the cycle: {listed(turning)}{others}.")
+
+
+NO_LIMIT = "no limit"
+
+
+# A range of a quantity by its name, as a figure of the motion: what differs by less than rounding of places is one.
+VARIED = "varied"
+
+
+# Places are found to about this part of the greatest: nearer to zero they are shown as zero.
+NEARLY = 1e-8
+
+
+# What is below this part of the other end is zero, and ends nearer than this are one: lengths of vectors that pass
+# zero are known to so much, as their places are.
+FLOOR = 1e-8
+
+
+def ranges_blocks(sample: Sample, found: Characteristics, told: Sequence[str]) -> Iterator[Block]:
+    """Yield rates, transmission, Coriolis accelerations and ratios, from the least to the greatest.
+
+    Those that are told elsewhere are left out.
+    """
+    known = {*told, *(f"{name}.{LENGTH}" for name in told)}
+    named = [(name, one) for name, one in _named_ranges(found) if name not in known]
+    rows, figures = [_range_row(name, one) for name, one in named], [_figure_key(found, name) for name, _ in named]
+    rates = _output_rates(found)
+    for ratio in found.advantages:
+        least, greatest = ratio.least, ratio.greatest
+        most = (NO_LIMIT, None) if greatest is None else (abs(greatest.number), place_of(greatest))
+        rows.append((f"|{ratio.owner}.{ADVANTAGE}|", least.value.unit, abs(least.number), place_of(least), *most))
+        figures.append((ADVANTAGE, rates.get(ratio.owner, "")))
+    if not rows:
+        return
+    at = place_column(sample, "at")
+    ends = Column("least", style="each"), at, Column("greatest", style="each"), at
+    yield TableBlock((Column("quantity"), Column("unit"), *ends), tuple(rows), keys=1, figures=tuple(figures))
+
+
+def _output_rates(found: Characteristics) -> dict[str, str]:
+    """The rates of outputs by their owners."""
+    return {one.output.owner: one.output.rate for one in found.outputs}
+
+
+def _figure_key(found: Characteristics, name: str) -> tuple[str, ...]:
+    """What a range is of, and how it follows from that."""
+    owner, _, word = name.rpartition(".")
+    if word == TRANSMISSION_ANGLE:
+        return TRANSMISSION_ANGLE, f"{owner}.{TRANSMISSION_INDEX}"
+    if word == VELOCITY_RATIO:
+        return VELOCITY_RATIO, _output_rates(found).get(owner, "")
+    return VARIED, name
+
+
+def _named_ranges(found: Characteristics) -> Iterator[tuple[str, Range]]:
+    for one in found.outputs:
+        for name in (one.output.rate, one.output.second):
+            if name in one.ranges:
+                yield name, one.ranges[name]
+    yield from ((one.name, one.range) for one in found.groups)
+    yield from found.pressure_angles.items()
+    yield from found.coriolis.items()
+    yield from ((f"{one.owner}.{VELOCITY_RATIO}", one.ratio) for one in found.advantages)
+
+
+def _range_row(name: str, one: Range) -> tuple[Cell, ...]:
+    least, greatest = one.least, one.greatest
+    size = max(abs(least.number), abs(greatest.number))
+    floor = FLOOR * size if np.isfinite(size) else 0.0
+    far = greatest.number - least.number
+    if one.is_constant or far <= floor:
+        value = 0.0 if far > floor else optional_value(least.value)  # what varies by rounding alone is zero
+        return name, display_unit(least.value), value, "always", value, "always"
+    low, high = (0.0 if abs(end.number) <= floor else optional_value(end.value) for end in (least, greatest))
+    return name, display_unit(least.value), low, place_of(least), high, place_of(greatest)
+
+
+def place_column(sample: Sample, word: str) -> Column:
+    """Return the column of places: times, values of the driver, or numbers of poses."""
+    place, values = sample.places
+    floor = NEARLY * float(np.max(np.abs(values), initial=0.0))
+    return Column(f"{word} {place.name}", place.unit, "each", floor, follows=True)
+
+
+def place_of(figure: PlacedFigure) -> float:
+    """Return where a figure is.
+
+    It is the time, the driver's value, or the number of the pose where several drivers move.
+    """
+    return figure.place if len(figure.at) > 1 and TIME not in figure.at else first_value(figure.at)
+
+
+def first_value(at: Mapping[str, Quantity]) -> float:
+    """Return the first of some values as it is shown."""
+    return display_value(next(iter(at.values())))
+
+
+def display_value(one: Quantity) -> float:
+    """Return a quantity of one value as a number, angles in degrees."""
+    return float(one.shown.values)
+
+
+def optional_value(one: Quantity | None) -> float | None:
+    """Return the same of what may be none."""
+    return None if one is None else display_value(one)
+
+
+def display_unit(one: Quantity) -> str:
+    """Return the unit in which a quantity is shown."""
+    return DEGREES if one.unit == RADIANS else one.unit

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.display import ShortRepr
 
 Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 
@@ -69,7 +69,7 @@ class TableBlock:
     figures: tuple[tuple[str, ...], ...] = ()
 
     @property
-    def shown_rows(self) -> tuple[tuple[Cell, ...], ...]:
+    def selected_rows(self) -> tuple[tuple[Cell, ...], ...]:
         """The rows that a reader needs.
 
         >>> TableBlock((Column("a"),), (("x",), ("y",)), shown=(1,)).shown_rows
@@ -104,7 +104,7 @@ Block: TypeAlias = Paragraph | FormulaBlock | TableBlock | StepBlock | Alert
 
 
 @dataclass(frozen=True, repr=False)
-class Section(PrintsShort):
+class Section(ShortRepr):
     """A part of a report; `key` is its name in the JSON report."""
 
     key: str
@@ -126,7 +126,7 @@ def summarised(section: Section) -> Section:
 
 def _shortened(block: Block) -> Iterator[Block]:
     if isinstance(block, TableBlock):
-        rows = block.shown_rows
+        rows = block.selected_rows
         shown = rows[:SHOWN] if len(rows) > MANY else rows
         yield replace(block, rows=tuple(tuple(map(_cell, row)) for row in shown), shown=None)
         if len(shown) < len(rows):

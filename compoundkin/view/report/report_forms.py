@@ -9,11 +9,11 @@ from functools import singledispatch
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
-from compoundkin.base.display import Shows
+from compoundkin.base.display import DisplaysHtml
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import readable
+from compoundkin.model.attributes import with_superscripts
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import (
     Alert,
@@ -27,7 +27,7 @@ from compoundkin.view.report.report_data import (
     TableBlock,
     summarised,
 )
-from compoundkin.view.report.wording import typeset, written
+from compoundkin.view.report.wording import column_texts, typeset
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
@@ -139,8 +139,8 @@ def _(block: StepBlock) -> str:
 
 @_as_markdown.register
 def _(block: TableBlock) -> str:
-    rows = block.shown_rows
-    cells = [written(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
+    rows = block.selected_rows
+    cells = [column_texts(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
     lines = [map(_heading, block.columns), ("---:" if column.is_number else "---" for column in block.columns)]
     return "\n".join(map(_line, [*lines, *(map(_plain, row) for row in zip(*cells, strict=True))]))
 
@@ -150,7 +150,7 @@ def _line(cells: Iterable[str]) -> str:
 
 
 def _heading(column: Column) -> str:
-    return _plain(f"{column.name} [{readable(column.unit)}]" if column.unit else column.name)
+    return _plain(f"{column.name} [{with_superscripts(column.unit)}]" if column.unit else column.name)
 
 
 def _plain(text: str) -> str:
@@ -159,7 +159,7 @@ def _plain(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Report(Shows, Savable):
+class Report(DisplaysHtml, Savable):
     """The report of a mechanism, in the order in which it is read.
 
     `subject` is what it is about, for the pictures of its page, and `outputs` and `design` are those it was made with.
@@ -186,9 +186,11 @@ class Report(Shows, Savable):
         Of hundreds of links or groups the first ones are written, all if it is to be `whole`.
         """
         # rich costs as much to load as all of compoundkin, and only the text needs it
-        from compoundkin.view.report.terminal_text import text
+        from compoundkin.view.report.terminal_text import terminal_text
 
-        return text(self.title, self.sections if whole else tuple(map(summarised, self.sections)), width, colour)
+        return terminal_text(
+            self.title, self.sections if whole else tuple(map(summarised, self.sections)), width, colour
+        )
 
     def markdown(self) -> str:
         """Write it as Markdown, for GitHub and the like."""

@@ -14,7 +14,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from compoundkin.view.report.report_data import Alert, Column, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
-from compoundkin.view.report.wording import written
+from compoundkin.view.report.wording import column_texts
 
 # Between two columns of a table.
 GAP = 2
@@ -23,10 +23,10 @@ RULE = Box("    \n    \n -- \n" + "    \n" * 5, ascii=True)
 STYLES = {"pass": "green", "FAIL": "bold red"}
 
 
-def text(title: str, sections: Sequence[Section], width: int = 80, colour: bool = False) -> str:
+def terminal_text(title: str, sections: Sequence[Section], width: int = 80, colour: bool = False) -> str:
     """Return the report as text, no line longer than `width`.
 
-    >>> print(text("Crank", [Section("about", "", (Paragraph("Watch B."),))]))
+    >>> print(terminal_text("Crank", [Section("about", "", (Paragraph("Watch B."),))]))
     Crank
     =====
     <BLANKLINE>
@@ -85,8 +85,8 @@ def _(block: StepBlock, width: int) -> Iterator[RenderableType]:
 
 @_block.register
 def _(block: TableBlock, width: int) -> Iterator[RenderableType]:
-    rows = block.shown_rows
-    cells = [written(column, [row[k] for row in rows], between="\n") for k, column in enumerate(block.columns)]
+    rows = block.selected_rows
+    cells = [column_texts(column, [row[k] for row in rows], between="\n") for k, column in enumerate(block.columns)]
     heads = [_heading(column) for column in block.columns]
     for number, panel in enumerate(_panels(block, heads, cells, width)):
         if number:

@@ -8,29 +8,20 @@ from math import prod
 from typing import TYPE_CHECKING, TypeAlias
 
 from compoundkin.analysis.comparison.comparison_findings import MechanismComparison
-from compoundkin.base.arguments import checked
+from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
-from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import motion_of_design, shape_of
-from compoundkin.model.design_numbers import mechanism_of_design
-from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.mechanism import Mechanism, mechanism_of_design
 from compoundkin.structure import Structure, decompose
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
-from compoundkin.view.report.comparison_report import comparison_report
 from compoundkin.view.report.groups_section import drivers_section, solving_section
-from compoundkin.view.report.optimum_report import optimum_report
 from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.report.report_forms import Report, Subject
-from compoundkin.view.report.structure_sections import (
-    about_section,
-    counted_sections,
-    faults_section,
-)
-from compoundkin.view.report.study_report import study_report
-from compoundkin.view.report.tolerance_report import tolerance_report
+from compoundkin.view.report.structure_sections import about_section, counted_sections, faults_section
+from compoundkin.view.report.study_reports import comparison_report, optimum_report, study_report, tolerance_report
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
@@ -64,14 +55,14 @@ def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Repo
     Crank
     """
     if isinstance(what, Studied):
-        return _of_study(what, outputs, design)
-    subject, among = _picked(what, design)
+        return _study_report(what, outputs, design)
+    subject, among = _report_subject(what, design)
     if isinstance(subject, Structure):
-        return _of_structure(subject)
+        return _structure_report(subject)
     # what a motion takes is not loaded for the report of a structure
     from compoundkin.view.report.motion_report import report_of_motion
 
-    return report_of_motion(subject, outputs, _design_of(design, among))
+    return report_of_motion(subject, outputs, _design_sentence(design, among))
 
 
 @checked
@@ -88,7 +79,7 @@ def page(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Page:
     return report(what, outputs, design).page()
 
 
-def _of_study(what: Studied, outputs: Sequence[str], design: int) -> Report:
+def _study_report(what: Studied, outputs: Sequence[str], design: int) -> Report:
     """Report a study or the like as a whole."""
     if design:
         raise InvalidInput(Problem("design", "a study is reported as a whole", "report the motion of that design"))
@@ -101,22 +92,22 @@ def _of_study(what: Studied, outputs: Sequence[str], design: int) -> Report:
     return study_report(what, outputs, outputs, BEST)
 
 
-def _picked(what: Mechanism | Subject, design: int) -> tuple[Subject, int]:
+def _report_subject(what: Mechanism | Subject, design: int) -> tuple[Subject, int]:
     """Return what is reported, a design of a motion by itself, and how many there are."""
     if isinstance(what, Mechanism):
-        return _solved(what, design)
+        return _solved_design(what, design)
     if isinstance(what, Structure):
         return what, 0
-    hold_design(design, what.inputs.designs)
+    check_design(design, what.inputs.designs)
     return motion_of_design(what, design), what.inputs.designs
 
 
-def _design_of(design: int, among: int) -> str:
+def _design_sentence(design: int, among: int) -> str:
     text = f"Shown is design {design} of {among:,} (counted from 0); the checks are of it alone."
     return text if among > 1 else ""
 
 
-def _solved(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
+def _solved_design(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
     """Solve one design over the drivers' own ranges; return also how many there are.
 
     Of what has faults or no ranges it is the structure.
@@ -129,7 +120,7 @@ def _solved(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
     except InvalidInput:
         return structure, 0
     among = prod(shape[:-1])
-    hold_design(design, among)
+    check_design(design, among)
     if among > 1:
         structure = decompose(mechanism_of_design(mechanism, shape, design))
     with warnings.catch_warnings():
@@ -141,7 +132,7 @@ def _solved(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
             return structure, 0
 
 
-def _of_structure(structure: Structure) -> Report:
+def _structure_report(structure: Structure) -> Report:
     """Report a structure before it is solved, one with faults included."""
     outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
     about = about_section(structure)

@@ -1,4 +1,4 @@
-"""How numbers are written, as many digits as say something; words of lists, links, and laws of drivers."""
+"""Wording: numbers with as many digits as are significant, units, lists of names, kinds of links, objectives."""
 
 from __future__ import annotations
 
@@ -6,33 +6,46 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from math import floor, isfinite, log10
 
-from compoundkin.model.attributes import RAISED
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.model.attributes import SUPERSCRIPTS
+from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.view.report.report_data import Cell, Column
 
 SIGNIFICANT = 6
+
+
 # Outside of these, numbers are written with exponents.
 LARGEST, SMALLEST = 1e7, 1e-3
-NOTHING = "-"
+
+
+MISSING = "-"
+
+
 # Powers of seconds, and numbers that are multiplied; names may have anything else.
 _TYPESET = re.compile(r"(?<=/s)\^[23]\b|(?<=\d) \* (?=\d)")
+
+
 _KINDS = ("free", "singular", "binary", "ternary", "quaternary", "quinary", "senary")
 
 
-def written(column: Column, cells: Iterable[Cell], between: str = ", ") -> list[str]:
+def column_texts(column: Column, cells: Iterable[Cell], between: str = ", ") -> list[str]:
     """Return the cells of a column as text. `between` the numbers of a cell that holds several.
 
-    >>> written(Column("x", style="fixed"), [1.0, 2.25, None])
+    >>> column_texts(Column("x", style="fixed"), [1.0, 2.25, None])
     ['1.00', '2.25', '-']
     """
     cells = list(cells)
     write = _writer(column, cells)
-    return [_cell(column, cell, write, between) for cell in cells]
+    return [_cell_text(column, cell, write, between) for cell in cells]
 
 
-def number(value: float) -> str:
+def number_text(value: float) -> str:
     """Return a single number with six significant digits, without trailing zeros.
 
-    >>> number(14.0), number(1 / 3), number(-0.0)
+    >>> number_text(14.0), number_text(1 / 3), number_text(-0.0)
     ('14', '0.333333', '0')
     """
     return f"{value + 0.0:.{SIGNIFICANT}g}"
@@ -44,7 +57,7 @@ def typeset(text: str) -> str:
     >>> typeset("3 (6 - 1) - 2 * 7 = 1"), typeset("9.81 m/s^2 at x^2")
     ('3 (6 - 1) - 2·7 = 1', '9.81 m/s² at x^2')
     """
-    return _TYPESET.sub(lambda found: RAISED.get(found[0], "·"), text)
+    return _TYPESET.sub(lambda found: SUPERSCRIPTS.get(found[0], "·"), text)
 
 
 def brief(value: float) -> str:
@@ -56,19 +69,19 @@ def brief(value: float) -> str:
     return f"{value:.1e}".replace(".0e", "e") if value else "0"
 
 
-def _cell(column: Column, cell: Cell, write: Callable[[float], str], between: str) -> str:
+def _cell_text(column: Column, cell: Cell, write: Callable[[float], str], between: str) -> str:
     if isinstance(cell, bool):
         return "pass" if cell else "FAIL"
     if isinstance(cell, str):
         return cell
     if isinstance(cell, tuple):
-        return between.join(_one(column, value, write) for value in cell)
-    return NOTHING if cell is None else _one(column, cell, write)
+        return between.join(_finite_text(column, value, write) for value in cell)
+    return MISSING if cell is None else _finite_text(column, cell, write)
 
 
-def _one(column: Column, value: float, write: Callable[[float], str]) -> str:
+def _finite_text(column: Column, value: float, write: Callable[[float], str]) -> str:
     if not isfinite(value):
-        return NOTHING
+        return MISSING
     return write(0.0 if abs(value) <= column.floor else value)
 
 
@@ -76,7 +89,7 @@ def _writer(column: Column, cells: Iterable[Cell]) -> Callable[[float], str]:
     if column.style == "brief":
         return brief
     if column.style != "fixed":
-        return number
+        return number_text
     return _fixed([v for cell in cells for v in _numbers(cell) if isfinite(v) and abs(v) > column.floor])
 
 
@@ -124,20 +137,42 @@ def kind_of_link(pairs: int) -> str:
     return _KINDS[pairs] if pairs < len(_KINDS) else f"with {pairs} pairs"
 
 
-def ordinal(number: int) -> str:
+def ordinal_text(number: int) -> str:
     """Return "2nd" of 2.
 
-    >>> [ordinal(k) for k in (2, 3, 4, 11, 12, 21)]
+    >>> [ordinal_text(k) for k in (2, 3, 4, 11, 12, 21)]
     ['2nd', '3rd', '4th', '11th', '12th', '21st']
     """
     ending = "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
     return f"{number}{ending}"
 
 
-def joined(links: Sequence[str]) -> str:
+def joined_links(links: Sequence[str]) -> str:
     """Return the links that a pair joins.
 
-    >>> joined(["crank", "rod"])
+    >>> joined_links(["crank", "rod"])
     'crank - rod'
     """
     return " - ".join(links)
+
+
+def objective_quantity(found: Optimum, values: Number | float) -> Quantity:
+    """Return objectives as they are shown.
+
+    That of a single figure has its unit, a sum of squares or of several goals none.
+    """
+    return Quantity("objective", _objective_unit(found), np.asarray(values, dtype=float)).shown
+
+
+def _objective_unit(found: Optimum) -> str:
+    goal, *others = found.goals
+    names = goal.outputs(found.before)
+    if others or goal.is_squares or len(names) != 1:
+        return ""
+    return goal.unit or quantity(found.motion, names[0]).unit
+
+
+def objective_text(found: Optimum, value: float) -> str:
+    """Write an objective with its unit."""
+    shown = objective_quantity(found, value)
+    return f"{number_text(float(shown.values))} {shown.unit}".rstrip()

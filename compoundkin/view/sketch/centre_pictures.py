@@ -10,10 +10,10 @@ import numpy as np
 from compoundkin.analysis.centres import Centres, DerivationStep, instant_centres
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.structure import Structure
-from compoundkin.view.sketch.label_places import Label, around, text_half
+from compoundkin.view.sketch.labels import Label, label_around, text_half
 from compoundkin.view.sketch.picture import Picture, Window, checked_size
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, ShapeGroup, Text, sheet
@@ -29,7 +29,7 @@ NARROW = 0.56
 
 
 @dataclass(frozen=True)
-class ShownCentres:
+class VisibleCentres:
     """The centres on the picture, by their names, and the lines that give them.
 
     It also has what is said of the others.
@@ -40,7 +40,7 @@ class ShownCentres:
     notes: list[str]
 
 
-def shown_centres(scene: Scene, window: Window) -> ShownCentres:
+def visible_centres(scene: Scene, window: Window) -> VisibleCentres:
     """Return the instant centres of the pose shown. Raises InvalidInput for a mechanism without a motion."""
     if scene.shown is None:
         what = "a mechanism that is shown as drawn has no motion"
@@ -50,7 +50,7 @@ def shown_centres(scene: Scene, window: Window) -> ShownCentres:
     far: list[str] = []
     infinite: list[str] = []
     for pair in centres:
-        name, centre = centre_name(scene, *pair), centres[pair]
+        name, centre = centre_number(scene, *pair), centres[pair]
         homogeneous = _at(scene, centre.homogeneous)
         if not _at(scene, centre.found):
             continue
@@ -64,7 +64,7 @@ def shown_centres(scene: Scene, window: Window) -> ShownCentres:
             far.append(name)
     notes = [f"at infinity: {', '.join(infinite)}"] if infinite else []
     notes += [f"outside: {', '.join(far)}"] if far else []
-    return ShownCentres(near, tuple(_lines(scene, window, centres, near)), notes)
+    return VisibleCentres(near, tuple(_lines(scene, window, centres, near)), notes)
 
 
 def centre_places(scene: Scene) -> list[complex]:
@@ -76,7 +76,7 @@ def centre_places(scene: Scene) -> list[complex]:
     return [place for place in found if np.isfinite(place)]
 
 
-def centre_name(scene: Scene, one: str, two: str) -> str:
+def centre_number(scene: Scene, one: str, two: str) -> str:
     """Return the name of a centre by the numbers of its links. It is 13, or 3,12."""
     first, second = sorted((scene.numbers[one], scene.numbers[two]))
     return f"{first}{second}" if second < 10 else f"{first},{second}"
@@ -96,10 +96,10 @@ def _lines(
 ) -> Iterator[tuple[complex, complex]]:
     """For each secondary centre on the picture, from it to the known centres on the two lines that give it."""
     # a step names centres by their links: (crank frame)
-    names = {f"({a} {b})": centre_name(scene, a, b) for one, two in centres for a, b in ((one, two), (two, one))}
+    names = {f"({a} {b})": centre_number(scene, a, b) for one, two in centres for a, b in ((one, two), (two, one))}
     drawn: set[tuple[str, ...]] = set()
     for step in centres.derivation():
-        own = centre_name(scene, *step.centre)
+        own = centre_number(scene, *step.centre)
         if own not in near or step.kind == "primary":
             continue
         for line in step.lines:
@@ -117,13 +117,13 @@ def _span(points: list[complex]) -> tuple[complex, complex]:
     return first, max(points, key=lambda p: abs(p - first))
 
 
-def centre_shapes(found: ShownCentres) -> list[Shape]:
+def centre_shapes(found: VisibleCentres) -> list[Shape]:
     """Return the lines and a dot for each centre."""
     dots = {(round(p.real), round(p.imag)): p for p in found.places.values()}
     return [*(Polyline(line, "ray") for line in found.lines), *(CircleShape(p, DOT, "centre") for p in dots.values())]
 
 
-def centre_labels(found: ShownCentres) -> list[Label]:
+def centre_labels(found: VisibleCentres) -> list[Label]:
     """Return the names of the centres, those at one place together."""
     places: list[tuple[list[str], complex]] = []
     for name, place in found.places.items():
@@ -133,7 +133,7 @@ def centre_labels(found: ShownCentres) -> list[Label]:
         else:
             same.append(name)
     joined = [(" ".join(names), place) for names, place in places]
-    return [around(f"centre {text}", place, text_half(text, SMALL), 5.0, 1 + 1j) for text, place in joined]
+    return [label_around(f"centre {text}", place, text_half(text, SMALL), 5.0, 1 + 1j) for text, place in joined]
 
 
 def circle_diagram(structure: Structure, numbers: Mapping[str, int], size: float | None) -> Picture:

@@ -10,25 +10,42 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.base.arrays import degrees
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.configuration import BETWEEN, Configuration
-from compoundkin.model.attributes import after_number
-from compoundkin.model.outlines.outline_shapes import outline_shapes
+from compoundkin.model.attributes import unit_suffix
+from compoundkin.model.outline_shapes import outline_shapes
 from compoundkin.structure import Structure
-from compoundkin.view.sketch.asked_values import Drawable, asked_labels, by_name, ends_of, structure_of, value_note
-from compoundkin.view.sketch.label_places import placed
-from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
-from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_rows, legible_size
+from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
+from compoundkin.view.sketch.labels import NARROW, label_shapes, labels_of, lines_below, lines_of_text, placed
+from compoundkin.view.sketch.painter import Painter
+from compoundkin.view.sketch.picture import (
+    MARGIN,
+    PAPER_WIDTH,
+    Picture,
+    PicturePart,
+    Window,
+    checked_size,
+    fitted_window,
+    in_rows,
+    legible_size,
+)
+from compoundkin.view.sketch.picture_options import (
+    Drawable,
+    PictureOptions,
+    driver_value_text,
+    driver_values_by_name,
+    ends_of,
+    label_kinds,
+    one_design,
+    scene_of,
+    structure_of,
+)
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, sheet
-from compoundkin.view.sketch.shapes import moved as shifted
-from compoundkin.view.sketch.shown_pose import Wishes, one_design, scene_of
-from compoundkin.view.sketch.sketch_labels import NARROW, below, label_shapes, labels_of, lines_of_text
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, shape_corners, sheet
+from compoundkin.view.sketch.shapes import moved_shapes as shifted
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
-from compoundkin.view.sketch.sketches import by_links, ghost, in_layers, layered, window_on
-from compoundkin.view.sketch.slide_shapes import Painter
 
 if TYPE_CHECKING:
     from compoundkin.configurations.circuit import Circuit
@@ -42,7 +59,7 @@ NARROWEST = 200.0
 
 
 @dataclass(frozen=True, eq=False)
-class _Panel:
+class _ConfigurationPanel:
     """One configuration with its heading, what is said of it, and others that are drawn faintly."""
 
     heading: str
@@ -51,7 +68,7 @@ class _Panel:
     faint: tuple[Scene, ...] = ()
 
 
-def configurations_picture(what: Drawable, wishes: Wishes) -> Picture:
+def configurations_picture(what: Drawable, wishes: PictureOptions) -> Picture:
     """Draw all configurations at a value of every driver. Raises what `configurations` does."""
     # late: other pictures need none of this
     from compoundkin.configurations.enumeration import configurations
@@ -62,15 +79,17 @@ def configurations_picture(what: Drawable, wishes: Wishes) -> Picture:
     found = configurations(structure, _values(what, structure, wishes))
     ones = list(found)
     scenes = _scenes(structure, ones)
-    panels = [_Panel(str(k), one.name, s) for k, (one, s) in enumerate(zip(ones, scenes, strict=True), start=1)]
+    panels = [
+        _ConfigurationPanel(str(k), one.name, s) for k, (one, s) in enumerate(zip(ones, scenes, strict=True), start=1)
+    ]
     notes = [*_drivers(structure, ones[0].values if ones else {}), found.count_in_words.rstrip(".")]
     return _picture(structure, panels, notes, "configurations", wishes)
 
 
-def _values(what: Drawable, structure: Structure, wishes: Wishes) -> dict[str, float] | None:
+def _values(what: Drawable, structure: Structure, wishes: PictureOptions) -> dict[str, float] | None:
     """The values asked for; else those of the pose that a sketch would show."""
     if wishes.at is not None:
-        return by_name(structure, wishes.at)
+        return driver_values_by_name(structure, wishes.at)
     try:
         scene = scene_of(what, None, wishes.pose, wishes.design)
     except (InvalidInput, NotAssembled):
@@ -81,7 +100,7 @@ def _values(what: Drawable, structure: Structure, wishes: Wishes) -> dict[str, f
     return {step.drive.name: scene.driver_value(step.drive.name) for step in scene.driven} if scene.shown else None
 
 
-def circuits_picture(what: Drawable, wishes: Wishes) -> Picture:
+def circuits_picture(what: Drawable, wishes: PictureOptions) -> Picture:
     """Draw all circuits. Each is in the middle of its first branch, its other branches faint.
 
     The driver moves that `at` leaves out, the first of those; the others stand still. Raises what `circuits` does.
@@ -90,7 +109,7 @@ def circuits_picture(what: Drawable, wishes: Wishes) -> Picture:
 
     structure = structure_of(one_design(what, wishes.design)[0])
     names = [drive.name for drive in structure.mechanism.drives]
-    given = by_name(structure, wishes.at) if wishes.at is not None else {}
+    given = driver_values_by_name(structure, wishes.at) if wishes.at is not None else {}
     free = [name for name in names if name not in given] or names
     values = {name: value for name, value in given.items() if name != free[0]} if free else {}
     found = circuits(structure, free[0] if free else None, values)
@@ -99,9 +118,9 @@ def circuits_picture(what: Drawable, wishes: Wishes) -> Picture:
     for circuit in found.circuits:
         first, *others = [next(scenes) for _ in circuit.branches]
         said = _of_circuit(structure, found.driver, circuit)
-        panels.append(_Panel(f"circuit {circuit.number}", said, first, tuple(others)))
-    count = f"{counted(len(found.circuits), 'circuit')} of {found.driver}"
-    branches = f"{counted(len(found.branches), 'branch', 'branches')}, each in its middle"
+        panels.append(_ConfigurationPanel(f"circuit {circuit.number}", said, first, tuple(others)))
+    count = f"{count_phrase(len(found.circuits), 'circuit')} of {found.driver}"
+    branches = f"{count_phrase(len(found.branches), 'branch', 'branches')}, each in its middle"
     return _picture(structure, panels, [count, branches, *_drivers(structure, found.fixed)], "circuits", wishes)
 
 
@@ -113,7 +132,7 @@ def _of_circuit(structure: Structure, driver: str, circuit: Circuit) -> str:
         return f"{said}: {driver} turns fully"
     is_angle = structure.driven_angles.get(driver, False)
     low, high = (float(degrees(v)) if is_angle else v for v in (circuit.low, circuit.high))
-    return f"{said}: {driver} from {low:.4g} to {high:.4g}{after_number(is_angle, structure.mechanism.unit)}"
+    return f"{said}: {driver} from {low:.4g} to {high:.4g}{unit_suffix(is_angle, structure.mechanism.unit)}"
 
 
 def _scenes(structure: Structure, ones: Sequence[Configuration]) -> list[Scene]:
@@ -135,21 +154,21 @@ def _whole(poses: Sequence[Pose]) -> Pose:
 
 def _drivers(structure: Structure, values: Mapping[str, float]) -> list[str]:
     """What the drivers' values are."""
-    return [value_note(structure, name, value) for name, value in values.items()]
+    return [driver_value_text(structure, name, value) for name, value in values.items()]
 
 
 def _picture(
-    structure: Structure, panels: Sequence[_Panel], notes: Sequence[str], kind: str, wishes: Wishes
+    structure: Structure, panels: Sequence[_ConfigurationPanel], notes: Sequence[str], kind: str, wishes: PictureOptions
 ) -> Picture:
     """The panels in rows, and what stands below them."""
-    asked, size, mechanism = asked_labels(wishes.labels), checked_size(wishes.size), structure.mechanism
+    asked, size, mechanism = label_kinds(wishes.labels), checked_size(wishes.size), structure.mechanism
     shown = panels[:MOST]
     parts = _parts(shown, asked)
     shapes, width, height = in_rows(parts, widest=PAPER_WIDTH)
     more = [f"and {len(panels) - MOST} more"] if len(panels) > MOST else []
     legend = shown[0].scene.legend.items() if shown and "links" in asked else ()
     notes = [*notes, *more, *(f"{number} {name}" for name, number in legend)]
-    texts, height = below(lines_of_text(notes, width - 32.0), height)
+    texts, height = lines_below(lines_of_text(notes, width - 32.0), height)
     described = "; ".join(f"{panel.heading}: {panel.said}" for panel in panels)
     title = f"{mechanism.title}: {kind}"
     return Picture(
@@ -157,7 +176,7 @@ def _picture(
     )
 
 
-def _parts(panels: Sequence[_Panel], asked: Sequence[str]) -> list[PicturePart]:
+def _parts(panels: Sequence[_ConfigurationPanel], asked: Sequence[str]) -> list[PicturePart]:
     """The panels with their headings, all in one window."""
     scenes = [scene for panel in panels for scene in (panel.scene, *panel.faint)]
     if not scenes:
@@ -184,12 +203,12 @@ def _window(scenes: Sequence[Scene], largest: float) -> Window:
     first = window_on(scenes[0], scenes[1:])
     scale = min(1.0, (largest - 2.0 * MARGIN) / max(first.width - 2.0 * MARGIN, first.height - 2.0 * MARGIN))
     whole = Window(first.scale * scale, first.corner, 0.0, 0.0)
-    points = np.array([p for scene in scenes for p in corners(layered(Painter(scene, whole)))] or [0j])
-    return fitted(whole, points, NARROWEST)
+    points = np.array([p for scene in scenes for p in shape_corners(layered(Painter(scene, whole)))] or [0j])
+    return fitted_window(whole, points, NARROWEST)
 
 
-def _drawn(panel: _Panel, window: Window, asked: Sequence[str]) -> list[Shape]:
+def _drawn(panel: _ConfigurationPanel, window: Window, asked: Sequence[str]) -> list[Shape]:
     painter = Painter(panel.scene, window)
     laid = in_layers(painter)
     found = placed(labels_of(painter, laid, asked), [one.shape for one in laid], window.width, window.height)
-    return [*(ghost(other, window) for other in panel.faint), *by_links(laid), *label_shapes(panel.scene, found)]
+    return [*(ghost_shapes(other, window) for other in panel.faint), *by_links(laid), *label_shapes(panel.scene, found)]

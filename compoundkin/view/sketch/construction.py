@@ -11,16 +11,24 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.dyad_loci import CircleLocus, Loci, Locus, same_locus
 from compoundkin.kinematics.groups import DyadSolver, as_dyad
 from compoundkin.structure import Group
-from compoundkin.view.sketch.asked_values import Drawable
-from compoundkin.view.sketch.label_places import Label, around, placed, text_half
-from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted, window_of
+from compoundkin.view.sketch.kinematic_sketch import layered, nearby
+from compoundkin.view.sketch.labels import (
+    SIDE,
+    Label,
+    label_around,
+    lines_below,
+    lines_of_text,
+    placed,
+    point_letters,
+    text_half,
+    width_with,
+)
+from compoundkin.view.sketch.painter import Painter
+from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted_window, window_around
+from compoundkin.view.sketch.picture_options import Drawable, PictureOptions, pose_notes, scene_of
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, corners, sheet
-from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
-from compoundkin.view.sketch.sketch_labels import SIDE, below, letters, lines_of_text, width_with
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, shape_corners, sheet
 from compoundkin.view.sketch.sketch_style import LETTER, PIN, SMALL, STUD, style_of
-from compoundkin.view.sketch.sketches import layered, nearby
-from compoundkin.view.sketch.slide_shapes import Painter
 
 # Loci of both modes that differ by less than this part of the size are one.
 SAME = 1e-6
@@ -64,7 +72,7 @@ class DrawnDyad:
                 if not any(same_locus(curve, own, SAME * size) for own in self.modes[0].curves)]  # fmt: skip
 
 
-def construction(what: Drawable, wishes: Wishes) -> Picture:
+def construction(what: Drawable, wishes: PictureOptions) -> Picture:
     """Draw the construction of a dyad at one pose.
 
     Its mode is solid and the other one dashed. Circles have their centres at the outer pins and meet each other or
@@ -125,11 +133,11 @@ def _window(scene: Scene, group: Group, modes: Sequence[Loci]) -> Window:
     apart = np.ptp(np.abs(np.array(places) - modes[0].meeting))
     if not circles and apart < NARROW * (size := scene.mechanism.geometry.size):
         places += [modes[0].meeting + size * e / 2.0 for e in (1 + 1j, -1 - 1j)]
-    first = window_of([np.array(places)], [])
+    first = window_around([np.array(places)], [])
     points = first.at(np.array(places))
-    links = corners(layered(Painter(scene, first, frozenset(group.links))))
-    words = [width_with(below([note], 0.0)[0]) for note in _notes(scene, modes)]
-    return fitted(first, np.append(points, nearby(points, links)), max(WIDE, *words))
+    links = shape_corners(layered(Painter(scene, first, frozenset(group.links))))
+    words = [width_with(lines_below([note], 0.0)[0]) for note in _notes(scene, modes)]
+    return fitted_window(first, np.append(points, nearby(points, links)), max(WIDE, *words))
 
 
 def _shapes(drawn: DrawnDyad) -> Iterator[Shape]:
@@ -171,13 +179,13 @@ def _labels(drawn: DrawnDyad) -> list[Label]:
     """The letters of the points, the other meeting place, and the lengths of the radii."""
     window, own = drawn.window, drawn.modes[0]
     found = [Label(f"letter {label.key.partition(' ')[2]}", label.half, label.places, label.costs)
-             for label in letters(drawn.painter)]  # fmt: skip
+             for label in point_letters(drawn.painter)]  # fmt: skip
     inner = drawn.names[1]
     is_inner = abs(drawn.scene.letters[inner] - own.meeting) * window.scale < PIN if inner in drawn.scene.letters else 0
     for other in drawn.modes[1:]:
         at, name = complex(window.at(other.meeting)), f"{inner}\u2032"
         if is_inner and abs(at - window.at(own.meeting)) > PIN:
-            found.append(around(f"letter {name}", at, text_half(name, LETTER), PIN + 3.0))
+            found.append(label_around(f"letter {name}", at, text_half(name, LETTER), PIN + 3.0))
     named = [curve for curve in own.curves if isinstance(curve, CircleLocus) and curve.name]
     lines = [_radius(window, curve) for curve in named]
     # rather outside the triangle of the links
@@ -209,7 +217,7 @@ def _finished(drawn: DrawnDyad, shapes: Sequence[Shape], size: float | None) -> 
     notes = _notes(scene, drawn.modes)
     if abs(drawn.modes[-1].meeting - own.meeting) > SAME * scene.mechanism.geometry.size:
         notes.append("dashed: the other mode")
-    texts, height = below(lines_of_text(notes, window.width - 2.0 * SIDE), window.height)
+    texts, height = lines_below(lines_of_text(notes, window.width - 2.0 * SIDE), window.height)
     strip = Polygon((1j * window.height, window.width + 1j * window.height, complex(window.width, height),
                      1j * height), "paper")  # fmt: skip
     title = f"{scene.mechanism.title}: construction of {', '.join(drawn.group.links)}"

@@ -1,33 +1,63 @@
-"""Forces as arrows and moments as arcs, with their names beside them."""
+"""The forces on the links at one pose, with short names, as arrows; moments as arcs.
+
+They are reactions, efforts of drivers, loads, weights and inertia forces.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.view.sketch.acting_forces import ShownForce
-from compoundkin.view.sketch.label_places import Label, around, text_half
-from compoundkin.view.sketch.shapes import HEAD, ArcShape, Shape, ShapeGroup, Text, arrow, arrow_head, direction
-from compoundkin.view.sketch.sketch_style import REACTION, SMALL
+from compoundkin.base.arrays import Number
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.named_forces.link_wrench import DRIVER, FRICTION, PAIR, WEIGHT, LinkWrench
+from compoundkin.dynamics.named_forces.link_wrench import INERTIA as OF_INERTIA
+from compoundkin.model.geometry import FRAME
+from compoundkin.view.sketch.labels import Label, label_around, text_half
+from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.shapes import (
+    HEAD,
+    ArcShape,
+    Shape,
+    ShapeGroup,
+    Text,
+    arrow_head,
+    arrow_shapes,
+    unit_direction,
+)
+from compoundkin.view.sketch.sketch_style import INERTIA, LOAD, REACTION, SMALL
 from compoundkin.view.sketch.vectors import VectorScale, round_below
 
 # The arc of a moment: its radius, what it goes through (radians), and how much farther the next one is.
 ROUND, SWEEP, NEXT = 19.0, 2.7, 7.0
+
+
 # Arrows begin and end so far from the point at which they act, so that the pin stays to be seen.
 CLEAR = 6.0
+
+
 # Around a driven pin it is outside of the arrow of the driver.
 AROUND_DRIVER = 34.0
+
+
 # A shorter arrow is not drawn, and told below the picture.
 SHORTEST = 5.0
+
+
 # Digits of the values beside arrows.
 DIGITS = 4
+
+
 # Values of so many digits before the point are written without an exponent.
 PLAIN = 8
 
 
-def force_scale(forces: Sequence[ShownForce], length: float, unit: str) -> VectorScale | None:
+def force_scale(forces: Sequence[ActingForce], length: float, unit: str) -> VectorScale | None:
     """Return the scale at which the longest force is so long. None where there are none."""
     longest = max((abs(one.force) for one in forces), default=0.0)
     if longest <= 0:
@@ -40,7 +70,7 @@ def force_scale(forces: Sequence[ShownForce], length: float, unit: str) -> Vecto
 class DrawnForce:
     """A force on a picture. `start` and `stop` are the ends of its arrow, `tip` where its name belongs."""
 
-    force: ShownForce
+    force: ActingForce
     start: complex
     stop: complex
     away: complex
@@ -53,48 +83,50 @@ class DrawnForce:
     @property
     def shapes(self) -> tuple[Shape, ...]:
         """The arrow."""
-        title = f"{self.force.told}: {written(abs(self.force.force))}"
-        made = arrow(self.start, self.stop, self.force.kind)
+        title = f"{self.force.told}: {force_text(abs(self.force.force))}"
+        made = arrow_shapes(self.start, self.stop, self.force.kind)
         return (ShapeGroup(made, title=title, links=(self.force.link,)),) if self.is_seen else ()
 
     def label(self, text: str, key: str) -> Label:
         """Return the label at the free end of the arrow."""
-        at = self.stop if self.away == direction(self.stop - self.start) else self.start
-        return around(key, at, text_half(text, SMALL), 3.0, self.away)
+        at = self.stop if self.away == unit_direction(self.stop - self.start) else self.start
+        return label_around(key, at, text_half(text, SMALL), 3.0, self.away)
 
 
-def drawn(one: ShownForce, at: complex, scale: VectorScale, middle: complex | None = None) -> DrawnForce:
+def force_arrow(one: ActingForce, at: complex, scale: VectorScale, middle: complex | None = None) -> DrawnForce:
     """Return the arrow of a force at a place of the picture.
 
     It leads away from the place; into the place where it presses on a body whose middle is given.
     """
     way = complex(np.conjugate(one.force)) * scale.per_unit
-    e = direction(way)
-    inward = middle is not None and abs(middle - at) > CLEAR and (np.conjugate(e) * direction(middle - at)).real > 0.2
+    e = unit_direction(way)
+    inward = (
+        middle is not None and abs(middle - at) > CLEAR and (np.conjugate(e) * unit_direction(middle - at)).real > 0.2
+    )
     if inward:
         return DrawnForce(one, at - e * CLEAR - way, at - e * CLEAR, -e)
     return DrawnForce(one, at + e * CLEAR, at + e * CLEAR + way, e)
 
 
-def moment_arc(one: ShownForce, at: complex, radius: float, toward: complex) -> tuple[Shape, ...]:
+def moment_arc(one: ActingForce, at: complex, radius: float, toward: complex) -> tuple[Shape, ...]:
     """Draw a moment as an arc with a head beside its place.
 
     It is not to scale.
     """
     # counterclockwise is clockwise in coordinates whose y points downward
     way = -float(np.sign(one.moment))
-    start = direction(toward) * np.exp(-0.5j * way * SWEEP)
+    start = unit_direction(toward) * np.exp(-0.5j * way * SWEEP)
     stop, back = start * np.exp(1j * way * SWEEP), HEAD / radius
     end = at + stop * np.exp(-1j * way * back * 0.8) * radius
     heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
     arc = ArcShape(complex(at + start * radius), complex(end), radius, way > 0, one.kind)
     tip = arrow_head(complex(at + stop * radius), complex(heading), f"{one.kind}-head")
-    return (ShapeGroup((arc, tip), title=f"moment, {one.told}: {written(abs(one.moment))}", links=(one.link,)),)
+    return (ShapeGroup((arc, tip), title=f"moment, {one.told}: {force_text(abs(one.moment))}", links=(one.link,)),)
 
 
-def moments(
-    forces: Sequence[ShownForce], place: Callable[[complex], complex], toward: complex, first: float = ROUND
-) -> Iterator[tuple[ShownForce, tuple[Shape, ...], Label]]:
+def moment_arcs(
+    forces: Sequence[ActingForce], place: Callable[[complex], complex], toward: complex, first: float = ROUND
+) -> Iterator[tuple[ActingForce, tuple[Shape, ...], Label]]:
     """Yield the arcs of all moments with labels. Several at one place are one around another."""
     taken: list[complex] = []
     for k, one in enumerate(one for one in forces if one.moment):
@@ -103,21 +135,169 @@ def moments(
         radius += NEXT * sum(abs(other - at) < 1.0 for other in taken)
         taken.append(at)
         way = toward - at if abs(toward - at) > CLEAR else -1j
-        outward = -direction(complex(way))
+        outward = -unit_direction(complex(way))
         shapes = moment_arc(one, at, radius, outward)
         half = text_half(one.turning, SMALL)
-        yield one, shapes, around(f"moment {k} {one.turning}", at + outward * radius, half, 5.0, outward)
+        yield one, shapes, label_around(f"moment {k} {one.turning}", at + outward * radius, half, 5.0, outward)
 
 
-def named(key: str, text: str, at: complex, kind: str) -> tuple[Shape, ...]:
+def force_name(key: str, text: str, at: complex, kind: str) -> tuple[Shape, ...]:
     """Return the name of a force, readable on lines."""
     return Text(at, text, f"halo {kind}-name"), Text(at, text, f"{kind}-name")
 
 
-def written(value: float) -> str:
+def force_text(value: float) -> str:
     """Return a value as it stands beside an arrow.
 
-    >>> written(12754.9), written(0.5)
+    >>> force_text(12754.9), force_text(0.5)
     ('12750', '0.5')
     """
     return f"{float(f'{value + 0.0:.{DIGITS}g}'):.{PLAIN}g}"
+
+
+LOWERED = str.maketrans("0123456789-", "₀₁₂₃₄₅₆₇₈₉₋")
+
+
+# What is below this part of the largest force is rounding.
+NOTHING = 1e-9
+
+
+# Arcs are not to scale: a moment below this part of the largest force by the size would look like any other.
+FAINT = 1e-5
+
+
+@dataclass(frozen=True)
+class ActingForce:
+    """A force and a moment on a link at one pose.
+
+    `name` and `turning` are their short names, `told` says it in words.
+    `kind` is the style they are drawn in, `at` a place of the mechanism's plane.
+    """
+
+    name: str
+    turning: str
+    told: str
+    link: str
+    by: str
+    kind: str
+    at: complex
+    force: complex
+    moment: float
+    is_driver: bool = False
+    is_open: bool = False
+
+
+def forces_in(forces: Forces, scene: Scene) -> Forces:
+    """Return forces at the pose of a scene. They are found anew where it is between the poses of the motion."""
+    if scene.shown is None or scene.shown is forces.motion:
+        return forces
+    return force_analysis(scene.shown, **forces.motion.loading)
+
+
+@dataclass(frozen=True, eq=False)
+class ForceCourse:
+    """A force and a moment on a link along a motion.
+
+    `shown` says what it is; `at`, `force` and `moment` are its numbers at all poses of one design, (poses,).
+    """
+
+    shown: ActingForce
+    at: Number
+    force: Number
+    moment: Number
+
+    def at_pose(self, k: int) -> ActingForce:
+        """Return it at a pose."""
+        return replace(self.shown, at=complex(self.at[k]), force=complex(self.force[k]), moment=float(self.moment[k]))
+
+
+Courses: TypeAlias = Mapping[str, tuple[ForceCourse, ...]]
+
+
+def force_courses(forces: Forces, scene: Scene, design: int) -> Courses:
+    """Return what acts on every link at all poses of a design."""
+    return {link: tuple(_courses(forces, scene, link, design)) for link in scene.legend}
+
+
+def acting_forces(forces: Forces, scene: Scene) -> Mapping[str, tuple[ActingForce, ...]]:
+    """Return what acts on every link at a pose, the frame included."""
+    design, pose = scene.pose
+    courses = force_courses(forces_in(forces, scene), scene, design)
+    found = {link: tuple(one.at_pose(pose) for one in own) for link, own in courses.items()}
+    force = largest_force(found)
+    turning = force * scene.mechanism.geometry.size * FAINT
+    return {link: tuple(_cleaned(one, force * NOTHING, turning) for one in own) for link, own in found.items()}
+
+
+def is_drawn_once(one: ActingForce, legend: Mapping[str, int]) -> bool:
+    """Tell whether a force stands for itself and its opposite.
+
+    That in a pair does on its later link; none on the frame.
+    """
+    place = list(legend)
+    later = one.by in legend and place.index(one.by) > place.index(one.link)
+    return one.link != FRAME and not (one.kind == REACTION and later)
+
+
+def largest_force(found: Mapping[str, tuple[ActingForce, ...]]) -> float:
+    """Return the largest force that acts anywhere."""
+    sizes = [abs(one.force) for own in found.values() for one in own]
+    return max((size for size in sizes if np.isfinite(size)), default=0.0)
+
+
+def _cleaned(one: ActingForce, force: float, moment: float) -> ActingForce:
+    """Rounding as zero; what equilibrium leaves open is told, and not drawn."""
+    if not np.isfinite(one.force) or not np.isfinite(one.moment):
+        return replace(one, force=0j, moment=0.0, is_open=True)
+    return replace(
+        one, force=0j if abs(one.force) <= force else one.force, moment=0.0 if abs(one.moment) <= moment else one.moment
+    )
+
+
+def _courses(forces: Forces, scene: Scene, link: str, design: int) -> Iterator[ForceCourse]:
+    """Yield what acts on a link: the forces of pins that join more than two links as one each, then all others."""
+    acting = tuple(forces.on(link))
+    pins = [letter for letter, pin in forces.pins.items() if len(pin.links) > 2 and link in pin.links]
+    twice = Counter(one.by for one in acting if one.kind == PAIR)
+    for letter in pins:
+        pin = _course(forces.pins[letter].on(link), design, f"F{_lowered(scene, link)}({letter})", "M")
+        # the torque of a driver at the pin is told by itself
+        turned = [_course(one, design, "", "").moment for one in acting if one.kind == DRIVER and one.at == letter]
+        yield replace(pin, moment=pin.moment - sum(turned)) if turned else pin
+    for one in acting:
+        if one.kind != PAIR or one.at not in pins:
+            yield _course(one, design, *_names(scene, one, twice[one.by] > 1))
+
+
+def _names(scene: Scene, one: LinkWrench, several: bool) -> tuple[str, str]:
+    """The names of a force and of a moment, by the numbers of the links."""
+    own = _lowered(scene, one.on)
+    if one.kind == PAIR:
+        both = _lowered(scene, one.by, one.on)
+        return f"F{both}" + (f"({one.name})" if several else ""), f"M{both}"
+    if one.kind == DRIVER:
+        return f"P{own}", f"T{own}"
+    if one.kind == WEIGHT:
+        return f"m{own}g", f"m{own}g"
+    if one.kind == OF_INERTIA:
+        return f"−m{own}a{own}", f"−J{own}α{own}"
+    called = one.kind if one.name.startswith(f"{one.kind} on ") else one.name
+    return called, called
+
+
+def _lowered(scene: Scene, *links: str) -> str:
+    """The numbers of links as an index: with a dash where one has two digits."""
+    numbers = [str(scene.numbers[link]) for link in links]
+    return ("-" if any(len(number) > 1 for number in numbers) else "").join(numbers).translate(LOWERED)
+
+
+def _course(one: LinkWrench, design: int, name: str, turning: str) -> ForceCourse:
+    told = f"{one.kind} {one.name} on {one.on}" + (f" by {one.by}" if one.by else "")
+    kind = REACTION if one.kind in (PAIR, DRIVER, FRICTION) else INERTIA if one.kind == OF_INERTIA else LOAD
+    shown = ActingForce(name, turning, told, one.on, one.by, kind, 0j, 0j, 0.0, one.kind == DRIVER)
+
+    def row(values: Any) -> Number:
+        rows = np.broadcast_to(values, one.motion.shape).reshape(one.motion.inputs.designs, one.motion.inputs.poses)
+        return rows[min(design, len(rows) - 1)]
+
+    return ForceCourse(shown, row(one.place), row(one.force), row(one.moment))

@@ -1,43 +1,67 @@
-"""`Picture`, shapes with their size and title, shown and saved; `Window`, where places of a mechanism are on it."""
+"""`Picture`, shapes with their size and title, shown and saved; `Window`, the map from the mechanism's plane to it.
+
+Several parts stand side by side in rows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
-from compoundkin.view.sketch.noted_numbers import as_place
-from compoundkin.view.sketch.shapes import Shape
+from compoundkin.view.sketch.shapes import Shape, Text, moved_shapes
+from compoundkin.view.sketch.sketch_style import LINE
 from compoundkin.view.sketch.svg import NATURAL, converted, inline, svg
 from compoundkin.view.sketch.tikz import tikz
+from compoundkin.view.sketch.traced_numbers import as_place
 
 # How large the drawn part of a picture is, in picture units: at least and at most its longer side. The middle of the
 # links' lengths is drawn at least so long, if that is possible: many links make a large picture with fine lines.
 LEAST, MOST = 480.0, 1200.0
+
+
 BAR_LENGTH = 74.0
+
+
 # Of so many bars or more the picture grows with their number.
 FEW = 14
+
+
 # Around it is room for letters, hatching and arrows.
 MARGIN = 26.0
+
+
 # A picture is at least so wide and so high, in picture units.
 NARROWEST, LOWEST = 260.0, 130.0
+
+
 # A line may be off by this much: no eye can tell.
 DEVIATION = 0.12
+
+
 # A path whose ends are nearer to each other than this part of its size is closed.
 CLOSED = 1e-9
+
+
 # A path of a long motion is drawn through so many of its places.
 MOST_PLACES = 2001
+
+
 # A path is drawn with so many points between two poses.
 BETWEEN = 6
+
+
 # The longer side of a picture has so many pixels, at least and at most.
 SMALLEST, LARGEST = 16, 20000
+
+
 # The longest side of a picture for which no size is asked for.
 PAGE = 800.0
 
@@ -69,7 +93,7 @@ class Window:
         return float(np.hypot(self.width, self.height))
 
 
-def fitted(window: Window, points: Number, narrowest: float = NARROWEST) -> Window:
+def fitted_window(window: Window, points: Number, narrowest: float = NARROWEST) -> Window:
     """Return the window of the same scale that just holds some points. It has room for letters around them.
 
     It is no narrower than asked, its points in the middle.
@@ -85,7 +109,7 @@ def fitted(window: Window, points: Number, narrowest: float = NARROWEST) -> Wind
     )
 
 
-def window_of(places: Iterable[Number], bars: Iterable[float]) -> Window:
+def window_around(places: Iterable[Number], bars: Iterable[float]) -> Window:
     """Return the window on some places. It is finer where the lengths of links (`bars`) are many and short."""
     known = np.concatenate([np.ravel(p).astype(complex) for p in places] or [np.zeros(1, complex)])
     known = known[np.isfinite(known)]
@@ -218,3 +242,59 @@ def checked_size(size: Any) -> float | None:
     if isinstance(size, bool) or not isinstance(size, int | float) or not SMALLEST <= size <= LARGEST:
         raise InvalidInput(Problem("size", f"{size!r} is not a number of pixels", f"{SMALLEST} to {LARGEST}"))
     return float(size)
+
+
+# Parts stand side by side until they are so wide together, in picture units.
+WIDEST = 1000.0
+
+
+# Parts so wide together are printed legibly on A4: of some 780 units on 180 mm, small letters have 7 points.
+PAPER_WIDTH = 730.0
+
+
+# Between parts, with a sign.
+GAP = 30.0
+
+
+@dataclass(frozen=True)
+class PicturePart:
+    """A part with its size, its upper left corner at zero."""
+
+    shapes: tuple[Shape, ...]
+    width: float
+    height: float
+
+
+def in_rows(parts: Sequence[PicturePart], sign: str = "", widest: float = WIDEST) -> tuple[list[Shape], float, float]:
+    """Return the parts side by side, in rows, with a sign between them. And the size of them all.
+
+    >>> in_rows([PicturePart((), 300.0, 100.0)] * 4)[1:]
+    (1016.0, 245.0)
+    """
+    rows: list[list[PicturePart]] = []
+    for part in parts:
+        if rows and sum(p.width + GAP for p in rows[-1]) + part.width <= widest:
+            rows[-1].append(part)
+        else:
+            rows.append([part])
+    shapes: list[Shape] = []
+    y, first = MARGIN / 2.0, True
+    for row in rows:
+        x, tall = MARGIN / 2.0 + GAP, max(part.height for part in row)
+        for part in row:
+            if not first and sign:
+                shapes.append(Text(complex(x - GAP / 2.0, y + tall / 2.0), sign, "heading"))
+            shapes += moved_shapes(part.shapes, complex(x, y + (tall - part.height) / 2.0))
+            x, first = x + part.width + GAP, False
+        y += tall + LINE
+    width = max(sum(part.width + GAP for part in row) for row in rows) + MARGIN
+    return shapes, round(width, 1), round(y, 1)
+
+
+def legible_size(width: float, height: float, size: float | None) -> float:
+    """Return the pixels of the longer side. If none are given, texts are as large as those of a page.
+
+    >>> legible_size(400.0, 1000.0, None)
+    1100.0
+    """
+    return round(NATURAL * max(width, height), 1) if size is None else size

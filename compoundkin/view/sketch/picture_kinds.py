@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from compoundkin.base import display
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
-from compoundkin.view.sketch.asked_values import Drawable
 from compoundkin.view.sketch.picture import Picture
-from compoundkin.view.sketch.shown_pose import Wishes
+from compoundkin.view.sketch.picture_options import Drawable, PictureOptions
 
 if TYPE_CHECKING:
     from compoundkin.dynamics.forces import Forces
@@ -31,28 +30,30 @@ class PictureKind(NamedTuple):
     known: Sequence[str]
     of_forces: bool = False
 
-    def picture(self, what: Drawable | Forces, wishes: Wishes) -> Picture:
+    def picture(self, what: Drawable | Forces, wishes: PictureOptions) -> Picture:
         """Draw it; forces are found first where it is theirs."""
-        made: Picture = display.loaded(f"{__package__}.{self.drawn}")(_forces(what) if self.of_forces else what, wishes)
+        made: Picture = display.import_function(f"{__package__}.{self.drawn}")(
+            _forces(what) if self.of_forces else what, wishes
+        )
         return made
 
 
 KINDS: Mapping[str, PictureKind] = {
     "sketch": PictureKind(
-        "sketches:sketch", (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size", "dimensions")
+        "kinematic_sketch:draw_sketch", (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size", "dimensions")
     ),
-    "groups": PictureKind("structure_kinds:groups_apart", (*POSE, "size")),
-    "loops": PictureKind("structure_kinds:independent_loops", (*POSE, "size")),
-    "graph": PictureKind("structure_kinds:kinematic_graph", ("size",)),
-    "circle": PictureKind("structure_kinds:circle_of_centres", ("size",)),
+    "groups": PictureKind("structure_pictures:draw_groups_apart", (*POSE, "size")),
+    "loops": PictureKind("structure_pictures:draw_independent_loops", (*POSE, "size")),
+    "graph": PictureKind("structure_pictures:draw_kinematic_graph", ("size",)),
+    "circle": PictureKind("structure_pictures:draw_circle_of_centres", ("size",)),
     "polygon": PictureKind("vectors:vector_polygon", (*POSE, "vectors", "size")),
     "construction": PictureKind("construction:construction", (*POSE, "link", "size")),
     "configurations": PictureKind("configuration_pictures:configurations_picture", (*POSE, "labels", "size")),
     "circuits": PictureKind("configuration_pictures:circuits_picture", ("at", "design", "labels", "size")),
-    "free-bodies": PictureKind("free_bodies:free_bodies", (*POSE, "link", "size"), of_forces=True),
-    "force-polygon": PictureKind("force_polygons:force_polygons", (*POSE, "link", "size"), of_forces=True),
+    "free-bodies": PictureKind("force_pictures:free_bodies", (*POSE, "link", "size"), of_forces=True),
+    "force-polygon": PictureKind("force_pictures:force_polygons", (*POSE, "link", "size"), of_forces=True),
 }
-SKETCH_OF_FORCES = PictureKind("force_sketch:force_sketch", (*POSE, "labels", "link", "size"), of_forces=True)
+SKETCH_OF_FORCES = PictureKind("force_pictures:force_sketch", (*POSE, "labels", "link", "size"), of_forces=True)
 
 
 @checked
@@ -107,8 +108,8 @@ def draw(
     'Crank: velocity polygon'
     """
     if kind not in KINDS:
-        raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(kind, list(KINDS))))
-    wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
+        raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", suggestion(kind, list(KINDS))))
+    wishes = PictureOptions(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
     asked = KINDS[kind]
     if not isinstance(what, Drawable) and kind == "sketch":
         asked = SKETCH_OF_FORCES
@@ -123,5 +124,5 @@ def _forces(what: Drawable | Forces) -> Forces:
     """The forces, or those of a motion; of a mechanism those over its drivers' own ranges."""
     if not isinstance(what, Drawable):
         return what
-    found: Forces = display.way("forces")(what if isinstance(what, Motion) else solve(what))
+    found: Forces = display.display_function("forces")(what if isinstance(what, Motion) else solve(what))
     return found

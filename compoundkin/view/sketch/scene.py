@@ -1,34 +1,34 @@
-"""The visible parts of a mechanism at one pose: where links and points are, and the marks of its pairs."""
+"""The visible parts of a mechanism at one pose: places of links and points, the marks of its pairs, discs of its links."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.arrays import entry, first_entry
+from compoundkin.base.arrays import Number, entry, first_entry
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Series, constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.outlines.outline_shapes import OutlineShape, outline_shapes
+from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.guide_ends import as_ended, bounds_name
-from compoundkin.model.pairs.symbols import Mark, Sliding
+from compoundkin.model.pairs.symbols import Mark, Outline, Sliding, Track, Wheel
+from compoundkin.model.pairs.travel_limits import as_travel_limited, bounds_name
 from compoundkin.structure import DrivenPair, Structure
-from compoundkin.view.sketch.noted_numbers import as_place
+from compoundkin.view.sketch.traced_numbers import as_place
 
 # Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
 SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class PairMark:
     """A mark of a pair, and the links that the pair joins."""
 
     pair: Pair
@@ -101,13 +101,13 @@ class Scene:
         return {k: place for k, place in self.letters.items() if k in needed or carriers[k] != (FRAME,)}
 
     @cached_property
-    def seen(self) -> tuple[Seen, ...]:
+    def seen(self) -> tuple[PairMark, ...]:
         """The marks of all pairs."""
-        return tuple(Seen(pair, mark, pair.members) for pair in self.structure.pairs for mark in self._marks(pair))
+        return tuple(PairMark(pair, mark, pair.members) for pair in self.structure.pairs for mark in self._marks(pair))
 
     def _marks(self, pair: Pair) -> tuple[Mark, ...]:
         ends, poses = self.ends[pair.name], tuple(self.whole[name] for name in pair.members)
-        marks, ended = pair.glyph(ends, poses), as_ended(pair)
+        marks, ended = pair.glyph(ends, poses), as_travel_limited(pair)
         if ended is None:
             return marks
         known = self.ends.get(bounds_name(pair))
@@ -117,17 +117,17 @@ class Scene:
     @cached_property
     def numbers(self) -> Mapping[str, int]:
         """The numbers of the links. The frame is 1, the others follow as they are written."""
-        return numbers_of(self.structure)
+        return link_numbers(self.structure)
 
     @cached_property
     def legend(self) -> Mapping[str, int]:
         """The numbers of the links that there are to be seen."""
-        return {name: number for name, number in self.numbers.items() if name not in self.mechanism.led_links}
+        return {name: number for name, number in self.numbers.items() if name not in self.mechanism.auxiliary_links}
 
     @cached_property
     def groups(self) -> Mapping[str, int]:
         """Which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
-        return groups_of(self.structure)
+        return link_groups(self.structure)
 
     @cached_property
     def driven(self) -> tuple[DrivenPair, ...]:
@@ -171,14 +171,14 @@ class Scene:
         return float(_number(self.shown.inputs.drives[name][k], self.pose))
 
 
-def numbers_of(structure: Structure) -> dict[str, int]:
+def link_numbers(structure: Structure) -> dict[str, int]:
     """Return the numbers of the links. The frame is 1, the others follow as written, what leads points last."""
-    thought = structure.mechanism.led_links
+    thought = structure.mechanism.auxiliary_links
     others = sorted((name for name in structure.mechanism.links if name != FRAME), key=lambda name: name in thought)
     return {name: k for k, name in enumerate([FRAME, *others], start=1)}
 
 
-def groups_of(structure: Structure) -> dict[str, int]:
+def link_groups(structure: Structure) -> dict[str, int]:
     """Tell which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
     found = dict.fromkeys(structure.mechanism.links, 0)
     for k, group in enumerate(structure.groups, start=1):
@@ -218,3 +218,48 @@ def _number(value: Number, at: tuple[int, int], motion: Motion | None = None) ->
 
 def _side(value: Number, at: tuple[int, int]) -> Number:
     return None if value is None else _number(value.c[0] if isinstance(value, Series) else value, at)
+
+
+# A point is on a wheel if it is not farther outside than this part of its radius.
+ON_RIM = 0.02
+
+
+def is_inside(scene: Scene, link: str) -> bool:
+    """Tell whether all points of a link are within a disc of its own."""
+    own = np.array([complex(p) for p in scene.points[link].values()])
+    return any(bool(np.all(inside)) for inside in _inside(scene, link, own))
+
+
+def _inside(scene: Scene, link: str, own: Number) -> Iterator[Number]:
+    """For each disc of a link, which of its points are within it."""
+    for seen in scene.seen:
+        mark = seen.mark
+        if isinstance(mark, Wheel) and seen.members[mark.member] == link and not mark.is_ring:
+            yield np.abs(own - complex(mark.at)) <= float(mark.radius) * (1.0 + ON_RIM)
+        elif isinstance(mark, Outline) and seen.members[mark.member] == link and mark.closed and not mark.is_hollow:
+            # a closed line goes once around a point within it
+            line = np.append(mark.line, mark.line[:1])[:, None] - own
+            with np.errstate(divide="ignore", invalid="ignore"):
+                turned = np.angle(line[1:] / line[:-1]).sum(axis=0)
+            yield np.abs(turned) > np.pi
+
+
+def racks(scene: Scene) -> frozenset[str]:
+    """Return the names of the links that carry a rack."""
+    tracks = ((seen.members, seen.mark) for seen in scene.seen if isinstance(seen.mark, Track))
+    return frozenset(members[mark.member] for members, mark in tracks if mark.pitch)
+
+
+def smallest_wheel(scene: Scene, letter: str) -> float:
+    """Return the least radius of the wheels about a point. It is infinite where there is none."""
+    links = scene.mechanism.carriers[letter]
+    return min(
+        (
+            float(seen.mark.radius)
+            for seen in scene.seen
+            if isinstance(seen.mark, Wheel)
+            and (link := seen.members[seen.mark.member]) in links
+            and abs(complex(seen.mark.at) - complex(scene.points[link][letter])) <= ON_RIM * float(seen.mark.radius)
+        ),
+        default=np.inf,
+    )

@@ -4,23 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
-from compoundkin.view.sketch.band import Band as Band
-from compoundkin.view.sketch.stroke_row import StrokeRow
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 
 HATCH = 6.0  # distance of the strokes of a hatching
+
+
 HEAD = 10.0  # length of an arrow's head
+
+
 HEAD_HALF = 3.6
+
+
 SLANT = np.exp(2.4j)  # direction of a hatching as seen from its line
 
 
 @dataclass(frozen=True, repr=False)
-class Polyline(PrintsShort):
+class Polyline(ShortRepr):
     """A line through points. Where it is the outline of points, `among` are all of these."""
 
     points: tuple[complex, ...]
@@ -29,7 +33,7 @@ class Polyline(PrintsShort):
 
 
 @dataclass(frozen=True, repr=False)
-class Polygon(PrintsShort):
+class Polygon(ShortRepr):
     """A closed line through points, filled as its style says. Of an outline of points `among` are all of these."""
 
     points: tuple[complex, ...]
@@ -38,7 +42,7 @@ class Polygon(PrintsShort):
 
 
 @dataclass(frozen=True, repr=False)
-class Strokes(PrintsShort):
+class Strokes(ShortRepr):
     """Several lines of one style that belong together, such as a hatching. Equal ones tell their `row`."""
 
     lines: tuple[tuple[complex, ...], ...]
@@ -96,13 +100,33 @@ class ShapeGroup:
     links: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, repr=False)
+class Band(ShortRepr):
+    """A line of a width through points, a polygon where it is closed. Its ends and corners are round."""
+
+    points: tuple[complex, ...]
+    width: float
+    closed: bool
+    style: str
+
+    @property
+    def corners(self) -> list[complex]:
+        """Points between which it lies."""
+        half = self.width / 2.0 * (1 + 1j)
+        return [point + side for point in self.points for side in (-half, half)]
+
+    def moved(self, by: complex, turn: complex) -> Band:
+        """Turn it about zero, then move it on the picture."""
+        return replace(self, points=tuple(p * turn + by for p in self.points))
+
+
 Shape: TypeAlias = Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text | ShapeGroup
 
 
-def corners(shapes: Iterable[Shape]) -> list[complex]:
+def shape_corners(shapes: Iterable[Shape]) -> list[complex]:
     """Return points between which some shapes lie, their texts left out.
 
-    >>> corners([CircleShape(0j, 1.0, "pin")])
+    >>> shape_corners([CircleShape(0j, 1.0, "pin")])
     [(-1-1j), (1+1j)]
     """
     found: list[complex] = []
@@ -139,10 +163,10 @@ def leaves(shapes: Iterable[Shape]) -> Iterator[Shape]:
             yield shape
 
 
-def moved(shapes: Iterable[Shape], by: complex, turn: complex = 1 + 0j) -> list[Shape]:
+def moved_shapes(shapes: Iterable[Shape], by: complex, turn: complex = 1 + 0j) -> list[Shape]:
     """Turn shapes about zero, then move them on the picture; texts stay upright.
 
-    >>> moved([CircleShape(1 + 0j, 1.0, "pin")], 2j, 1j)
+    >>> moved_shapes([CircleShape(1 + 0j, 1.0, "pin")], 2j, 1j)
     [CircleShape(centre=3j, radius=1.0, style='pin')]
     """
     return [_moved(shape, by, turn) for shape in shapes]
@@ -150,7 +174,7 @@ def moved(shapes: Iterable[Shape], by: complex, turn: complex = 1 + 0j) -> list[
 
 def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
     if isinstance(shape, ShapeGroup):
-        return replace(shape, shapes=tuple(moved(shape.shapes, by, turn)))
+        return replace(shape, shapes=tuple(moved_shapes(shape.shapes, by, turn)))
     if isinstance(shape, CircleShape):
         return replace(shape, centre=shape.centre * turn + by)
     if isinstance(shape, ArcShape):
@@ -166,15 +190,15 @@ def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
     return replace(shape, at=shape.at * turn + by)
 
 
-def direction(along: complex) -> complex:
+def unit_direction(along: complex) -> complex:
     """Return the unit vector of a direction; to the right for none."""
     length = abs(along)
     return along / length if length > 0 else 1 + 0j
 
 
-def box(middle: complex, along: complex, length: float, width: float) -> tuple[complex, ...]:
+def rectangle_corners(middle: complex, along: complex, length: float, width: float) -> tuple[complex, ...]:
     """Return the corners of a rectangle about a middle."""
-    e = direction(along)
+    e = unit_direction(along)
     a, b = e * length / 2.0, 1j * e * width / 2.0
     return middle - a - b, middle + a - b, middle + a + b, middle - a + b
 
@@ -186,31 +210,52 @@ def sheet(width: float, height: float) -> Polygon:
 
 def hatching(start: complex, stop: complex, side: float) -> Strokes:
     """Draw a hatching along a line on one of its sides. That of ``1j * side`` as seen along it."""
-    line, e = stop - start, direction(stop - start)
+    line, e = stop - start, unit_direction(stop - start)
     count = np.maximum(2.0, np.rint(abs(line) / HATCH))
     slant = e * SLANT.real + e * 1j * side * SLANT.imag
     row = StrokeRow(start + line * 0.7 / count, line / count, slant * HATCH, count)
     return Strokes(row.lines, "hatch", row)
 
 
-def arrow(start: complex, stop: complex, style: str) -> tuple[Shape, ...]:
+def arrow_shapes(start: complex, stop: complex, style: str) -> tuple[Shape, ...]:
     """Draw a straight arrow; a short one has a smaller head."""
-    length, e = abs(stop - start), direction(stop - start)
+    length, e = abs(stop - start), unit_direction(stop - start)
     head = min(HEAD, 0.6 * length)
     return Polyline((start, stop - e * head * 0.8), style), arrow_head(stop, e, f"{style}-head", head / HEAD)
 
 
 def arrow_head(tip: complex, along: complex, style: str, size: float = 1.0) -> Polygon:
     """Return the head of an arrow."""
-    e = direction(along)
+    e = unit_direction(along)
     back = tip - e * HEAD * size
     return Polygon((tip, back + 1j * e * HEAD_HALF * size, back - 1j * e * HEAD_HALF * size), style)
 
 
-def ticks(middle: complex, radius: float, start: float, count: int, inner: float, outer: float) -> tuple[Number, ...]:
+def radial_ticks(
+    middle: complex, radius: float, start: float, count: int, inner: float, outer: float
+) -> tuple[Number, ...]:
     """Draw radial strokes around a circle. The first one is in the direction `start` (radians, on paper)."""
     found = []
     for k in range(count):
         e = complex(np.exp(1j * (start + 2.0 * np.pi * k / count)))
         found.append((middle + e * (radius + inner), middle + e * (radius + outer)))
     return tuple(found)
+
+
+class StrokeRow(NamedTuple):
+    """A row of equal strokes. The foot of the first, the way to the next foot, a stroke from its foot, their number."""
+
+    first: complex
+    step: complex
+    stroke: complex
+    number: float
+
+    @property
+    def lines(self) -> tuple[tuple[complex, complex], ...]:
+        """All strokes."""
+        feet = [self.first + self.step * k for k in range(round(self.number))]
+        return tuple((foot, foot + self.stroke) for foot in feet)
+
+    def moved(self, by: complex, turn: complex) -> StrokeRow:
+        """Return it turned about zero, then moved."""
+        return StrokeRow(self.first * turn + by, self.step * turn, self.stroke * turn, self.number)

@@ -1,41 +1,140 @@
-"""The mechanism taken apart into its groups, and its independent loops."""
+"""Pictures of a structure: taken apart into groups, its independent loops, its kinematic graph, its circle of centres."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.base.series import Series
-from compoundkin.model.elements import FRAME
+from compoundkin.kinematics import Motion
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs import Pair
 from compoundkin.structure import Group, Loop, Structure, roman
-from compoundkin.view.sketch.asked_values import LABELS
-from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
-from compoundkin.view.sketch.label_places import WIDE, Label, placed
-from compoundkin.view.sketch.link_shapes import edges, skeleton
-from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, chain, panel_of, parts_of
-from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
-from compoundkin.view.sketch.picture_rows import PAPER_WIDTH, PicturePart, in_rows, legible_size
-from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes, Text, corners, moved, sheet
-from compoundkin.view.sketch.sketch_labels import below, label_shapes, labels_of, lines_of_text
-from compoundkin.view.sketch.sketch_style import LETTER, LINE
-from compoundkin.view.sketch.sketches import by_links, ghost, in_layers, layered, window_on
-from compoundkin.view.sketch.slide_shapes import Painter
+from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
+from compoundkin.view.sketch.labels import (
+    NARROW,
+    WIDE,
+    Label,
+    label_around,
+    label_shapes,
+    labels_of,
+    lines_below,
+    lines_of_text,
+    placed,
+    text_half,
+)
+from compoundkin.view.sketch.painter import Painter, edges, skeleton
+from compoundkin.view.sketch.picture import (
+    MARGIN,
+    PAPER_WIDTH,
+    Picture,
+    PicturePart,
+    Window,
+    checked_size,
+    fitted_window,
+    in_rows,
+    legible_size,
+)
+from compoundkin.view.sketch.picture_options import LABELS, Drawable, PictureOptions, scene_of, structure_of
+from compoundkin.view.sketch.scene import Scene, link_groups, link_numbers
+from compoundkin.view.sketch.shapes import (
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    ShapeGroup,
+    Strokes,
+    Text,
+    moved_shapes,
+    shape_corners,
+    sheet,
+    unit_direction,
+)
+from compoundkin.view.sketch.sketch_style import LETTER, LINE, PIN, SMALL, style_of
+
+
+def draw_groups_apart(what: Drawable, wishes: PictureOptions) -> Picture:
+    """Draw the mechanism taken apart into groups.
+
+    They are drawn in its graph where it cannot be shown at any pose.
+    """
+    structure = _taken_apart(what)
+    known = what if isinstance(what, Motion) else structure.mechanism
+    try:
+        scene = scene_of(known, wishes.at, wishes.pose, wishes.design)
+    except (InvalidInput, NotAssembled):
+        # how it is taken apart is a matter of its letters: it needs no pose unless one is asked for
+        if wishes.others(("size",)):
+            raise
+        return groups_in_graph(structure, wishes.size)
+    return groups_picture(scene, wishes.size)
+
+
+def draw_circle_of_centres(what: Drawable, wishes: PictureOptions) -> Picture:
+    """Draw the circle diagram of the instant centres."""
+    # late: other pictures need none of this
+    from compoundkin.view.sketch.centre_pictures import circle_diagram
+
+    structure = _taken_apart(what)
+    return circle_diagram(structure, link_numbers(structure), wishes.size)
+
+
+def draw_kinematic_graph(what: Drawable, wishes: PictureOptions) -> Picture:
+    """Draw the graph of links and pairs."""
+    structure = structure_of(what)
+    return graph_shapes(structure, link_numbers(structure), link_groups(structure), wishes.size)
+
+
+def draw_independent_loops(what: Drawable, wishes: PictureOptions) -> Picture:
+    """Draw the loops on the mechanism.
+
+    They are drawn in its graph where it cannot be shown at any pose.
+    """
+    try:
+        scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+    except (InvalidInput, NotAssembled, NotDetermined):
+        if wishes.others(("size",)):
+            raise
+        return loops_in_graph(structure_of(what), wishes.size)
+    return loops_picture(scene, wishes.size)
+
+
+def _taken_apart(what: Drawable) -> Structure:
+    """The structure; raises NotDetermined where it cannot be taken apart."""
+    structure = structure_of(what)
+    if structure.faults:
+        problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
+        raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")
+    return structure
+
 
 # Parts are drawn in this part of the size of a sketch.
 PART_OF_SKETCH = 0.52
+
+
 # Above each part, for its heading.
 HEADING = 30.0
+
+
 # More loops than this nobody looks at one by one.
 MOST = 40
+
+
 # Panels are drawn in this part of the size of a sketch, and no larger than this, in picture units: two of them, or
 # three where there are more than a few loops, stand side by side.
 SMALLER, TWO, THREE, FEW = 0.52, 420.0, 250.0, 4
+
+
 # The marks of more links than this would run together in a panel: links are thin lines then.
 MOST_MARKED = 16
+
+
 # Places nearer to each other than this part of a loop's size are one.
 SAME = 1e-9
 
@@ -47,20 +146,25 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
         first.scale * PART_OF_SKETCH, first.corner, first.width * PART_OF_SKETCH, first.height * PART_OF_SKETCH
     )
     ground = frozenset((FRAME, *scene.structure.ground.links))
-    parts = [_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
-    parts += [_part(scene, whole, frozenset(g.links), heading(g), outer_letters(g)) for g in scene.structure.groups]
+    parts = [
+        _mechanism_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")
+    ]
+    parts += [
+        _mechanism_part(scene, whole, frozenset(g.links), group_heading(g), outer_letters(g))
+        for g in scene.structure.groups
+    ]
     shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
     notes = [f"{number} {name}" for name, number in scene.legend.items()]
     notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
-    texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
+    texts, height = lines_below(lines_of_text(notes, width - 32.0), height + LINE)
     paper = sheet(width, height)
     title = f"{scene.mechanism.title}, taken apart"
-    described = "; ".join(heading(group) for group in scene.structure.groups)
+    described = "; ".join(group_heading(group) for group in scene.structure.groups)
     shown = legible_size(width, height, checked_size(size))
     return Picture((paper, *shapes, *texts), width, height, title, described, shown)
 
 
-def heading(group: Group) -> str:
+def group_heading(group: Group) -> str:
     """Tell what a group is called: its class and the letters of its pairs."""
     return f"class {roman(group.class_)}: {group.name}"
 
@@ -70,25 +174,27 @@ def outer_letters(group: Group) -> frozenset[str]:
     return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
 
 
-def _part(
+def _mechanism_part(
     scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()
 ) -> PicturePart:
     """The links of a part as they are in the mechanism, with their letters and numbers."""
     painter = Painter(scene, whole, links, outer)
     laid = in_layers(painter)
     shapes = by_links(laid)
-    points = np.array(corners(shapes) or [0j])
+    points = np.array(shape_corners(shapes) or [0j])
     low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
     high = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j)
     wide = max((high - low).real, len(title) * LETTER * WIDE)
     low -= (wide - (high - low).real) / 2.0
-    shapes = moved(shapes, -low)
+    shapes = moved_shapes(shapes, -low)
     own = [_shifted(label, -low) for label in labels_of(painter, laid, LABELS)]
     tall = (high - low).imag
     shapes += label_shapes(scene, placed(own, shapes, wide, tall))
     named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
     own_links = tuple(name for name in scene.legend if name in links)
-    return PicturePart((ShapeGroup((named_part, *moved(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING)
+    return PicturePart(
+        (ShapeGroup((named_part, *moved_shapes(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING
+    )
 
 
 def _shifted(label: Label, by: complex) -> Label:
@@ -96,46 +202,46 @@ def _shifted(label: Label, by: complex) -> Label:
     return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
 
 
-def loops(scene: Scene, size: float | None) -> Picture:
+def loops_picture(scene: Scene, size: float | None) -> Picture:
     """Draw all independent loops of a mechanism at a pose, a panel each."""
     first = window_on(scene)
     scale = min(SMALLER, _longest(scene.structure) / max(first.width, first.height))
     whole = Window(first.scale * scale, first.corner, first.width * scale, first.height * scale)
     is_crowd = len(scene.mechanism.links) > MOST_MARKED
-    every = _thin(scene, whole) if is_crowd else ghost(scene, whole)
+    every = _thin(scene, whole) if is_crowd else ghost_shapes(scene, whole)
 
     def behind(loop: Loop) -> list[Shape]:
         own = [] if is_crowd else layered(Painter(scene, whole, frozenset(loop.links)))
         return [every, ShapeGroup(tuple(own), "ghost")]
 
     def at(loop: Loop) -> list[Corner]:
-        return [Corner(complex(whole.at(corner.at)), corner.letter) for corner in polygon(scene, loop)]
+        return [Corner(complex(whole.at(corner.at)), corner.letter) for corner in loop_polygon(scene, loop)]
 
-    panels = [panel_of(k, loop, behind(loop), at(loop)) for k, loop in _shown(scene.structure)]
+    panels = [loop_panel(k, loop, behind(loop), at(loop)) for k, loop in _numbered_loops(scene.structure)]
     return _picture(scene.structure, panels, [], size)
 
 
 def loops_in_graph(structure: Structure, size: float | None) -> Picture:
-    """Do as `loops`, in the kinematic graph. The mechanism is not drawn and cannot be solved."""
-    numbers, groups = numbers_of(structure), groups_of(structure)
-    spots = np.array(spread(list(numbers), structure.pairs))
+    """Do as `loops_picture`, in the kinematic graph. The mechanism is not drawn and cannot be solved."""
+    numbers, groups = link_numbers(structure), link_groups(structure)
+    spots = np.array(spread_links(list(numbers), structure.pairs))
     wide, tall = float(np.ptp(spots.real)), float(np.ptp(spots.imag))
     scale = min(SMALLER, _longest(structure) / max(wide, tall, APART))
-    window = fitted(Window(scale, 0j, 0.0, 0.0), spots * scale)
+    window = fitted_window(Window(scale, 0j, 0.0, 0.0), spots * scale)
     places = {name: complex(window.at(np.conjugate(p))) for name, p in zip(numbers, spots, strict=True)}
     lines = [(places[pair.members[0]], places[pair.members[1]]) for pair in structure.pairs]
-    nodes = [node(name, places[name], numbers[name], groups[name]) for name in numbers]
+    nodes = [link_node(name, places[name], numbers[name], groups[name]) for name in numbers]
 
     def at(loop: Loop) -> list[Corner]:
         return [Corner(places[name], "") for name in loop.links]
 
     notes = [f"{number} {name}" for name, number in numbers.items()]
     behind = [Strokes(tuple(lines), "edge"), *nodes]
-    panels = [panel_of(k, loop, behind, at(loop), NODE) for k, loop in _shown(structure)]
+    panels = [loop_panel(k, loop, behind, at(loop), NODE) for k, loop in _numbered_loops(structure)]
     return _picture(structure, panels, notes, size)
 
 
-def polygon(scene: Scene, loop: Loop) -> list[Corner]:
+def loop_polygon(scene: Scene, loop: Loop) -> list[Corner]:
     """Return the corners of a loop's polygon at a pose, in the mechanism's plane.
 
     On each link a vector leads from pair to pair; across a pair that is no pin, from its point on one link to that on
@@ -174,7 +280,7 @@ def _thin(scene: Scene, window: Window) -> ShapeGroup:
     return ShapeGroup((Strokes(tuple(lines), "thin0"),), "ghost")
 
 
-def _shown(structure: Structure) -> list[tuple[int, Loop]]:
+def _numbered_loops(structure: Structure) -> list[tuple[int, Loop]]:
     """The loops that are drawn, with their numbers; raises InvalidInput where there are none."""
     if not structure.loops:
         what = f"{structure.mechanism.title!r} has no closed loop"
@@ -184,10 +290,402 @@ def _shown(structure: Structure) -> list[tuple[int, Loop]]:
 
 def _picture(structure: Structure, panels: Sequence[LoopPanel], notes: Sequence[str], size: float | None) -> Picture:
     found = structure.loops
-    shapes, width, height = in_rows(parts_of(panels))
+    shapes, width, height = in_rows(loop_parts(panels))
     notes = [*notes, *([f"and {len(found) - MOST} more loops"] if len(found) > MOST else [])]
-    texts, height = below(lines_of_text(notes, width - 32.0), height)
+    texts, height = lines_below(lines_of_text(notes, width - 32.0), height)
     paper = sheet(width, height)
     title = f"{structure.mechanism.title}: independent loops"
-    described = "; ".join(chain(loop) for loop in found)
+    described = "; ".join(loop_links(loop) for loop in found)
     return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
+
+
+# Panels are at least so wide, for their headings.
+NARROWEST = 230.0
+
+
+# Vectors that lie on each other, nearer than this, are drawn beside their line.
+ON_LINE, ASIDE = 5.0, 6.0
+
+
+# The head of a vector: its length and half its width, without the thickness of its line.
+HEAD, HALF = 7.0, 3.0
+
+
+# The arrow around the number of a loop: its radius, and what it goes through of a turn (radians).
+ROUND, SWEEP = 11.0, 4.9
+
+
+# Places for the number of a loop: in so many rings around its middle.
+RINGS = (0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0)
+
+
+# What it costs the number of a loop to be a picture unit away from its middle.
+NEAR = 0.3
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A corner of a loop's polygon. Where it is, and the name of the point there, "" for none."""
+
+    at: complex
+    letter: str
+
+
+def loop_links(loop: Loop) -> str:
+    """Return the links of a loop in order."""
+    return " - ".join(loop.links)
+
+
+@dataclass(frozen=True)
+class LoopPanel:
+    """One loop: its number, its corners, what is behind it, its vectors."""
+
+    number: int
+    loop: Loop
+    behind: tuple[Shape, ...]
+    corners: tuple[Corner, ...]
+    vectors: tuple[Shape, ...]
+
+
+def loop_panel(k: int, loop: Loop, behind: Sequence[Shape], found: Sequence[Corner], clear: float = 0.0) -> LoopPanel:
+    """Return the panel of a loop. Vectors keep `clear` of what is behind its corners, else of circles there."""
+    vectors = _vectors(k, [corner.at for corner in found], clear or PIN)
+    circles = [] if clear else [CircleShape(corner.at, PIN, f"pin {style_of('ring', k)}") for corner in found]
+    return LoopPanel(k, loop, tuple(behind), tuple(found), (*vectors, *circles))
+
+
+def loop_parts(panels: Sequence[LoopPanel]) -> list[PicturePart]:
+    """Return the panels with their headings, all of one size."""
+    points = np.array([p for panel in panels for p in shape_corners([*panel.behind, *panel.vectors])])
+    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
+    size = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j) - low
+    wide = max(size.real, NARROWEST)
+    low -= (wide - size.real) / 2.0
+    wrap = textwrap.TextWrapper(int(wide / (SMALL * NARROW)), break_on_hyphens=False, break_long_words=False).wrap
+    chains = [wrap(loop_links(panel.loop)) for panel in panels]
+    down = LINE * (1 + max(map(len, chains)))
+    parts = []
+    for panel, lines in zip(panels, chains, strict=True):
+        top = complex(wide / 2.0, down - LINE * (len(lines) + 0.5))
+        heads: list[Shape] = [Text(top, f"loop {panel.number}", "heading")]
+        heads += [Text(top + 1j * LINE * i, line, "note") for i, line in enumerate(lines, start=1)]
+        shapes = moved_shapes([*panel.behind, *panel.vectors], -low)
+        shapes += _texts(panel, low, complex(wide, size.imag))
+        part = ShapeGroup((*heads, *moved_shapes(shapes, 1j * down)), links=panel.loop.links)
+        parts.append(PicturePart((part,), wide, size.imag + down))
+    return parts
+
+
+def _texts(panel: LoopPanel, low: complex, size: complex) -> list[Shape]:
+    """The letters at the corners of a loop, and its number."""
+    vectors = moved_shapes(panel.vectors, -low)
+    ((_, middle),) = placed([_number(panel.number, panel.corners, low)], vectors, size.real, size.imag).items()
+    # vectors beside one line turn clockwise
+    turn = -1.0 if _area([corner.at for corner in panel.corners]) < -1.0 else 1.0
+    turning = _turning(panel.number, middle, turn)
+    faint = moved_shapes([shape for shape in panel.behind if not _is_thin(shape)], -low)
+    around_it = CircleShape(middle, ROUND, "pin")
+    found = placed(_named(panel.corners, low), [*faint, *vectors, around_it], size.real, size.imag)
+    return [*turning, *(Text(at, key.partition(" ")[2], "letter") for key, at in found.items())]
+
+
+def _is_thin(shape: Shape) -> bool:
+    """Whether it is a net of thin lines, on which texts may be."""
+    return isinstance(shape, Strokes) or (isinstance(shape, ShapeGroup) and all(map(_is_thin, shape.shapes)))
+
+
+def _area(points: Sequence[complex]) -> float:
+    """The area inside a polygon, clockwise on paper positive."""
+    p = np.array(points)
+    return float(np.sum((np.conjugate(p) * np.roll(p, -1)).imag) / 2.0)
+
+
+def _vectors(k: int, points: Sequence[complex], clear: float) -> list[Shape]:
+    """The vectors around a loop."""
+    ends = list(zip(points, [*points[1:], *points[:1]], strict=True))
+    shapes: list[Shape] = []
+    for i, (a, b) in enumerate(ends):
+        is_covered = any(_cover((a, b), other) for j, other in enumerate(ends) if j != i)
+        away = -1j * unit_direction(b - a) * (ASIDE if is_covered else 0.0)
+        shapes += _vector(a + away, b + away, style_of("bar", k), 0.0 if is_covered and clear == PIN else clear)
+    return shapes
+
+
+def _cover(one: tuple[complex, complex], other: tuple[complex, complex]) -> bool:
+    """Whether a vector lies on another for more than the size of a pin."""
+    if abs(other[1] - other[0]) > abs(one[1] - one[0]):
+        one, other = other, one
+    e = unit_direction(one[1] - one[0])
+    first, second = (np.conjugate(e) * (p - one[0]) for p in other)
+    low, high = sorted((first.real, second.real))
+    shared = min(high, abs(one[1] - one[0])) - max(low, 0.0)
+    return bool(max(abs(first.imag), abs(second.imag)) < ON_LINE and shared > 2.0 * PIN)
+
+
+def _vector(start: complex, stop: complex, style: str, clear: float) -> list[Shape]:
+    """A bold arrow that ends before the circle around its tip; a short one has a smaller head."""
+    e, length = unit_direction(stop - start), abs(stop - start)
+    share = min(1.0, length / (2.0 * clear + 3.0 * HEAD))
+    tip = stop - e * (clear + 2.0) * share
+    back = tip - e * HEAD * share
+    side = 1j * e * HALF * share
+    # a triangle within the thickness of its own line, so that it is filled
+    return [Polyline((start + e * clear * share, back), style), Polygon((tip, back + side, back - side), style)]
+
+
+def _named(found: Sequence[Corner], low: complex) -> list[Label]:
+    """A label for every letter, away from the middle of the loop."""
+    middle = complex(np.mean([corner.at for corner in found]))
+    names: dict[str, complex] = {corner.letter: corner.at for corner in found if corner.letter}
+    return [
+        label_around(f"point {name}", at - low, text_half(name, LETTER), PIN + 4.0, (at - middle) or 1 - 1j)
+        for name, at in names.items()
+    ]
+
+
+def _number(k: int, found: Sequence[Corner], low: complex) -> Label:
+    """A label for the number of the loop, rather near its middle."""
+    middle = complex(np.mean([corner.at for corner in found])) - low
+    around_it = np.exp(2j * np.pi * np.arange(16) / 16)
+    places = tuple(complex(middle + ring * e) for ring in RINGS for e in around_it)
+    costs = tuple(NEAR * ring for ring in RINGS for _ in around_it)
+    return Label(f"loop {k}", complex(ROUND, ROUND) + 2 + 2j, places, costs)
+
+
+def _turning(k: int, at: complex, turn: float) -> list[Shape]:
+    """The number of a loop with an arrow around it in the direction of its vectors."""
+    angles = -np.pi / 3.0 + turn * np.linspace(0.0, SWEEP, 25)
+    around_it = at + ROUND * np.exp(1j * angles)
+    tip = complex(around_it[-1])
+    e = complex(1j * turn * np.exp(1j * angles[-1]))
+    head = Polygon((tip + 5.0 * e, tip + 2.5j * e, tip - 2.5j * e), style_of("line", k))
+    return [Polyline(tuple(map(complex, around_it)), style_of("line", k)), head, Text(at, str(k), "number")]
+
+
+# An outer pair is drawn this part of the way to the link that it attaches to.
+STUB = 0.45
+
+
+def groups_in_graph(structure: Structure, size: float | None) -> Picture:
+    """Draw all parts as graphs: links as circles, outer pairs as loose ends."""
+    numbers, groups = link_numbers(structure), link_groups(structure)
+    names = list(numbers)
+    places = dict(zip(names, np.conjugate(spread_links(names, structure.pairs)), strict=True))
+    ground = [name for name in names if name == FRAME or name in structure.ground.links]
+    driven = {step.pair.name for step in structure.driven.values()}
+    inside = [pair for pair in structure.pairs if pair.name in driven and set(pair.members[:2]) <= set(ground)]
+    titles = ["frame and driver" if len(driven) == 1 else "frame and drivers", *map(group_heading, structure.groups)]
+    links = [ground, *(list(group.links) for group in structure.groups)]
+    inner, outer = [inside, *(g.inner for g in structure.groups)], [(), *(g.outer for g in structure.groups)]
+    parts = []
+    for title, own, joined, attached in zip(titles, links, inner, outer, strict=True):
+        nodes = [link_node(name, complex(places[name]), numbers[name], groups[name]) for name in own]
+        edges = [*_part_edges(joined, places, driven), *_stubs(attached, places, own)]
+        parts.append(_graph_part(title, [*edges, *nodes], [complex(places[name]) for name in own], own))
+    shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
+    notes = [f"{number} {name}" for name, number in numbers.items()]
+    notes += ["loose ends: outer pairs"] if structure.groups else []
+    texts, height = lines_below(lines_of_text(notes, width - 32.0), height + LINE)
+    title = f"{structure.mechanism.title}, taken apart"
+    described = "; ".join(map(group_heading, structure.groups))
+    return Picture(
+        (sheet(width, height), *shapes, *texts),
+        width,
+        height,
+        title,
+        described,
+        legible_size(width, height, checked_size(size)),
+    )
+
+
+def _part_edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]) -> list[Shape]:
+    return [
+        ShapeGroup(
+            (Polyline((complex(places[p.members[0]]), complex(places[p.members[1]])), _style(p, driven)),),
+            title=f"{p.name}, {p.title}",
+        )
+        for p in pairs
+    ]
+
+
+def _style(pair: Pair, driven: set[str]) -> str:
+    return "bold" if pair.name in driven else "edge"
+
+
+def _stubs(pairs: Sequence[Pair], places: Mapping[str, complex], own: Sequence[str]) -> list[Shape]:
+    """The outer pairs: a line toward the link before it, with the pair's letter at its end."""
+    shapes: list[Shape] = []
+    for pair in pairs:
+        here, there = sorted(pair.members[:2], key=lambda name: name not in own)
+        start, end = complex(places[here]), complex(places[there])
+        end = start + (end - start) * STUB
+        beyond = end + (end - start) / (abs(end - start) or 1.0) * NODE
+        shapes += [
+            Polyline((start, end), "edge"),
+            Text(beyond, pair.letters[0], "code"),
+        ]
+    return shapes
+
+
+def _graph_part(title: str, shapes: list[Shape], spots: Sequence[complex], links: Sequence[str]) -> PicturePart:
+    """A part with its heading, moved to its upper left corner; stubs reach half a step beyond its links."""
+    reach = APART * STUB + 2.0 * NODE
+    low = complex(min(z.real for z in spots), min(z.imag for z in spots)) - (reach + MARGIN / 4.0) * (1 + 1j)
+    high = complex(max(z.real for z in spots), max(z.imag for z in spots)) + (reach + MARGIN / 4.0) * (1 + 1j)
+    wide, tall = max((high - low).real, len(title) * LETTER * WIDE), (high - low).imag
+    low -= (wide - (high - low).real) / 2.0
+    named = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
+    return PicturePart(
+        (ShapeGroup((named, *moved_shapes(shapes, HEADING * 1j - low)), links=tuple(links)),), wide, tall + HEADING
+    )
+
+
+# The distance of two links that a pair joins, in picture units, and the radius of a link.
+APART, NODE = 110.0, 14.0
+
+
+# Rounds of majorization; a graph of some dozens of links has settled by then.
+ROUNDS = 200
+
+
+# Two pairs between the same links bulge by this.
+BULGE = 26.0
+
+
+def graph_shapes(
+    structure: Structure, numbers: Mapping[str, int], groups: Mapping[str, int], size: float | None
+) -> Picture:
+    """Draw the kinematic graph, each link in the colour of its group. Driven pairs are drawn thick."""
+    names = list(numbers)
+    places = dict(zip(names, spread_links(names, structure.pairs), strict=True))
+    window = fitted_window(Window(1.0, 0j, 0.0, 0.0), np.array(list(places.values())))
+    places = {name: complex(window.at(np.conjugate(place))) for name, place in places.items()}
+    driven = {step.pair.name for step in structure.driven.values()}
+    lines, named = _graph_edges(structure.pairs, places, driven)
+    nodes = [link_node(name, places[name], numbers[name], groups[name]) for name in names]
+    found = placed(named, [*lines, *nodes], window.width, window.height)
+    texts: list[Shape] = [Text(at, key.partition(" ")[2], "code") for key, at in found.items()]
+    notes = [f"{number} {name}" for name, number in numbers.items()]
+    notes += ["thick lines: driven pairs"] if driven else []
+    said, height = lines_below(lines_of_text(notes, window.width - 32.0), window.height)
+    paper = sheet(window.width, height)
+    title = f"{structure.mechanism.title}: kinematic graph"
+    described = f"{len(names)} links, {len(structure.pairs)} pairs"
+    shapes = (paper, *lines, *nodes, *texts, *said)
+    return Picture(shapes, window.width, height, title, described, checked_size(size))
+
+
+def link_node(name: str, at: complex, number: int, group: int) -> Shape:
+    """Draw a link as a numbered circle; the frame is square."""
+    corner = (1 + 1j) * NODE * 0.9
+    style = "pin frame" if name == FRAME else f"pin {style_of('ring', group)}"
+    around = tuple(at + corner * turn for turn in (1, 1j, -1, -1j))
+    rim: Shape = Polygon(around, style) if name == FRAME else CircleShape(at, NODE, style)
+    return ShapeGroup((rim, Text(at, str(number), "number")), title=name, links=(name,))
+
+
+def _graph_edges(
+    pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]
+) -> tuple[list[Shape], list[Label]]:
+    """A line for each pair with its name; from that of a gear pair or belt a thin one to the carrier."""
+    lines: list[Shape] = []
+    named: list[Label] = []
+    count: dict[frozenset[str], int] = {}
+    for k, pair in enumerate(pairs):
+        first, second = (places[name] for name in pair.members[:2])
+        between = frozenset(pair.members[:2])
+        bulge = _bulge(count.get(between, 0))
+        count[between] = count.get(between, 0) + 1
+        across = 1j * (second - first) / (abs(second - first) or 1.0)
+        middle = (first + second) / 2.0 + across * bulge
+        style = "bold" if pair.name in driven else "edge"
+        lines.append(ShapeGroup((Polyline((first, middle, second), style),), title=f"{pair.name}, {pair.title}"))
+        lines += [Polyline((middle, places[name]), "ray") for name in pair.members[2:]]
+        named.append(_label(k, pair, first, middle, second, across))
+    return lines, named
+
+
+def _bulge(k: int) -> float:
+    """The first pair between two links is straight, the next ones bulge to one side and the other."""
+    return BULGE * ((k + 1) // 2) * (1 if k % 2 else -1)
+
+
+def _label(k: int, pair: Pair, first: complex, middle: complex, second: complex, across: complex) -> Label:
+    text = f"{pair.code} {pair.letters[0]}"
+    half = text_half(text, SMALL)
+    places, costs = [], []
+    for share in (0.5, 0.4, 0.6, 0.3, 0.7):
+        on = first + (middle - first) * 2.0 * share if share <= 0.5 else second + (middle - second) * 2.0 * (1 - share)
+        for off in (7.0, -7.0, 12.0, -12.0, 18.0, -18.0):
+            side = abs(across.real) * half.real + abs(across.imag) * half.imag
+            places.append(on + across * (off + (side if off > 0 else -side)))
+            costs.append(abs(off) / 3.0 + 12.0 * abs(share - 0.5))
+    return Label(f"{k} {text}", half, tuple(places), tuple(costs))
+
+
+def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
+    """Return places for the links, as far apart as there are pairs between them.
+
+    Source: J. de Leeuw, Applications of convex analysis to multidimensional scaling, 1977 (majorization of stress).
+    """
+    index = {name: k for k, name in enumerate(names)}
+    joined = [(index[p.members[0]], index[p.members[1]]) for p in pairs]
+    wanted = _steps(len(names), joined)
+    rng = np.random.default_rng(0)
+    # the same orders every time: the seed is fixed
+    starts = min(MOST_STARTS, STARTS // len(names))
+    tried = _relaxed_places(
+        wanted, np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))])
+    )
+    places = min(tried, key=lambda found: _crossings(found, joined))
+    places = places - places[0]
+    # the frame below, as it is drawn
+    far = np.mean(places) if len(names) > 1 else 1j
+    return [complex(p) for p in places * 1j * np.conjugate(far) / (abs(far) or 1.0) * APART]
+
+
+def _relaxed_places(wanted: Number, orders: Number) -> Number:
+    """Places (orders, links) that have settled from circles on which the links stand in some orders."""
+    count = orders.shape[1]
+    places = np.exp(2j * np.pi * orders / max(count, 1) + 1j * START) * max(1.0, count / 4.0)
+    weights, itself = np.where(wanted > 0, 1.0 / np.maximum(wanted, 1.0) ** 2, 0.0), np.eye(count)
+    for _ in range(ROUNDS if count > 2 else 0):
+        apart = places[:, :, None] - places[:, None]
+        pull = weights * (places[:, None] + wanted * apart / (np.abs(apart) + itself))
+        places = pull.sum(axis=2) / weights.sum(axis=1)
+    return places
+
+
+def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
+    """How many lines between links cross."""
+    first, second = np.array(joined, dtype=int).reshape(-1, 2).T
+    a, b = places[first], places[second]
+    side = (np.conjugate(b - a)[:, None] * (np.stack([a, b])[:, None] - a[:, None])).imag
+    apart = side[0] * side[1] < -CLEAR
+    shared = (first[:, None] == first) | (first[:, None] == second) | (second[:, None] == first)
+    return int(np.count_nonzero(apart & apart.T & ~(shared | (second[:, None] == second))) // 2)
+
+
+# Of so many starting orders, by the number of links, the one is taken whose lines cross least.
+STARTS, MOST_STARTS = 500, 40
+
+
+# Products of distances below this are rounding.
+CLEAR = 1e-9
+
+
+# Not along an axis, so that no two links start at one height.
+START = 0.3
+
+
+def _steps(count: int, joined: Sequence[tuple[int, int]]) -> Number:
+    """How many pairs are between every two links; where nothing joins them, many. Source: Floyd and Warshall, 1962."""
+    far = float(max(count, 2))
+    steps = np.full((count, count), far)
+    for one, two in joined:
+        steps[one, two] = steps[two, one] = 1.0
+    np.fill_diagonal(steps, 0.0)
+    for k in range(count):
+        steps = np.minimum(steps, steps[:, k, None] + steps[None, k])
+    # links two steps apart a little farther, so that triangles are no needles
+    return np.where(steps == 2.0, 1.75, steps)

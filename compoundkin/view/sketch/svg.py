@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.view.sketch.shapes import (
     ArcShape,
     Band,
@@ -41,10 +41,10 @@ def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title
     >>> print(svg((), 100, 50, 200, "Empty").splitlines()[1])
     <title>Empty</title>
     """
-    return document(elements(shapes), shapes, width, height, size, title, description)
+    return svg_document(elements(shapes), shapes, width, height, size, title, description)
 
 
-def document(
+def svg_document(
     lines: Iterable[str],
     styled: Sequence[Shape],
     width: float,
@@ -56,8 +56,8 @@ def document(
     """Return the source of a picture whose elements are there already. It has the style sheet of some shapes."""
     shown = size / max(width, height)
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {number(width)} {number(height)}" '
-        f'width="{number(width * shown)}" height="{number(height * shown)}" role="img" style="{FONT}">'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {svg_number(width)} {svg_number(height)}" '
+        f'width="{svg_number(width * shown)}" height="{svg_number(height * shown)}" role="img" style="{FONT}">'
     )
     about = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
     sheet = f"<style>\n{css(styled)}\n</style>"
@@ -72,7 +72,7 @@ def inline(shapes: Sequence[Shape], width: float, height: float, title: str, des
     """
     name = escape(f"{title}. {description}" if description else title)
     head = (
-        f'<svg viewBox="0 0 {number(width)} {number(height)}" style="max-width:{number(width * NATURAL)}px;{FONT}" '
+        f'<svg viewBox="0 0 {svg_number(width)} {svg_number(height)}" style="max-width:{svg_number(width * NATURAL)}px;{FONT}" '
         f'role="img" aria-label="{name}">'
     )
     return "\n".join([head, f"<title>{escape(title)}</title>", *elements(shapes, tagged=True), "</svg>"])
@@ -87,10 +87,10 @@ def link_names(names: Iterable[str]) -> str:
     return escape(",".join(names))
 
 
-def number(value: float) -> str:
+def svg_number(value: float) -> str:
     """Return a number to a tenth of a picture unit, without idle zeros. No eye can tell less.
 
-    >>> number(12.04), number(-0.01), number(3.25)
+    >>> svg_number(12.04), svg_number(-0.01), svg_number(3.25)
     ('12', '0', '3.2')
     """
     text = f"{value:.1f}"
@@ -117,31 +117,31 @@ def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
 def _element(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text) -> str:
     style = _class(shape.style)
     if isinstance(shape, Text):
-        x, y = number(shape.at.real), number(shape.at.imag)
+        x, y = svg_number(shape.at.real), svg_number(shape.at.imag)
         anchor = f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else ""
-        turn = f' transform="rotate({number(shape.angle)} {x} {y})"' if shape.angle else ""
+        turn = f' transform="rotate({svg_number(shape.angle)} {x} {y})"' if shape.angle else ""
         return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}{turn}>{escape(shape.text)}</text>'
     if isinstance(shape, CircleShape):
-        x, y = number(shape.centre.real), number(shape.centre.imag)
-        return f'<circle{style} cx="{x}" cy="{y}" r="{number(shape.radius)}"/>'
+        x, y = svg_number(shape.centre.real), svg_number(shape.centre.imag)
+        return f'<circle{style} cx="{x}" cy="{y}" r="{svg_number(shape.radius)}"/>'
     if isinstance(shape, ArcShape):
-        radius = number(shape.radius)
+        radius = svg_number(shape.radius)
         way = f"M{_pair(shape.start)}A{radius} {radius} 0 0 {int(shape.sweep)} {_pair(shape.stop)}"
         return f'<path{style} d="{way}"/>'
     if isinstance(shape, Strokes):
-        return f'<path{style} d="{"".join(_way(line) for line in shape.lines)}"/>'
+        return f'<path{style} d="{"".join(_path_data(line) for line in shape.lines)}"/>'
     if isinstance(shape, Band):
-        way = f'd="{_way(shape.points)}{"Z" if shape.closed else ""}"'
-        return f'<path{style} stroke-width="{number(shape.width)}" {way}/>'
-    return f'<path{style} d="{_way(shape.points)}{"Z" if isinstance(shape, Polygon) else ""}"/>'
+        way = f'd="{_path_data(shape.points)}{"Z" if shape.closed else ""}"'
+        return f'<path{style} stroke-width="{svg_number(shape.width)}" {way}/>'
+    return f'<path{style} d="{_path_data(shape.points)}{"Z" if isinstance(shape, Polygon) else ""}"/>'
 
 
-def _way(points: Sequence[complex]) -> str:
+def _path_data(points: Sequence[complex]) -> str:
     return "M" + "L".join(_pair(point) for point in points)
 
 
 def _pair(point: complex) -> str:
-    return f"{number(point.real)} {number(point.imag)}"
+    return f"{svg_number(point.real)} {svg_number(point.imag)}"
 
 
 def _class(style: str) -> str:

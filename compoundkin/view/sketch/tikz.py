@@ -1,12 +1,17 @@
-"""Shapes as TikZ: a document of LaTeX that stands alone, its picture with all its styles, to be edited by hand."""
+"""Shapes as TikZ: a standalone LaTeX document with its picture and all its styles, to be edited by hand.
+
+Texts are escaped for TeX; signs that it has no letter for are set as formulas.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
 
+from compoundkin.base.display import printable
 from compoundkin.view.sketch.shapes import (
     ArcShape,
     Band,
@@ -19,15 +24,22 @@ from compoundkin.view.sketch.shapes import (
     Text,
 )
 from compoundkin.view.sketch.sketch_style import declarations
-from compoundkin.view.sketch.svg import BASELINE, number
-from compoundkin.view.sketch.tex_text import tex_comment, tex_text
+from compoundkin.view.sketch.svg import BASELINE, svg_number
 
 # TeX's big points of a pixel: 72 and 96 to the inch.
 OF_PIXEL = 0.75
+
+
 # So many points of a line stand in a line of the file.
 POINTS_IN_LINE = 8
+
+
 ANCHORS = {"start": " west", "middle": "", "end": " east"}
+
+
 HALO = "halo"
+
+
 _SAME: Mapping[str, str] = {
     "stroke-linecap": "line cap",
     "stroke-linejoin": "line join",
@@ -60,7 +72,7 @@ def tikz(shapes: Sequence[Shape], width: float, height: float, size: float, titl
         *(f"  ck-{name}/.style={{{', '.join(_style(name, own, unit))}}}," for name, own in rules.items()),
         "]",
         *(f"\\definecolor{{{_colour(one)}}}{{HTML}}{{{one[1:].upper()}}}" for one in colours),
-        f"\\useasboundingbox (0,0) rectangle ({number(width)},{number(height)});",
+        f"\\useasboundingbox (0,0) rectangle ({svg_number(width)},{svg_number(height)});",
     ]
     return "\n".join([*head, *_commands(shapes, height, unit), "\\end{tikzpicture}", "\\end{document}", ""])
 
@@ -135,7 +147,7 @@ def _commands(shapes: Sequence[Shape], height: float, unit: float) -> Iterator[s
                 yield _node(shape, height)
         elif shape is not None:
             band = f", line width={_length(shape.width * unit)}" if isinstance(shape, Band) else ""
-            yield f"\\path[{_names(shape.style)}{band}] {_way(shape, height)};"
+            yield f"\\path[{_names(shape.style)}{band}] {_line_commands(shape, height)};"
 
 
 def _names(style: str) -> str:
@@ -151,13 +163,13 @@ def _is_of_halo(shape: Text, before: Shape | None) -> bool:
 
 
 def _node(shape: Text, height: float) -> str:
-    turn = f"rotate={number(-shape.angle)}, " if shape.angle else ""
+    turn = f"rotate={svg_number(-shape.angle)}, " if shape.angle else ""
     anchor = f", anchor=base{ANCHORS[shape.anchor]}" if shape.anchor != "middle" else ""
     return f"\\node[{turn}{_names(shape.style)}{anchor}] at {_place(shape.at, height)} {{{tex_text(shape.text)}}};"
 
 
 def _place(point: complex, height: float) -> str:
-    return f"({number(point.real)},{number(height - point.imag)})"
+    return f"({svg_number(point.real)},{svg_number(height - point.imag)})"
 
 
 def _line(points: Sequence[complex], height: float) -> str:
@@ -166,10 +178,10 @@ def _line(points: Sequence[complex], height: float) -> str:
     return "\n  -- ".join(" -- ".join(row) for row in rows)
 
 
-def _way(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape, height: float) -> str:
+def _line_commands(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape, height: float) -> str:
     """The way of a shape's line."""
     if isinstance(shape, CircleShape):
-        return f"{_place(shape.centre, height)} circle[radius={number(shape.radius)}]"
+        return f"{_place(shape.centre, height)} circle[radius={svg_number(shape.radius)}]"
     if isinstance(shape, ArcShape):
         return _arc(shape, height)
     if isinstance(shape, Strokes):
@@ -187,6 +199,77 @@ def _arc(shape: ArcShape, height: float) -> str:
     arm = -chord / 2.0 - 1j * way * off * (chord / abs(chord) if chord else 1.0)
     start = float(np.rad2deg(np.angle(arm)))
     turned = way * 2.0 * float(np.rad2deg(np.arcsin(min(1.0, abs(chord) / 2.0 / radius)))) if chord else 0.0
-    return (
-        f"{_place(shape.start, height)} arc[start angle={start:.2f}, delta angle={turned:.2f}, radius={number(radius)}]"
-    )
+    return f"{_place(shape.start, height)} arc[start angle={start:.2f}, delta angle={turned:.2f}, radius={svg_number(radius)}]"
+
+
+_COMMANDS: Mapping[str, str] = {
+    "\\": r"\textbackslash{}",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "`": r"\textasciigrave{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': r"\textquotedblright{}",
+    "'": r"\ensuremath{'}",
+    **{sign: f"\\{sign}" for sign in "&%$#_{}"},
+}
+
+
+# From alpha on as Unicode lists them.
+_GREEK = (
+    *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu"),
+    *("xi", "o", "pi", "rho", "varsigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"),
+)
+
+
+_CAPITALS = {"Γ": "Gamma", "Δ": "Delta", "Θ": "Theta", "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Φ": "Phi"}
+
+
+_SIGNS = {
+    **{chr(0x3B1 + k): name if name == "o" else f"\\{name}" for k, name in enumerate(_GREEK)},
+    **{letter: f"\\{name}" for letter, name in (*_CAPITALS.items(), ("Ψ", "Psi"), ("Ω", "Omega"))},
+    **{"−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "°": r"^\circ", "∞": r"\infty", "→": r"\to"},
+    **{"≤": r"\le", "≥": r"\ge", "≈": r"\approx", "√": r"\surd", "′": "'", "″": "''", "µ": r"\mu", "∠": r"\angle"},
+}
+
+
+# Raised and lowered signs, several in a row as one formula.
+_RAISED, _LOWERED = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "₀₁₂₃₄₅₆₇₈₉₋"
+
+
+_PLAIN = str.maketrans(_RAISED + _LOWERED, "0123456789-0123456789-")
+
+
+_RUNS = re.compile(f"[{_RAISED}]+|[{_LOWERED}]+|.", re.DOTALL)
+
+
+# Two of these would become one sign of another kind.
+_DOUBLED = re.compile(r"([-,])(?=\1)")
+
+
+def tex_text(text: str) -> str:
+    r"""Return a text such that TeX sets it as it is written. Letters of other scripts stay: LuaLaTeX sets them.
+
+    >>> print(tex_text("50 % of a_1 at ω₁₂, -0.5°"))
+    50 \% of a\_1 at \ensuremath{\omega}\ensuremath{_{12}}, -0.5\ensuremath{^\circ}
+    """
+    shown = _DOUBLED.sub(r"\1\0", printable(text))
+    return "".join(_set(run) for run in _RUNS.findall(shown)).replace("\0", "{}")
+
+
+def tex_comment(text: str) -> str:
+    r"""Return a text as one line of a comment.
+
+    >>> tex_comment("one\ntwo")
+    '% one two'
+    """
+    return "% " + printable(text)
+
+
+def _set(run: str) -> str:
+    if run[0] in _RAISED + _LOWERED:
+        return f"\\ensuremath{{{'^' if run[0] in _RAISED else '_'}{{{run.translate(_PLAIN)}}}}}"
+    if run in _SIGNS:
+        return f"\\ensuremath{{{_SIGNS[run]}}}"
+    return _COMMANDS.get(run, run)

@@ -8,22 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, nearest
-from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, readable
-from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.asked_values import Drawable
-from compoundkin.view.sketch.label_places import around, placed, text_half
-from compoundkin.view.sketch.link_shapes import outline
-from compoundkin.view.sketch.picture import NARROWEST, Picture, Window, checked_size, fitted
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, with_superscripts
+from compoundkin.model.geometry import FRAME
+from compoundkin.view.sketch.labels import SEPARATOR, SIDE, label_around, lines_below, placed, text_half, width_with
+from compoundkin.view.sketch.painter import link_corners
+from compoundkin.view.sketch.picture import NARROWEST, Picture, Window, checked_size, fitted_window
+from compoundkin.view.sketch.picture_options import Drawable, PictureOptions, pose_notes, scene_of
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, arrow, sheet
-from compoundkin.view.sketch.shown_pose import Wishes, pose_notes, scene_of
-from compoundkin.view.sketch.sketch_labels import SEPARATOR, SIDE, below, width_with
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, arrow_shapes, sheet
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
 
 # The kinds of vectors: their derivative, and what they are per.
 KINDS_OF_VECTOR: Mapping[str, tuple[int, str]] = {
-    word: (order, readable(PER_SECOND[order])) for order, word in ((1, VELOCITY), (2, ACCELERATION))
+    word: (order, with_superscripts(PER_SECOND[order])) for order, word in ((1, VELOCITY), (2, ACCELERATION))
 }
 # The longest vector is at most this part of the picture's diagonal.
 LONGEST = 0.2
@@ -50,10 +48,10 @@ class VectorScale:
     order: int = 0
 
 
-def wanted(vectors: Any) -> tuple[str, ...]:
+def vector_kinds(vectors: Any) -> tuple[str, ...]:
     """Return the kinds of vectors asked for; raises InvalidInput for others.
 
-    >>> wanted("velocity")
+    >>> vector_kinds("velocity")
     ('velocity',)
     """
     if vectors is None or (isinstance(vectors, str) and not vectors):
@@ -62,7 +60,7 @@ def wanted(vectors: Any) -> tuple[str, ...]:
     for name in names:
         if not isinstance(name, str) or name not in KINDS_OF_VECTOR:
             what = f"there are no vectors {name!r}"
-            raise InvalidInput(Problem("vectors", what, nearest(str(name), list(KINDS_OF_VECTOR))))
+            raise InvalidInput(Problem("vectors", what, suggestion(str(name), list(KINDS_OF_VECTOR))))
     return names
 
 
@@ -78,7 +76,7 @@ def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
     return {letter: v for letter, v in found.items() if np.isfinite(v)}
 
 
-def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) -> VectorScale | None:
+def scale_of_vectors(kind: str, rates: Mapping[str, complex], length: float, unit: str) -> VectorScale | None:
     """Return the scale at which the longest vector is at most so long.
 
     It is in picture units; None where nothing moves.
@@ -108,7 +106,7 @@ def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], s
     for letter, rate in rates.items():
         way = complex(np.conjugate(rate)) * scale.per_unit
         if abs(way) >= SHORTEST:
-            shapes = arrow(places[letter], places[letter] + way, scale.kind)
+            shapes = arrow_shapes(places[letter], places[letter] + way, scale.kind)
             found.append(ShapeGroup(shapes, title=f"{scale.kind} of {letter}: {abs(rate):.6g}"))
     return found
 
@@ -116,11 +114,11 @@ def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], s
 def scale_shapes(scale: VectorScale, height: float) -> list[Shape]:
     """Tell what states the scale. An arrow of the round amount, at a height of the picture."""
     length = scale.amount * scale.per_unit
-    line = arrow(complex(SIDE, height), complex(SIDE + length, height), scale.kind)
+    line = arrow_shapes(complex(SIDE, height), complex(SIDE + length, height), scale.kind)
     return [*line, Text(complex(1.5 * SIDE + length, height), f"{scale.kind}, {scale.text}", "note", "start")]
 
 
-def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
+def vector_polygon(what: Drawable, wishes: PictureOptions) -> Picture:
     """Draw the polygon of all points' velocities or accelerations at one pose. The images of the links are drawn too.
 
     From the pole o an arrow leads to the image of each point, named by its letter in lower case; the images of the
@@ -128,7 +126,7 @@ def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
     J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapters 3 and 4 (velocity and
     acceleration images).
     """
-    kinds = wanted(wishes.vectors) or (VELOCITY,)
+    kinds = vector_kinds(wishes.vectors) or (VELOCITY,)
     if len(kinds) > 1:
         raise InvalidInput(Problem("vectors", "a polygon is one of them", f"one of {', '.join(kinds)}"))
     kind = kinds[0]
@@ -136,18 +134,18 @@ def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
     rates = rates_of(scene, kind)
     spread = max((abs(a - b) for a in (0j, *rates.values()) for b in rates.values()), default=0.0)
     longest = max(map(abs, rates.values()), default=0.0)
-    scale = scale_of(kind, rates, LENGTH * longest / (spread or 1.0), scene.mechanism.unit)
+    scale = scale_of_vectors(kind, rates, LENGTH * longest / (spread or 1.0), scene.mechanism.unit)
     if scale is None:
         raise InvalidInput(Problem(kind, "nothing moves at this pose", "choose another pose, or give a speed"))
     window = Window(scale.per_unit, 0j, 0.0, 0.0)
     tips = {letter: complex(np.conjugate(rate)) * scale.per_unit for letter, rate in rates.items()}
     legend, _ = _legend(scene, scale, 0.0)
-    window = fitted(window, np.array([0j, *tips.values()]), max(NARROWEST, width_with(legend)))
+    window = fitted_window(window, np.array([0j, *tips.values()]), max(NARROWEST, width_with(legend)))
     pole = complex(window.at(0j))
     ends = {letter: pole + tip for letter, tip in tips.items()}
     shapes = [*_images(scene, ends, pole), *_rays(ends, pole, kind)]
     names = _names(ends, pole, kind)
-    labels = [around(text, place, text_half(text, LETTER), 5.0, place - pole or -1 + 1j) for text, place in names]
+    labels = [label_around(text, place, text_half(text, LETTER), 5.0, place - pole or -1 + 1j) for text, place in names]
     found = placed(labels, shapes, window.width, window.height)
     shapes += [Text(place, text, "letter") for text, place in found.items()]
     return _framed(scene, window, shapes, scale, wishes.size)
@@ -157,7 +155,7 @@ def _images(scene: Scene, ends: Mapping[str, complex], pole: complex) -> list[Sh
     """The images of the links: a line or a polygon between the images of their points."""
     shapes: list[Shape] = []
     for link, points in scene.points.items():
-        corners = outline([ends.get(letter, pole) for letter in points])
+        corners = link_corners([ends.get(letter, pole) for letter in points])
         if link != FRAME and len(corners) == 2:
             shapes.append(ShapeGroup((Polyline(tuple(corners), style_of("line", scene.groups[link])),), title=link))
         elif link != FRAME and len(corners) > 2:
@@ -168,7 +166,7 @@ def _images(scene: Scene, ends: Mapping[str, complex], pole: complex) -> list[Sh
 def _rays(ends: Mapping[str, complex], pole: complex, kind: str) -> list[Shape]:
     """An arrow from the pole to each image, and the pole."""
     far = [end for end in ends.values() if abs(end - pole) > SAME]
-    return [*(shape for end in far for shape in arrow(pole, end, kind)), CircleShape(pole, STUD, "dot")]
+    return [*(shape for end in far for shape in arrow_shapes(pole, end, kind)), CircleShape(pole, STUD, "dot")]
 
 
 def _names(ends: Mapping[str, complex], pole: complex, kind: str) -> list[tuple[str, complex]]:
@@ -193,5 +191,5 @@ def _framed(scene: Scene, window: Window, shapes: list[Shape], scale: VectorScal
 
 def _legend(scene: Scene, scale: VectorScale, height: float) -> tuple[list[Shape], float]:
     """The pose and the scale below a polygon of a height, and the height with them."""
-    texts, height = below([SEPARATOR.join(pose_notes(scene))], height)
+    texts, height = lines_below([SEPARATOR.join(pose_notes(scene))], height)
     return [*texts, *scale_shapes(scale, height)], height + LINE

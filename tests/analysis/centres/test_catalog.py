@@ -15,7 +15,7 @@ from compoundkin.analysis.centres import Centres, Status, instant_centres
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.files import shipped_mechanisms
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from tests import catalog
 from tests.analysis.centres.twists import disagreement, loop_twists, solved_twists
 

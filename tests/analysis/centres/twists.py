@@ -9,8 +9,8 @@ from compoundkin.analysis.centres.centres_of_motion import solved_twists
 from compoundkin.analysis.centres.circle_diagram import couple
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.analysis.centres.twist_loops import null_twists
-from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME
+from compoundkin.base.arrays import Number
+from compoundkin.model.geometry import FRAME
 
 __all__ = ["disagreement", "loop_twists", "solved_twists"]
 

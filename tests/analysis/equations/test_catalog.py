@@ -12,8 +12,8 @@ from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_eq
 from compoundkin.analysis.equations.pair_terms import pair_terms
 from compoundkin.analysis.equations.written_equations import latex, text
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.model.pairs.loop_vectors import Vector
-from compoundkin.view.report.loop_sections import equation_count
+from compoundkin.model.pairs.loop_terms import Vector
+from compoundkin.view.report.structure_sections import equation_count
 from tests import catalog
 
 # Residuals of solved positions, of the size of the mechanism or in radians.

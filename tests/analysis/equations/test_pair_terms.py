@@ -16,9 +16,9 @@ from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_eq
 from compoundkin.analysis.equations.written_equations import latex, text
 from compoundkin.structure import assur_groups
 from compoundkin.view.page.mathml import mathml
-from compoundkin.view.report.equations_section import FUNCTIONS, equations_section
-from compoundkin.view.report.loop_sections import equation_count
+from compoundkin.view.report.equations_sections import IMPLICIT_FUNCTIONS, equations_section
 from compoundkin.view.report.report_data import Paragraph
+from compoundkin.view.report.structure_sections import equation_count
 
 PAGE = (Path(__file__).parents[3] / "docs" / "adding.md").read_text(encoding="utf-8")
 
@@ -81,7 +81,7 @@ def test_what_only_its_closure_says_is_written_as_a_function(oldham: Any) -> Non
         assert text(own) == "F1[tray/frame](tray, x(tray/frame), y(tray/frame)) = 0"
         assert text(loop).endswith("- y(tray/frame) e^(i (90 deg)) - x(tray/frame) = 0")
         said = [block.text for block in equations_section(equations).blocks if isinstance(block, Paragraph)]
-        assert FUNCTIONS.format(pairs="tray/frame") in said
+        assert IMPLICIT_FUNCTIONS.format(pairs="tray/frame") in said
     else:
         assert keys[-2:] == ["s(tray/frame (x))", "s(tray/frame (y))"]
         assert text(own) == "tray - 11.4592 deg = 0"

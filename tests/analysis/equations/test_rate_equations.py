@@ -8,7 +8,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equations.pose_values import pose_values
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.model.pairs.loop_vectors import Unknown
+from compoundkin.model.pairs.loop_terms import Unknown
 from tests import catalog
 from tests.scaled import scaled
 

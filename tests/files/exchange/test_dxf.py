@@ -24,7 +24,7 @@ from compoundkin.files.exchange.dxf.outline_contours import contours
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.extremes.motion_between import between
-from compoundkin.model.outlines.outline_shapes import OutlineShape, outline_shapes
+from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 
 FINE = 256  # chords of a quarter turn of shapely's circles
 

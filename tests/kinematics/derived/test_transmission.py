@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.kinematics.derived.transmission_angle import block_of
 from compoundkin.kinematics.groups.general import GeneralSolver
-from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import FRAME
 from tests import catalog
 from tests.support import KINDS_OF_DYAD, drawn_values, random_sketch
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes import dead_points, driver_dead_points, extremes, pieces, zeros
 from compoundkin.view.report import report
-from compoundkin.view.report.published_section import comparisons
+from compoundkin.view.report.verification_sections import comparisons
 from tests.catalog import mechanism
 from tests.catalog import motion as solved
 

@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes import between, extremes, zeros
 from compoundkin.kinematics.quantities import quantity
 from tests.catalog import NAMES, mechanism

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics import groups
 from compoundkin.kinematics.block import Block

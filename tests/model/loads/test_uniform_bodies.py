@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.model.loads.uniform_bodies import uniform_body
+from compoundkin.model.loads.mass import uniform_body
 
 SI = {"length": "m", "mass": "kg", "force": "N"}
 

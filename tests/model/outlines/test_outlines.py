@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import dumps, loads
-from compoundkin.model.outlines.outline_shapes import OutlineShape, outline_shapes
+from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 
 BAR = ck.Mechanism(
     "Crank-rocker",

@@ -13,8 +13,7 @@ from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs import KINDS, WRITTEN, Pair
-from compoundkin.model.pairs.contract import Line
-from compoundkin.model.pairs.optional_answers import as_drivable, as_turn_counting
+from compoundkin.model.pairs.contract import Line, as_drivable, as_turn_counting
 from tests.support import ends_at, largest, random_planar, random_pose, random_real, random_unit, sample
 
 SEEDS = st.integers(0, 2**32 - 1)

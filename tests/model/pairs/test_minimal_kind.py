@@ -19,10 +19,9 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism, UnassembledP
 from compoundkin.cli import cli
 from compoundkin.files.mechanism_files import dumps, loads
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.model.drives import Drive
+from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import KINDS
-from compoundkin.model.pairs.contract import Pair
-from compoundkin.model.pairs.optional_answers import Drivable, Replaceable, TurnCounting
+from compoundkin.model.pairs.contract import Drivable, Pair, Replaceable, TurnCounting
 from compoundkin.view.sketch.picture_kinds import KINDS as PICTURES
 from tests.model.pairs.minimal import Guided, Level, register, with_guided, with_level
 

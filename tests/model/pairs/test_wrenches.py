@@ -14,8 +14,7 @@ import compoundkin as ck
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.pairs import KINDS, Belt, Cam, Gear, Pair, Rack, RollingOnCircle
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.optional_answers import as_accompanied, as_turn_counting
+from compoundkin.model.pairs.contract import Ends, as_transmitting_pair, as_turn_counting
 from tests.support import ends_at, random_pose, sample
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -70,7 +69,7 @@ def test_no_unit_wrench_works_in_a_permitted_motion(kind: type[Pair], seed: int)
     if len(poses) == 2:  # the last one's power is the rate of the coordinate
         effort, row = forces_of(units[-1], poses), np.asarray(pair.jacobian(ends, poses)[-1], dtype=float)
         assert np.allclose(effort @ motions, row @ motions, atol=1e-8 * max(1.0, np.abs(row).max()))
-    partner = as_accompanied(pair)
+    partner = as_transmitting_pair(pair)
     for amount, tension in ((3.0, None), (-2.0, 5.0)) if partner else ():
         assert partner is not None
         beside = forces_of(partner.accompanying(ends, poses, amount, tension), poses)

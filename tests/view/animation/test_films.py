@@ -15,7 +15,7 @@ import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.animation import films as gif_module
 from compoundkin.view.animation import films as mp4_module
-from compoundkin.view.animation.films import APART, indices, nearest_table, palette
+from compoundkin.view.animation.films import APART, colour_palette, indices, nearest_table
 from compoundkin.view.sketch.shapes import CircleShape, Text, leaves
 from compoundkin.view.sketch.sketch_style import NUMBER
 from compoundkin.view.sketch.svg import pixel_size, pixels
@@ -134,7 +134,9 @@ def test_a_gif_has_no_more_frames_a_second_than_browsers_show() -> None:
 def test_a_turn_of_the_six_bar_is_well_below_a_megabyte(tmp_path: Path) -> None:
     animation = six_bar(73).animate(size=640, seconds=4)
     some = [pixels(animation.frame(k).svg, *(640, 640)) for k in range(0, 72, 12)]
-    whole = gif_module.gif(gif_module.Frames(lambda k: some[k], len(some), 0.05, (640, 640)), lambda done, total: None)
+    whole = gif_module.gif(
+        gif_module.FilmFrames(lambda k: some[k], len(some), 0.05, (640, 640)), lambda done, total: None
+    )
     assert len(whole) / len(some) * 72 < 850_000
 
 
@@ -142,7 +144,7 @@ def test_a_palette_keeps_the_colours_that_are_drawn_with() -> None:
     rng = np.random.default_rng(1)
     flat = np.array([[255, 255, 255], [192, 74, 0], [0, 103, 177], [27, 31, 36]])
     drawn = np.concatenate([np.repeat(flat, [500, 60, 50, 40], axis=0), rng.integers(0, 256, (30, 3))])
-    colours = palette(drawn.astype(np.uint8), 8)
+    colours = colour_palette(drawn.astype(np.uint8), 8)
     assert len(colours) == 8
     assert colours[:4].tolist() == flat.tolist()
     table = nearest_table(colours)

@@ -18,14 +18,14 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
-from compoundkin.model.attributes import readable
+from compoundkin.model.attributes import with_superscripts
 from compoundkin.view.page.html_document import ASSETS, asset
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.report_page import Page
 from compoundkin.view.report import Report, page, report
 from compoundkin.view.report.atlas_sections import atlas_report
 from compoundkin.view.report.report_data import Column, Outcome, Section, TableBlock
-from compoundkin.view.report.wording import typeset, written
+from compoundkin.view.report.wording import column_texts, typeset
 from tests import catalog
 
 from .conftest import HOSTILE
@@ -142,14 +142,14 @@ def _holds(table: TableBlock, rows: list[list[str]], whole: bool) -> None:
     """The rows are those of the table; with poses between them where it has only every third or so."""
     assert len(rows) >= len(table.rows) if whole else len(rows) == len(table.rows)
     for k, column in enumerate(table.columns):
-        wanted = written(column, [row[k] for row in table.rows], "")
+        wanted = column_texts(column, [row[k] for row in table.rows], "")
         shown = [row[k].removeprefix("✓ ").removeprefix("✗ ") for row in rows]
         if whole:
             # more rows may have more digits: the numbers are the same
             assert {_number(text) for text in wanted} <= {_number(text) for text in shown}
         else:
             # the page raises the powers of units
-            assert shown == [" ".join(readable(text).split()) for text in wanted]
+            assert shown == [" ".join(with_superscripts(text).split()) for text in wanted]
 
 
 def _number(text: str) -> float | str:

@@ -8,8 +8,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.dimensions import StatedDimensions, mechanism_with
 from compoundkin.view.page import player
 from tests import catalog
 
@@ -63,7 +62,7 @@ def changed(view: Any, motion: ck.results.Motion) -> ck.results.Motion:
     pose = f"[...{PLAYER}.assembled].indexOf(1)"
     places = view.value(f"Object.keys({PLAYER}.points).map((name) => [name, {PLAYER}.place(name, {pose})])")
     drawing = ck.drawn(**dict(places))
-    return ck.solve(designed(stated, values).replace(drawing), drives, speed=10)
+    return ck.solve(mechanism_with(stated, values).replace(drawing), drives, speed=10)
 
 
 def middle(view: Any, label: str) -> tuple[float, float]:

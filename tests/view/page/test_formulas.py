@@ -12,7 +12,7 @@ import compoundkin as ck
 from compoundkin.analysis.equations.loop_equations import loop_equations
 from compoundkin.analysis.equations.written_equations import latex, text
 from compoundkin.files import shipped_mechanisms
-from compoundkin.view.page.mathml import Unread, mathml
+from compoundkin.view.page.mathml import UnknownLatex, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
 from tests import catalog
@@ -99,7 +99,7 @@ def test_names_come_through_as_they_are(name: str) -> None:
     "formula", [r"\frac{1}{2}", r"\text", r"a_{b", r"\text{<b>", r"\begin{bmatrix} 1 & 2", r"\begin{cases}"]
 )
 def test_what_it_does_not_know_is_shown_as_text(formula: str) -> None:
-    with pytest.raises(Unread):
+    with pytest.raises(UnknownLatex):
         mathml(formula)
     section = Section("s", "S", (FormulaBlock("a < b", formula),))
     html = Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0)).html()

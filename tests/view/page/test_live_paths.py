@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.catalog import load_named
 from compoundkin.kinematics import Motion
 from compoundkin.view.page.html_document import asset
 from compoundkin.view.page.live.live_data import live_data
-from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.pose_sample import Sample
 
 SCRIPTS = ("numbers.js", "live/machine.js", "live/states.js", "live/path.js")
 # Dyads of all kinds, gears, belts, racks, rolling, slots with ends, cylinders, several drivers, a group of class III.
@@ -55,7 +55,7 @@ class Dragged:
         self.values = {drive: np.ravel(whole.drives[drive].value)[::every] for drive in whole.drives}
         self.rates = {drive: float(np.ravel(whole.drives[drive].rate)[0]) for drive in whole.drives}
         self.motion = ck.solve(mechanism, self.values, speed=self.rates, order=2)
-        self.links = tuple(name for name in self.motion.links if name not in mechanism.led_links)
+        self.links = tuple(name for name in self.motion.links if name not in mechanism.auxiliary_links)
         poses = self.motion.inputs.poses
         live = live_data(Sample(self.motion), np.arange(poses), self.links, ())
         self.data: dict[str, Any] = {"poses": poses, "start": 0, "live": live}

@@ -10,11 +10,10 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.view.page.markup import brief, exact
-from compoundkin.view.page.moving_data import FEWEST_POSES, MOST_POSES, MotionData
-from compoundkin.view.page.player import framed, player
-from compoundkin.view.page.viewer import viewer, viewer_of
-from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.page.markup import packed_doubles, packed_floats
+from compoundkin.view.page.motion_data import FEWEST_POSES, MOST_POSES, MotionData
+from compoundkin.view.page.viewer import framed_player, player, viewer, viewer_of
+from compoundkin.view.report.pose_sample import Sample
 from tests import catalog
 
 
@@ -33,13 +32,13 @@ def six_bar(poses: int = 37) -> ck.results.Motion:
 
 def test_packing_is_exact_or_has_seven_digits() -> None:
     values = np.array([np.pi, -1e-300, np.nan, 1e300, -0.0])
-    np.testing.assert_array_equal(unpacked(exact(values), 5), np.where(values == 0, 0.0, values))
+    np.testing.assert_array_equal(unpacked(packed_doubles(values), 5), np.where(values == 0, 0.0, values))
     some = np.array([np.pi, 2.5, np.nan])
-    np.testing.assert_allclose(unpacked(brief(some), 3), some, rtol=1e-7)
-    assert exact(np.full(7, 2.5)) == 2.5
-    assert brief(np.full(3, np.nan)) is None
+    np.testing.assert_allclose(unpacked(packed_floats(some), 3), some, rtol=1e-7)
+    assert packed_doubles(np.full(7, 2.5)) == 2.5
+    assert packed_floats(np.full(3, np.nan)) is None
     # minus zero would be shown as -0
-    assert str(exact(np.array([-0.0, 0.0]))) == "0.0"
+    assert str(packed_doubles(np.array([-0.0, 0.0]))) == "0.0"
 
 
 def test_points_from_the_data_are_those_of_the_solver() -> None:
@@ -147,17 +146,17 @@ def test_names_are_text_wherever_they_stand() -> None:
     arm = ck.Mechanism(bad, ck.link("frame", A=0), ck.link("a<b>&", A=0, B=1), ck.drive("a<b>&"))
     motion = ck.solve(arm, {"a<b>&": ck.deg([0, 10, 20])})
     made = viewer(motion, outputs=["B.position"])
-    for text in (made.html, made.plots, player(motion), framed(motion) or ""):
+    for text in (made.html, made.plots, player(motion), framed_player(motion) or ""):
         assert "<script>alert" not in text
         assert "<b>&" not in text
 
 
 def test_a_frame_is_small_and_asks_for_nothing() -> None:
-    html = framed(six_bar(361))
+    html = framed_player(six_bar(361))
     # half of it is what makes it live
     assert len(html) < 320_000
     assert "http" not in html.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", "")
-    assert framed(six_bar(361)) == html
+    assert framed_player(six_bar(361)) == html
     assert ck.solve(load_named("six-bar"), {"crank": ck.deg([30])})._repr_html_() is None
 
 

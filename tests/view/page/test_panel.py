@@ -16,8 +16,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.mechanism_files import dumps, loads
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.dimensions import StatedDimensions, mechanism_with
 from compoundkin.view.page.live.mechanism_template import mechanism_template
 from compoundkin.view.page.live.panel_data import template_data
 from tests import catalog
@@ -89,7 +88,7 @@ def test_what_is_copied_is_the_changed_mechanism_to_the_last_digit(whole: Any, n
         for k in chosen:
             changed[k] = own[k] * (1 + 1e-4 * random.normal()) if own[k] else 1e-3 * random.normal()
         try:
-            wanted = designed(stated, {stated.known[names[k]]: changed[k] for k in chosen})
+            wanted = mechanism_with(stated, {stated.known[names[k]]: changed[k] for k in chosen})
         except ck.errors.InvalidMechanism:
             # wheels that do not fit their axes: a page leaves these out
             continue
@@ -115,7 +114,7 @@ def test_what_is_copied_keeps_its_configuration(whole: Any) -> None:
     copied = loads(whole.evaluate(PLACED, [template_data(stated, names, drawn), own, to, places]))
     assert copied.sketch == {letter: complex(*place) for letter, place in places.items()}
     assert all(None not in link.points.values() for link in copied.rigid_links.values())
-    wanted = designed(stated, {stated.known["AB.A.x"]: to[names.index("AB.A.x")]})
+    wanted = mechanism_with(stated, {stated.known["AB.A.x"]: to[names.index("AB.A.x")]})
     np.testing.assert_allclose(ck.solve(copied).points["F"].position, ck.solve(wanted).points["F"].position, rtol=1e-9)
 
 

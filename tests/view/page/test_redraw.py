@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.named_dimensions import free_dimensions
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
-from compoundkin.view.sketch.moving_sketch import carried_shapes
+from compoundkin.programs.dimensions import StatedDimensions, free_dimensions, mechanism_with
+from compoundkin.view.sketch.kinematic_sketch import carried_shapes
+from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import DEVIATION, Window
+from compoundkin.view.sketch.picture_options import scene_in
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Strokes, leaves
-from compoundkin.view.sketch.shown_pose import scene_in
-from compoundkin.view.sketch.slide_shapes import Painter
 from tests import catalog
 
 # The vertices of all elements of the sketch but names, on the picture, in the order of the elements.
@@ -115,7 +113,7 @@ def test_what_is_drawn_anew_is_what_painters_draw(name: str, made: Any, opened: 
     for seed in range(2):
         values = _changes(motion, names, seed)
         drawn = view.value(CHANGED, values)
-        mechanism = designed(stated, {one: values[one.name] for one in free_dimensions(stated, list(values))})
+        mechanism = mechanism_with(stated, {one: values[one.name] for one in free_dimensions(stated, list(values))})
         signs = {mode.links[0]: int(mode.sign) for mode in motion.modes.values() if mode.sign is not None}
         wanted = _painted(ck.solve(mechanism, modes=signs), pose, window)
         assert len(drawn) == len(wanted)

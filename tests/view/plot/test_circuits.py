@@ -18,8 +18,7 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view import plot
-from compoundkin.view.plot.branch_lines import curve_of, shown, wrapped
-from compoundkin.view.plot.branch_positions import all_positions
+from compoundkin.view.plot.circuit_plot import branch_curve, segment_positions, segment_quantity, wrapped_curve
 from tests.configurations.mechanisms import four_bar
 from tests.support import REFERENCE
 
@@ -78,11 +77,11 @@ def test_branches_of_a_circuit_meet_at_their_limit_positions(lengths: tuple[floa
     if d > a + b + c - 0.2 or abs(a + d - b - c) < 0.2:
         return
     found = ck.circuits(four_bar(c, b, a, d, "crank"))
-    positions = all_positions(found)
-    (angle,) = shown(positions, "rocker.angle")
+    positions = segment_positions(found)
+    (angle,) = segment_quantity(positions, "rocker.angle")
     ends: dict[int, list[float]] = {}
     for branch in found.branches:
-        curve = curve_of(positions, branch, angle)
+        curve = branch_curve(positions, branch, angle)
         for k, limit in curve.limits:
             assert abs(np.angle(np.exp(1j * (np.deg2rad(curve.x[k]) - limit.value)))) < 1e-12
             wanted = limit.configuration.angles["rocker"]
@@ -117,7 +116,7 @@ def test_a_turn_is_not_drawn_across_its_ends() -> None:
 @given(st.lists(st.floats(-170.0, 170.0), min_size=2, max_size=12), st.sampled_from([-180.0, 0.0, -90.0]))
 def test_a_wrapped_curve_is_the_same_curve(steps: list[float], low: float) -> None:
     x = np.cumsum(steps)
-    cut, along = wrapped(x, np.arange(len(x), dtype=float), low)
+    cut, along = wrapped_curve(x, np.arange(len(x), dtype=float), low)
     known = np.isfinite(cut)
     assert ((cut[known] >= low) & (cut[known] <= low + 360.0)).all()
     whole = np.interp(along[known], np.arange(len(x)), x)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.view.plot.branch_lines import shown
-from compoundkin.view.plot.branch_positions import all_positions
+from compoundkin.view.plot.circuit_plot import segment_positions, segment_quantity
 from compoundkin.view.report import report
 from tests import catalog
 
@@ -15,13 +14,13 @@ from tests import catalog
 def test_transmission_angles_over_circuits_end_at_zero() -> None:
     """Both branches of a triple rocker, from limit to limit of its driver; a ratio of rates is not shown so."""
     found = ck.circuits(catalog.mechanism("triple-rocker"))
-    positions = all_positions(found)
-    (angle,) = shown(positions, "rocker.transmission_angle")
+    positions = segment_positions(found)
+    (angle,) = segment_quantity(positions, "rocker.transmission_angle")
     assert angle.unit == "deg"
     assert np.abs(angle.values[:, [0, -1]]).max() < 1e-4
     assert np.nanmax(angle.values) == pytest.approx(90.0, abs=0.5)
     with pytest.raises(ck.errors.InvalidInput, match="circuits show positions, not rates"):
-        shown(positions, "rocker.advantage")
+        segment_quantity(positions, "rocker.advantage")
 
 
 def test_an_advantage_is_not_drawn_through_its_poles() -> None:

@@ -11,7 +11,7 @@ pytest.importorskip("matplotlib")
 
 import compoundkin as ck
 from compoundkin.studies.runs.pareto_rows import pareto_rows
-from compoundkin.view.plot.scatter_matrix import rank_correlation
+from compoundkin.view.plot.scatter_plots import rank_correlation
 from compoundkin.view.plot.study_columns import drawn_rows
 from tests import catalog
 

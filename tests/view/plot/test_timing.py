@@ -15,11 +15,11 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.laws import constant_speed, dwell, fall, least_time, program, rise, time_table
-from compoundkin.view.plot.timing_rows import rows
+from compoundkin.view.plot.timing_chart import timing_rows
 
 
 def phases(what: Any, over: str | None = None) -> dict[str, list[tuple[str, float, float]]]:
-    _, found = rows(what, over)
+    _, found = timing_rows(what, over)
     return {row.name: [(p.word, round(p.begin, 6), round(p.end, 6)) for p in row.phases] for row in found}
 
 
@@ -58,7 +58,7 @@ def cam(**more: Any) -> ck.Mechanism:
 def test_cams_are_laid_over_a_turn_from_where_their_program_begins(more: dict[str, Any]) -> None:
     expected = [("dwell", 0, 30), ("rise", 30, 120), ("dwell", 120, 210), ("fall", 210, 300), ("dwell", 300, 360)]
     assert phases(cam(**more)) == {"follower/disc": expected}
-    (row,) = rows(cam(**more), None)[1]
+    (row,) = timing_rows(cam(**more), None)[1]
     # the disc itself, at as much rotation in its sense
     motion = ck.solve(cam(**more), {"disc": np.deg2rad([0.0, 75.0, 130.0]) * (-1 if more.get("clockwise") else 1)})
     heights = motion.points["P"].position.imag - 40.0

@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Section, TableBlock
-from compoundkin.view.report.wording import written
+from compoundkin.view.report.wording import column_texts
 from tests.view.report.support import assert_fits, assert_well_formed, four_bar, parsed
 
 ESCAPE = "\x1b"
@@ -87,7 +87,7 @@ def test_names_that_look_like_markup_stay_as_they_are() -> None:
     ],
 )
 def test_a_column_has_as_many_decimals_as_say_something(cells: list[Any], expected: list[str]) -> None:
-    assert written(Column("x", style="fixed", floor=1e-15), cells) == expected
+    assert column_texts(Column("x", style="fixed", floor=1e-15), cells) == expected
 
 
 # --- Markdown -------------------------------------------------------------------------------------------

@@ -6,8 +6,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.view.report import Report, report
-from compoundkin.view.report.loop_sections import equation_count
 from compoundkin.view.report.report_data import Alert, FormulaBlock, Paragraph, StepBlock, TableBlock
+from compoundkin.view.report.structure_sections import equation_count
 from tests import catalog
 from tests.view.report.support import four_bar
 
@@ -277,7 +277,7 @@ def test_the_published_numbers_of_the_six_bar(six_bar: ck.results.Motion) -> Non
     found = table(made, "published")
     assert len(found.rows) == made.outcome.published == len(six_bar.mechanism.expectations)
     assert all(column(found, ""))
-    assert len(found.shown_rows) == len({e.quantity for e in six_bar.mechanism.expectations})
+    assert len(found.selected_rows) == len({e.quantity for e in six_bar.mechanism.expectations})
 
 
 def test_a_wrong_published_number_fails_and_is_shown(six_bar: ck.results.Motion) -> None:
@@ -286,7 +286,7 @@ def test_a_wrong_published_number_fails_and_is_shown(six_bar: ck.results.Motion)
     assert not made.outcome.passed
     assert made.outcome.published - made.outcome.published_passed == 1
     assert "1 of 56 published numbers NOT reproduced" in texts(made, "about")
-    row = table(made, "published").shown_rows[-1]
+    row = table(made, "published").selected_rows[-1]
     assert (row[0], row[-1]) == ("A.jerk", False)
     assert row[1] == (pytest.approx(20.0),)
 
@@ -380,7 +380,7 @@ def test_a_published_number_of_a_group_that_has_no_pose_fails() -> None:
     far = mechanism.replace(ck.link("crank", O=(0, 0), A3=(200, 0)), ck.expect("plate.angle", 1.0, 1.0, crank=0.0))
     with pytest.raises(ck.errors.NotAssembled):
         ck.solve(far)
-    from compoundkin.view.report.published_section import comparisons
+    from compoundkin.view.report.verification_sections import comparisons
 
     found = comparisons(ck.decompose(far))
     assert found

@@ -8,10 +8,9 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError, InvalidInput, NotAssembled
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.view.sketch.moving_sketch import moving_sketch
-from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, corners, leaves
-from compoundkin.view.sketch.sketches import layered
-from compoundkin.view.sketch.slide_shapes import Painter
+from compoundkin.view.sketch.kinematic_sketch import layered, moving_sketch
+from compoundkin.view.sketch.painter import Painter
+from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, leaves, shape_corners
 from tests import catalog
 
 SOLVABLE = ("six-bar", "jansen-leg", "planetary-train", "geneva-wheel", "disc-cam-roller-program",
@@ -62,7 +61,7 @@ def _place(points: tuple[complex, ...]) -> tuple[float, float]:
 def test_the_window_holds_every_pose(name: str) -> None:
     sketch = moving_sketch(solved(name))
     for k in range(0, sketch.scene.count, 5):
-        assert all(sketch.window.holds(p, -1.0) for p in corners(sketch.shapes(k)[1:]))
+        assert all(sketch.window.holds(p, -1.0) for p in shape_corners(sketch.shapes(k)[1:]))
 
 
 def test_turns_are_those_of_the_links() -> None:
@@ -92,7 +91,7 @@ def test_poses_that_cannot_be_assembled_are_left_out() -> None:
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     sketch = moving_sketch(motion)
     assert 0 < sketch.scene.count == int(motion.assembled.sum()) < 72
-    assert all(np.isfinite(corners(sketch.shapes(k))).all() for k in range(sketch.scene.count))
+    assert all(np.isfinite(shape_corners(sketch.shapes(k))).all() for k in range(sketch.scene.count))
 
 
 def test_what_never_closes_has_no_sketch_that_moves() -> None:
@@ -136,7 +135,7 @@ def test_every_other_mechanism_of_the_catalog_moves() -> None:
         except CompoundkinError:
             continue
         sketch = moving_sketch(motion)
-        assert np.isfinite(corners(sketch.shapes(sketch.scene.count // 2))).all(), name
+        assert np.isfinite(shape_corners(sketch.shapes(sketch.scene.count // 2))).all(), name
 
 
 def test_a_motion_whose_points_return_but_not_its_wheels_does_not_close() -> None:

@@ -14,7 +14,7 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.kinematics.dyad_loci import CircleLocus, Loci
 from compoundkin.kinematics.groups import DYADS, as_dyad
-from compoundkin.view.sketch.label_places import text_half
+from compoundkin.view.sketch.labels import text_half
 from compoundkin.view.sketch.shapes import CircleShape, Text, leaves
 from compoundkin.view.sketch.sketch_style import LETTER, SMALL
 from tests import catalog
@@ -146,7 +146,7 @@ def test_nothing_is_said_of_another_mode_that_is_the_same() -> None:
 
 def pose_of(motion: ck.results.Motion) -> int:
     """The pose that pictures show where none is asked for."""
-    from compoundkin.view.sketch.shown_pose import scene_of
+    from compoundkin.view.sketch.picture_options import scene_of
 
     return scene_of(motion, None, None, 0).pose[1]
 

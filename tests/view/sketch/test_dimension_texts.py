@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.view.sketch.label_places import WIDE
+from compoundkin.view.sketch.labels import WIDE
 from compoundkin.view.sketch.shapes import Text, leaves
 from compoundkin.view.sketch.sketch_style import SMALL
 from tests.catalog import mechanism

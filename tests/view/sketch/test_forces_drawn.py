@@ -7,10 +7,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.errors import InvalidInput, UnknownName
-from compoundkin.view.sketch.acting_forces import acting_forces
-from compoundkin.view.sketch.force_arrows import drawn, force_scale, moment_arc
+from compoundkin.view.sketch.force_arrows import acting_forces, force_arrow, force_scale, moment_arc
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import ArcShape, Polygon, Polyline, Shape, ShapeGroup, Text, leaves
-from compoundkin.view.sketch.shown_pose import scene_of
 from tests.view.loaded import MASS, REACH, SPEED, UNITS, crank_forces, six_bar_forces
 
 
@@ -41,7 +40,7 @@ def test_arrows_are_to_scale_and_press_from_outside() -> None:
     scale = force_scale([pushed], 100.0, "N")
     assert scale is not None
     assert (scale.amount, scale.text) == (5.0, "5 N")
-    away, into = drawn(pushed, 0j, scale), drawn(pushed, 0j, scale, complex(np.conjugate(pushed.force)) * 9)
+    away, into = force_arrow(pushed, 0j, scale), force_arrow(pushed, 0j, scale, complex(np.conjugate(pushed.force)) * 9)
     for arrow in (away, into):
         assert abs(arrow.stop - arrow.start) == pytest.approx(100.0)
         assert np.angle(np.conjugate(arrow.stop - arrow.start)) == pytest.approx(np.angle(-3 - 5j))

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.view.sketch.label_places import text_half
-from compoundkin.view.sketch.moving_sketch import moving_sketch
+from compoundkin.view.sketch.kinematic_sketch import in_layers, moving_sketch
+from compoundkin.view.sketch.labels import text_half
+from compoundkin.view.sketch.painter import Layer, Painter
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
-from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import LETTER, SMALL
-from compoundkin.view.sketch.sketches import in_layers
-from compoundkin.view.sketch.slide_shapes import Layer, Painter
 from tests.catalog import mechanism, motion
 
 # A sheet of A4 has 180 mm between its margins; a point is 1/72 of an inch.

@@ -14,10 +14,10 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
 from compoundkin.structure import decompose, loop_count
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
-from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import style_of
-from compoundkin.view.sketch.structure_pictures import MOST, polygon
+from compoundkin.view.sketch.structure_pictures import MOST, loop_polygon
 from tests import catalog
 
 NAMES = ["six-bar", "stephenson-iii", "class-iii-six-bar", "jansen-leg", "planetary-train", "crank-shaper"]
@@ -58,7 +58,7 @@ def test_the_corners_are_the_solved_points_and_the_vectors_the_links(angle: floa
     motion = ck.solve(shipped_mechanisms.load_named("stephenson-iii"), ck.deg(100.0) + 0.1 * np.sin([angle]))
     scene = scene_of(motion, None, 0, 0)
     for loop in motion.structure.loops:
-        corners = polygon(scene, loop)
+        corners = loop_polygon(scene, loop)
         assert [corner.letter for corner in corners] == [pair.letters[0] for pair in (loop.pairs[-1], *loop.pairs[:-1])]
         solved = [complex(np.ravel(motion.points[corner.letter].position)[0]) for corner in corners]
         np.testing.assert_allclose([corner.at for corner in corners], solved, atol=1e-9 * motion.size)
@@ -72,7 +72,7 @@ def test_the_corners_are_the_solved_points_and_the_vectors_the_links(angle: floa
 def test_across_a_slide_a_vector_leads_along_its_guide() -> None:
     motion = ck.solve(shipped_mechanisms.load_named("slider-crank"), {"crank": [0.7]})
     (loop,) = motion.structure.loops
-    corners = [corner.at for corner in polygon(scene_of(motion, None, 0, 0), loop)]
+    corners = [corner.at for corner in loop_polygon(scene_of(motion, None, 0, 0), loop)]
     ways = np.diff([*corners, corners[0]])
     displacement = float(motion.pairs["stroke"].value[0])
     assert min(abs(abs(way) - abs(displacement)) for way in ways) < 1e-12

@@ -23,11 +23,11 @@ from compoundkin.files import shipped_mechanisms
 from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.model.pairs.symbols import Mark, Pin, Sliding, strap_line
 from compoundkin.structure import decompose
-from compoundkin.view.sketch.label_places import around, placed
+from compoundkin.view.sketch.labels import label_around, placed
 from compoundkin.view.sketch.picture import simplified
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
-from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import COLOURS, FRAME, INK, PAPER
 from compoundkin.view.sketch.symbol_shapes import PAINTED
 from tests import catalog
@@ -270,7 +270,7 @@ def test_a_pose_that_does_not_close_has_its_exit_code() -> None:
 def test_labels_of_crowded_points_do_not_overlap(seed: int) -> None:
     rng = np.random.default_rng(seed)
     points = [complex(*rng.uniform(150, 350, 2)) for _ in range(20)]
-    labels = [around(str(k), p, 6 + 6j, 8.0) for k, p in enumerate(points)]
+    labels = [label_around(str(k), p, 6 + 6j, 8.0) for k, p in enumerate(points)]
     found = list(placed(labels, [CircleShape(p, 4.0, "pin") for p in points], 500, 500).values())
     for k, a in enumerate(found):
         assert all(abs((a - b).real) >= 12 or abs((a - b).imag) >= 12 for b in found[:k])

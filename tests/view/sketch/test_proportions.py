@@ -7,13 +7,13 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
-from compoundkin.view.sketch.cylinder_shapes import is_piston
-from compoundkin.view.sketch.geneva_shapes import HALF, PART, disc_line, genevas, wheel_line
+from compoundkin.view.sketch.kinematic_sketch import in_layers, window_on
+from compoundkin.view.sketch.painter import Laid, Layer, Painter
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, leaves
-from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import BLOCK
-from compoundkin.view.sketch.sketches import in_layers, window_on
-from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter
+from compoundkin.view.sketch.symbol_shapes import is_piston
+from compoundkin.view.sketch.wheel_shapes import HALF, PART, disc_line, genevas, wheel_line
 
 
 def slider_crank(through: complex, crank: float = 0.2) -> ck.Mechanism:

@@ -14,8 +14,7 @@ from compoundkin.files import shipped_mechanisms
 from compoundkin.view.sketch.shapes import CircleShape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_style import CLASSES, GROUPED, declarations, style_of
 from compoundkin.view.sketch.svg import svg
-from compoundkin.view.sketch.tex_text import tex_text
-from compoundkin.view.sketch.tikz import tikz
+from compoundkin.view.sketch.tikz import tex_text, tikz
 
 NUMBER = r"-?\d+(?:\.\d+)?"
 PLACE = rf"\(({NUMBER}),({NUMBER})\)"

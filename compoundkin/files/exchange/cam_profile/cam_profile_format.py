@@ -8,14 +8,14 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.exchange.cam_profile.profile_points import ProfilePoints, profile_points
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
 from compoundkin.files.exchange.option_values import positive, whole
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
-from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 
 # How far chords may be off where it is not said, in parts of the profile's size.
 CHORD = 1e-5
@@ -54,16 +54,16 @@ class CamProfileFormat(Writable):
         return Exported(text.getvalue().encode("utf-8"), self.name, tuple(_notes(pair, found, unit)))
 
 
-def _pair(shown: ShownMechanism, name: Any) -> Profiled:
+def _pair(shown: ShownMechanism, name: Any) -> ProfileContact:
     """The pair that is asked for, or the only one."""
-    known = {pair.name: found for pair in shown.pairs if (found := as_profiled(pair)) is not None}
+    known = {pair.name: found for pair in shown.pairs if (found := as_profile_contact(pair)) is not None}
     if not known:
         raise InvalidInput(Problem(shown.mechanism.title, "it has no cam", "export another mechanism"))
     if name is None and len(known) > 1:
         raise InvalidInput(Problem("cam", f"there are {len(known)}", f"name one: {', '.join(known)}"))
     wanted = next(iter(known)) if name is None else str(name)
     if wanted not in known:
-        raise UnknownName(Problem("cam", f"there is no cam pair {wanted!r}", nearest(wanted, list(known))))
+        raise UnknownName(Problem("cam", f"there is no cam pair {wanted!r}", suggestion(wanted, list(known))))
     return known[wanted]
 
 
@@ -90,7 +90,7 @@ def _rows(found: ProfilePoints) -> Iterator[tuple[float, ...]]:
     return zip(found.parameters.tolist(), *(row.tolist() for row in places), found.radii.tolist(), strict=True)
 
 
-def _notes(pair: Profiled, found: ProfilePoints, unit: str) -> Iterator[str]:
+def _notes(pair: ProfileContact, found: ProfilePoints, unit: str) -> Iterator[str]:
     closed = "closed: the last is the first again" if pair.curve.closed else "open"
     yield f"{len(found.parameters)} points of the profile of {pair.name}, in the frame of {pair.on}; {closed}"
     yield f"chords between them are off by {found.error:.3g}{f' {unit}' if unit else ''} at most"

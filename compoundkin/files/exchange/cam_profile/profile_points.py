@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.files.exchange.short_chords import beside_chords, short_chords
-from compoundkin.model.pairs.profile_contact import Profiled
+from compoundkin.model.pairs.profile_contact import ProfileContact
 
 # The profile is first cut into so many steps, besides at its own breaks.
 FIRST = 48
@@ -39,7 +39,7 @@ class ProfilePoints:
 
 
 def profile_points(
-    pair: Profiled, tolerance: float, cutter: float | None = None, count: int | None = None
+    pair: ProfileContact, tolerance: float, cutter: float | None = None, count: int | None = None
 ) -> ProfilePoints:
     """Return points within a tolerance, or a count of them.
 
@@ -73,7 +73,7 @@ def profile_points(
     return ProfilePoints(s, dict(zip(away, rows, strict=True)), normals, radii, float(error))
 
 
-def _hold_cutter(pair: Profiled, middles: Number, cutter: float) -> None:
+def _hold_cutter(pair: ProfileContact, middles: Number, cutter: float) -> None:
     """Raise InvalidInput where a cutter takes away what it should leave, in a hollow or anywhere else."""
     nearest = np.abs(middles - pair.curve.at(pair.curve.foot(middles).c[0]).c[0])
     worst = int(np.argmin(nearest))

@@ -93,7 +93,7 @@ def _unsaid(shown: ShownMechanism) -> Iterator[Problem]:
             yield Problem(
                 places[pair.name], f"{pair.name!r} is a {pair.title}, which has no place in a drawing of joints"
             )
-    for name in mechanism.leads:
+    for name in mechanism.prescribed_motions:
         yield Problem(f"drives.{name}", f"{name!r} is led, not driven at a pair", "give a driver at a pair instead")
 
 

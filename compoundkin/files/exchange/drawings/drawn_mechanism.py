@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from typing import Any
 
-from compoundkin.base.display import counted, few
+from compoundkin.base.display import abbreviated_list, count_phrase
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, LikelySlip, Problem
 from compoundkin.files.exchange.drawings.drawn_drivers import drivers_of
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing
@@ -97,11 +97,11 @@ def _coinciding(key: str, drawing: Drawing) -> Iterator[str]:
 def _renamed(letters: DrawnLetters) -> Iterator[str]:
     changed = [f"{old!r} is {new!r}" for old, new in letters.names.changed]
     if changed:
-        yield f"names are unique here, without dots and commas: {few(changed)}"
+        yield f"names are unique here, without dots and commas: {abbreviated_list(changed)}"
 
 
 def _left_out(drawing: Drawing) -> Iterator[str]:
     """Yield the one note that counts what is not kinematic."""
-    said = [counted(many, what) for what, many in drawing.dropped if many]
+    said = [count_phrase(many, what) for what, many in drawing.dropped if many]
     if said:
         yield f"left out, for it does not move anything: {', '.join(said)}"

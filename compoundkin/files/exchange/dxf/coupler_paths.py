@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined
-from compoundkin.base.series import Number
 from compoundkin.files.exchange.short_chords import short_chords
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion
@@ -55,7 +55,7 @@ def drawn_letters(shown: ShownMechanism) -> tuple[str, ...]:
     return tuple(
         letter
         for letter, links in mechanism.carriers.items()
-        if FRAME not in links and (letter in asked or len(links) == 1) and links[0] not in mechanism.led_links
+        if FRAME not in links and (letter in asked or len(links) == 1) and links[0] not in mechanism.auxiliary_links
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.dxf.coupler_paths import coupler_paths, drawn_letters, whole_motion
 from compoundkin.files.exchange.dxf.ezdxf_library import ezdxf, fixed_dates
@@ -80,7 +80,7 @@ def _letters(shown: ShownMechanism, asked: Any) -> Sequence[str]:
     found = letters_of("curves", asked)
     for letter in found:
         if letter not in known:
-            raise UnknownName(Problem("curves", f"no point {letter!r} moves", nearest(letter, known)))
+            raise UnknownName(Problem("curves", f"no point {letter!r} moves", suggestion(letter, known)))
     return found
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.files.exchange.dxf.legal_names import literal
 from compoundkin.files.exchange.dxf.outline_contours import Contour
 from compoundkin.files.exchange.dxf.profile_splines import ProfileSpline

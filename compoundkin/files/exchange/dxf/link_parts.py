@@ -8,20 +8,20 @@ from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.curves import Curve
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Series
 from compoundkin.files.exchange.dxf.contour_edges import ContourEdge
 from compoundkin.files.exchange.dxf.outline_contours import Contour, contours, covers
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes.motion_between import between
-from compoundkin.model.outlines.outline_shapes import OutlineShape, outline_shapes
+from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.guide_ends import as_ended, bounds_name
-from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.model.pairs.symbols import Groove, Mark, Sliding, Strap, Track, Wheel
+from compoundkin.model.pairs.travel_limits import as_travel_limited, bounds_name
 
 Circle: TypeAlias = "tuple[complex, float]"
 Line: TypeAlias = "tuple[complex, ...]"
@@ -76,12 +76,12 @@ def link_parts(shown: ShownMechanism, motion: Motion | None) -> tuple[LinkPart, 
     return tuple(
         _part(shown, link, shapes, [(pair, mark) for on, pair, mark in marks if on == link])
         for link in shown.points
-        if link not in mechanism.led_links
+        if link not in mechanism.auxiliary_links
     )
 
 
 def _part(shown: ShownMechanism, link: str, shapes: Sequence[OutlineShape], marks: Sequence[Marked]) -> LinkPart:
-    profiled = [found for pair in shown.pairs if (found := as_profiled(pair)) is not None and found.on == link]
+    profiled = [found for pair in shown.pairs if (found := as_profile_contact(pair)) is not None and found.on == link]
     grooves = {
         pair.letters[0]: _arc(shown, pair, mark) for pair, mark in marks if pair.table == ARCS and _is_groove(mark)
     }
@@ -134,11 +134,11 @@ def pin_radii(shapes: Sequence[OutlineShape]) -> Mapping[str, tuple[frozenset[st
 
 def _marks(shown: ShownMechanism, pair: Pair, motion: Motion | None) -> Iterator[tuple[str, Pair, Mark]]:
     """Yield what there is to see of a pair, each with the link that has it."""
-    if not shown.mechanism.led_links.isdisjoint(pair.members):
+    if not shown.mechanism.auxiliary_links.isdisjoint(pair.members):
         return
     ends = shown.ends[pair.name]
     poses = tuple(shown.poses[name] if motion is None else _assembled(motion, name) for name in pair.members)
-    marks, ended = pair.glyph(ends, poses), as_ended(pair)
+    marks, ended = pair.glyph(ends, poses), as_travel_limited(pair)
     if ended is not None:
         known = shown.ends.get(bounds_name(pair))
         bounds = ended.bounds(shown.mechanism.geometry) if known is None else [side.point for side in known]

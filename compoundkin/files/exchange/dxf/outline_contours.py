@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from compoundkin.base.arrays import TURN
 from compoundkin.files.exchange.dxf.contour_edges import ContourEdge
-from compoundkin.model.outlines.outline_shapes import OutlineShape
+from compoundkin.model.outline_shapes import OutlineShape
 
 # Places nearer to each other than this part of the outline's size are one; on which side of an edge material lies is
 # looked at so much farther away.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.convex_hull import convex_hull
+from compoundkin.base.curves.samples import convex_hull
 from compoundkin.files.exchange.dxf.coupler_paths import CouplerPath
 from compoundkin.files.exchange.dxf.dxf_pen import DxfPen
 from compoundkin.files.exchange.dxf.legal_names import LegalNames
@@ -97,7 +97,7 @@ def _draw_joints(model: Any, shown: ShownMechanism, parts: Sequence[LinkPart], s
     """Draw a circle for each pin that has no hole of its own size, and a triangle under those of the frame."""
     with_holes = {(part.link, p) for part in parts for sheet in part.sheets for p, _ in sheet.holes}
     for letter, links in shown.mechanism.carriers.items():
-        real = [link for link in links if link not in shown.mechanism.led_links]
+        real = [link for link in links if link not in shown.mechanism.auxiliary_links]
         if len(real) < 2:
             continue
         at = shown.place(real[0], letter)

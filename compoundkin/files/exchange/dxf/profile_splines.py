@@ -7,8 +7,8 @@ from math import inf
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.curves import Curve
-from compoundkin.base.series import Number
 
 # The curve is first cut into so many pieces, besides at its own breaks; each is halved so often at most.
 FIRST, HALVINGS = 16, 14

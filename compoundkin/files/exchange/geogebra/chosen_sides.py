@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, named, number
 from compoundkin.kinematics import Motion

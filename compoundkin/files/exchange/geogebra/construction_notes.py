@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 
@@ -18,9 +18,9 @@ def _notes(shown: ShownMechanism, build: Construction) -> Iterator[str]:
     mechanism = shown.mechanism
     loads = len(mechanism.loads) + len(mechanism.frictions) + len(mechanism.pretensions)
     kinds = ((len(mechanism.masses), "mass", "masses"), (loads, "load", ""), (len(mechanism.outlines), "outline", ""))
-    if left := ", ".join(counted(count, one, many) for count, one, many in kinds if count):
+    if left := ", ".join(count_phrase(count, one, many) for count, one, many in kinds if count):
         yield f"left out: {left}"
-    for lead in mechanism.leads.values():
+    for lead in mechanism.prescribed_motions.values():
         yield f"what leads {lead.name} is not in the construction: its coordinates have sliders of their own"
     changing = [step.name for step in build.steps if step.look == "helper" and step.caption and "mode" in step.caption]
     for name in changing:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import atan2
 from typing import NamedTuple
 
-from compoundkin.base.arrays import first_entry
-from compoundkin.base.series import Number, Series
+from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.series import Series
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction
 from compoundkin.files.exchange.geogebra.point_dimensions import LinkPoints, dimensioned
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, in_degrees, named

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from compoundkin.base.display import few
+from compoundkin.base.display import abbreviated_list
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.files.exchange.xml_tree import XmlElement
 
@@ -41,7 +41,7 @@ def unknown_attributes(root: XmlElement) -> Iterator[str]:
                 met.setdefault(name[:40], element.line)
     if met:
         said = [f"{name} (line {line})" for name, line in met.items()]
-        yield f"attributes that are not known are not looked at: {few(said)}"
+        yield f"attributes that are not known are not looked at: {abbreviated_list(said)}"
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from compoundkin.files.exchange.drawings.drawn_elements import DrawnLink
-from compoundkin.files.exchange.linkage.linkage_records import (
-    Fastening,
-    LinkageConnector,
-    LinkageFile,
-    LinkageLink,
-)
+from compoundkin.files.exchange.linkage.linkage_records import Fastening, LinkageConnector, LinkageFile, LinkageLink
 from compoundkin.files.exchange.problems import Problems
 from compoundkin.model.geometry import FRAME
 

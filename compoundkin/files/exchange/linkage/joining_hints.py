@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations, islice
 
-from compoundkin.base.display import few
+from compoundkin.base.display import abbreviated_list
 from compoundkin.files.exchange.linkage.joined_links import JoinedLinks
 from compoundkin.files.exchange.linkage.linkage_records import LinkageConnector
 
@@ -37,4 +37,4 @@ def hint(pairs: list[tuple[LinkageConnector, LinkageConnector]]) -> str:
     ''
     """
     said = [f"{one.id} and {two.id}" for one, two in pairs]
-    return f"did you mean to join connectors {few(said, _MOST)}?" if said else ""
+    return f"did you mean to join connectors {abbreviated_list(said, _MOST)}?" if said else ""

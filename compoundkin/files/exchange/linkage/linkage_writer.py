@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor, log10
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing
@@ -80,6 +80,6 @@ def _scale(drawing: Drawing, size: float) -> tuple[str, float, float, list[str]]
 def _dropped(drawing: Drawing) -> Iterator[str]:
     """Yield the note that counts what has no place in the file."""
     many = (*drawing.dropped, ("mass", len(drawing.masses)), ("force", len(drawing.forces)))
-    said = [counted(number, what, "masses" if what == "mass" else "") for what, number in many if number]
+    said = [count_phrase(number, what, "masses" if what == "mass" else "") for what, number in many if number]
     if said:
         yield f"left out, for Linkage has no place for it: {', '.join(said)}"

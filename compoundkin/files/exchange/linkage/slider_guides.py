@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import sqrt
 
-from compoundkin.base.display import few
+from compoundkin.base.display import abbreviated_list
 from compoundkin.files.exchange.drawings.drawn_elements import DrawnArc, DrawnGuideway
 from compoundkin.files.exchange.drawings.drawn_letters import SAME
 from compoundkin.files.exchange.linkage.connector_points import ConnectorPoints
@@ -121,7 +121,7 @@ def limit_notes(sliders: list[Slider], unit: str, size: float) -> Iterator[str]:
     """Yield what is told of limits and of connectors beside their lines."""
     said = [f"{one.connector.id} runs {abs(one.along):.6g} {unit} from {one.limits[0].id}" for one in sliders]
     if said:
-        yield f"slide limits are not kept, the guides are open: {few(said)}"
+        yield f"slide limits are not kept, the guides are open: {abbreviated_list(said)}"
     for one in sliders:
         round_ = one.connector.radius and abs(abs(one.connector.at - one.centre) - one.radius)
         off = round_ if one.connector.radius else one.off(one.connector.at)

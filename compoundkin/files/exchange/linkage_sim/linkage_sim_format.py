@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, InvalidMechanism
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Readable
@@ -39,7 +39,7 @@ class LinkageSimFormat(Readable):
             heading = f"{content.where or title}: it cannot be a mechanism"
             raise InvalidInput(error.problems, heading=heading) from None
         if file.load_cases:
-            notes.append(f"left out: {counted(file.load_cases, 'load case')}")
+            notes.append(f"left out: {count_phrase(file.load_cases, 'load case')}")
         return Imported(mechanism, self.name, tuple(notes))
 
 

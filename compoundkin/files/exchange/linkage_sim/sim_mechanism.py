@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import CompoundkinError, LikelySlip
 from compoundkin.files.exchange.linkage_sim.fixed_bodies import ROUNDING, Placed, fixed_bodies, size_of
 from compoundkin.files.exchange.linkage_sim.sim_loads import SimLoads
@@ -40,7 +40,7 @@ def sim_mechanism(file: SimFile, problems: Problems, title: str) -> tuple[Mechan
     problems.raise_if_any()
     items += loads.items
     notes += (
-        [f"left out: {', '.join(counted(many, what) for what, many in loads.left_out.items())}"]
+        [f"left out: {', '.join(count_phrase(many, what) for what, many in loads.left_out.items())}"]
         if loads.left_out
         else []
     )

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from compoundkin.base.arrays import first_entry
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
-from compoundkin.model.elements import Mass
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.mass import Mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import FORCES, LENGTHS, MASSES
 

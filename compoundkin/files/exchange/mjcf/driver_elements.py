@@ -7,9 +7,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, first_entry
+from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.files.exchange.mjcf.joint_tree import CarriedLink
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan
 from compoundkin.files.exchange.shortest_numbers import shortest

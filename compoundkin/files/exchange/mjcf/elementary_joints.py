@@ -14,9 +14,8 @@ from typing import Any
 from compoundkin.base.arrays import first_entry
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.guide_ends import as_ended
-from compoundkin.model.pairs.optional_answers import lower_equivalent
+from compoundkin.model.pairs.contract import Ends, lower_equivalent
+from compoundkin.model.pairs.travel_limits import as_travel_limited
 
 # What an end that is open is taken as, as a part of the size: MuJoCo has no half ranges.
 _OPEN = 1e3
@@ -103,7 +102,7 @@ def _joint(shown: ShownMechanism, pair: Pair, ends: Ends, side: int, name: str) 
 
 def _reach(shown: ShownMechanism, pair: Pair, ends: Ends) -> tuple[float, float] | None:
     """Return how far the guide of a pair reaches from the pose as drawn."""
-    ended = as_ended(pair)
+    ended = as_travel_limited(pair)
     if ended is None:
         return None
     poses = tuple(shown.poses[name].trimmed(0) for name in pair.members)

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 from xml.etree.ElementTree import Element, indent, tostring
 
+from compoundkin.base.display import printable
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.texts import printable
 from compoundkin.files.exchange.contract import Writable
 from compoundkin.files.exchange.exchanged import Exported
 from compoundkin.files.exchange.mjcf.body_elements import body_elements

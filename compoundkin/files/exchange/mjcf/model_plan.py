@@ -20,9 +20,9 @@ from compoundkin.files.exchange.mjcf.joint_tree import (
     tree_of,
 )
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.model.definition import pair_by_name
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.pairs.optional_answers import held_scales
-from compoundkin.model.pin_pairs import meant_pair
+from compoundkin.model.pairs.contract import constraint_scales
 
 # Bodies that stand on each other deeper are refused: they are written and read one in another.
 _DEEPEST = 200
@@ -87,7 +87,7 @@ class ModelPlan:
 
         None of a pin that closes a loop.
         """
-        found = meant_pair(self.shown.mechanism, name)
+        found = pair_by_name(self.shown.mechanism, name)
         if found is None:
             return None
         meant, side = found
@@ -138,7 +138,7 @@ def plan_of(shown: ShownMechanism) -> ModelPlan:
 
 
 def _led(shown: ShownMechanism) -> Iterator[Problem]:
-    for lead in shown.mechanism.leads.values():
+    for lead in shown.mechanism.prescribed_motions.values():
         yield Problem(lead.name, "it is led along a path: no actuator does that", "drive a pin or a slide")
 
 
@@ -160,7 +160,7 @@ def _open(shown: ShownMechanism) -> Iterator[Problem]:
         ends = shown.ends.get(pair.name, pair.ends(shown.mechanism.geometry))
         poses = tuple(shown.poses[name].trimmed(0) for name in pair.members)
         gaps = [abs(float(first_entry(held.c[0]))) for held in pair.closure(ends, poses)]
-        if any(gap > _CLOSED * scale for gap, scale in zip(gaps, held_scales(pair, size), strict=True)):
+        if any(gap > _CLOSED * scale for gap, scale in zip(gaps, constraint_scales(pair, size), strict=True)):
             what = f"it is open in the drawing, by {max(gaps):.3g}, and nothing drives the mechanism to close it"
             yield Problem(pair.name, what, "name a driver, or draw it exactly")
 

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from compoundkin.base.arrays import TURN, first_entry
-from compoundkin.base.texts import printable
+from compoundkin.base.display import printable
 from compoundkin.files.exchange.mjcf.body_elements import place
 from compoundkin.files.exchange.mjcf.driver_elements import fastest
 from compoundkin.files.exchange.mjcf.model_plan import ModelPlan

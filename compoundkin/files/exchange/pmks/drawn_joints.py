@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawings.drawn_elements import (
     Drawing,
@@ -174,7 +174,7 @@ def _notes(drawing: Drawing, names: Mapping[str, str], notation: Notation) -> It
         yield f"lengths are in {drawing.unit}, which {program} does not say"
     left = [("mass", len(drawing.masses)), ("force", len(drawing.forces)), *drawing.dropped]
     left.append(("range of a driver", sum(one.travel is not None for one in drawing.drivers)))
-    said = [counted(many, what) for what, many in left if many]
+    said = [count_phrase(many, what) for what, many in left if many]
     if said:
         yield f"left out, for {program} has no words for it: {', '.join(said)}"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from compoundkin.base.display import few
+from compoundkin.base.display import abbreviated_list
 from compoundkin.files.exchange.pmks_plus.shared_records import SharedJoint, SharedLink, SharedMechanism
 from compoundkin.model.geometry import FRAME
 
@@ -125,9 +125,9 @@ def _said(held: list[tuple[str, str]]) -> Iterator[str]:
     framed = [other if one == FRAME else one for one, other in held if FRAME in (one, other)]
     twins = [f"{one} and {other}" for one, other in held if FRAME not in (one, other)]
     if framed:
-        yield f"pinned to the frame twice, and so part of it: {few(framed)}"
+        yield f"pinned to the frame twice, and so part of it: {abbreviated_list(framed)}"
     if twins:
-        yield f"with two pins in common, and so one link: {few(twins)}"
+        yield f"with two pins in common, and so one link: {abbreviated_list(twins)}"
 
 
 def _key(link: str) -> str:

@@ -5,17 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnMass
 from compoundkin.files.exchange.pmks_plus.share_joints import ShareJoints, plain_name
 from compoundkin.files.exchange.pmks_plus.share_scale import ShareScale
-from compoundkin.files.exchange.pmks_plus.shared_records import (
-    GRAVITY,
-    INERTIA_UNITS,
-    UNITS,
-    SharedForce,
-    SharedLink,
-)
+from compoundkin.files.exchange.pmks_plus.shared_records import GRAVITY, INERTIA_UNITS, UNITS, SharedForce, SharedLink
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.units import FORCES, LENGTHS, MASSES
 
@@ -41,7 +35,7 @@ class ToldLoads:
         many = len(drawing.masses) + len(drawing.forces)
         if many and not self._is_told:
             self.notes.append(
-                f"{counted(many, 'mass or force', 'masses and forces')} left out, which larger links change"
+                f"{count_phrase(many, 'mass or force', 'masses and forces')} left out, which larger links change"
             )
         if drawing.gravity is not None and abs(drawing.gravity + 1j * GRAVITY) > _NEAR * GRAVITY:
             self.notes.append(f"gravity is {GRAVITY:g} m/s^2 downward in PMKS+")

@@ -7,18 +7,13 @@ from dataclasses import replace
 from itertools import count
 from math import degrees
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing
 from compoundkin.files.exchange.pmks_plus.share_drivers import ShareDrivers, in_order
 from compoundkin.files.exchange.pmks_plus.share_joints import ShareJoints, plain_name
 from compoundkin.files.exchange.pmks_plus.share_scale import rounded, share_scale
-from compoundkin.files.exchange.pmks_plus.shared_records import (
-    SharedJoint,
-    SharedLink,
-    SharedMechanism,
-    SharedSettings,
-)
+from compoundkin.files.exchange.pmks_plus.shared_records import SharedJoint, SharedLink, SharedMechanism, SharedSettings
 from compoundkin.files.exchange.pmks_plus.told_loads import ToldLoads
 
 _NO = "PMKS+ has pins, slides and slots only"
@@ -99,7 +94,7 @@ def _kept(drawing: Drawing) -> Iterator[str]:
         yield f"links hold no # and ~ in names: {', '.join(changed[:8])}"
     ranges = sum(one.travel is not None for one in drawing.drivers)
     if ranges:
-        yield f"the range of {counted(ranges, 'driver')} is not told: the program drives as far as it goes"
-    left = [counted(many, what) for what, many in drawing.dropped if many]
+        yield f"the range of {count_phrase(ranges, 'driver')} is not told: the program drives as far as it goes"
+    left = [count_phrase(many, what) for what, many in drawing.dropped if many]
     if left:
         yield f"left out: {', '.join(left)}"

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from itertools import combinations
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.files.exchange.drawings.drawn_elements import (
     Drawing,
     DrawnDriver,
@@ -202,4 +202,4 @@ def _joined(bodies: RigidBodies) -> Iterator[str]:
         if body == FRAME:
             yield f"two joints of the ground hold, and make a part of the frame: {names}"
         else:
-            yield f"{counted(len(parts), 'link')} are one rigid body, {parts[0].name}: {names}"
+            yield f"{count_phrase(len(parts), 'link')} are one rigid body, {parts[0].name}: {names}"

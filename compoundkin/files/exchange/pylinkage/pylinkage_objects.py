@@ -8,7 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.exchanged import Imported
 from compoundkin.files.exchange.pylinkage.pylinkage_format import imported
@@ -66,7 +66,7 @@ def _none_of_theirs(given: Any) -> Problem:
     if isinstance(getattr(given, "joints", None), list | tuple):
         remedy = "make a pylinkage.mechanism.Mechanism with version 1.0 or later"
         return Problem("mechanism", "this is a Linkage of pylinkage before 1.0, which has no links", remedy)
-    return Problem("mechanism", f"{short(given)} is no Mechanism of pylinkage", "files are read by exchange.read")
+    return Problem("mechanism", f"{short_repr(given)} is no Mechanism of pylinkage", "files are read by exchange.read")
 
 
 def _record(one: Any, kinds: tuple[str, ...], words: tuple[str, ...]) -> dict[str, Any]:

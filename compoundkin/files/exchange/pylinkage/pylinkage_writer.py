@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver
 from compoundkin.files.exchange.pylinkage.pylinkage_layout import PylinkageLayout
@@ -111,7 +111,7 @@ def _notes(
 ) -> Iterator[str]:
     drawing = layout.drawing
     if drawing.drivers:
-        yield f"a step of pylinkage is {step:.6g} s: {counted(steps, 'step')} are a turn of the fastest crank"
+        yield f"a step of pylinkage is {step:.6g} s: {count_phrase(steps, 'step')} are a turn of the fastest crank"
     back = [one.link for one in drawing.drivers if one.travel is not None and (one.speed or 0.0) < 0.0]
     if back:
         yield f"goes to the end of its arc first in pylinkage, and to its beginning here: {', '.join(back)}"
@@ -127,8 +127,8 @@ def _notes(
         names = ", ".join(dict.fromkeys(lost))
         yield f"pylinkage has no way to find {names} one after another (a group of class III), and cannot step it"
     several_of = [("mass", "masses", len(drawing.masses)), ("force", "", len(drawing.forces))]
-    left = [counted(many, one, more) for one, more, many in several_of if many]
-    left += [counted(many, what) for what, many in drawing.dropped if many]
+    left = [count_phrase(many, one, more) for one, more, many in several_of if many]
+    left += [count_phrase(many, what) for what, many in drawing.dropped if many]
     left += [f"the unit {drawing.unit}"] if drawing.unit else []
     if left:
         yield f"left out: {', '.join(left)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointDriver, JointRecord
 from compoundkin.files.exchange.pmks.joint_sketch import held
 from compoundkin.files.exchange.pmks.joint_text import is_short
@@ -26,7 +26,7 @@ def input_pairs(text: str, problems: Problems) -> list[tuple[int, int]]:
         return []
     numbers = [int(found[0]) for found in _INTEGER.finditer(text)]
     if not _BETWEEN.fullmatch(_INTEGER.sub("", text)) or len(numbers) % 2:
-        problems.add("input", f"{short(text.strip()[:60])} are no pairs of joints", "such as [(0, 1)]")
+        problems.add("input", f"{short_repr(text.strip()[:60])} are no pairs of joints", "such as [(0, 1)]")
         return []
     if len(numbers) > 2 * MOST_JOINTS:
         problems.add("input", f"there are more than {MOST_JOINTS} inputs", "is it the right file?")

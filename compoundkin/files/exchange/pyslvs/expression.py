@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from math import fmod, pi, radians
 
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.files.exchange.pmks.joint_record import MOST_JOINTS, JointKind, JointRecord, own_key
 from compoundkin.files.exchange.pmks.joint_text import is_short, number_of
 from compoundkin.files.exchange.problems import Problems
@@ -74,7 +74,7 @@ def _rest(words: ExpressionWords) -> str:
     rest = " ".join(found)
     if rest and not rest.startswith(("[", "(")):
         words.line = line
-        raise words.failed(f"{short(rest[:_LONGEST])} stands behind the end")
+        raise words.failed(f"{short_repr(rest[:_LONGEST])} stands behind the end")
     return rest
 
 
@@ -125,7 +125,7 @@ def _field(words: ExpressionWords, own: _Fields, found: PyslvsExpression, where:
         found.colours += 1
         _colour(words)
     else:
-        raise words.failed(f"{short(word)} is none of A, P, L and color")
+        raise words.failed(f"{short_repr(word)} is none of A, P, L and color")
     words.take("]")
 
 
@@ -133,14 +133,14 @@ def _number(words: ExpressionWords) -> float:
     word = words.next
     number = number_of(word)
     if number is None:
-        raise words.failed(f"{short(word)} is no finite number" if word else CUT_OFF)
+        raise words.failed(f"{short_repr(word)} is no finite number" if word else CUT_OFF)
     words.take()
     return number
 
 
 def _name(words: ExpressionWords) -> str:
     if not _NAME.fullmatch(words.next):
-        told = f"{short(words.next)} is no name of a link: letters, digits, _"
+        told = f"{short_repr(words.next)} is no name of a link: letters, digits, _"
         raise words.failed(told if words.next else CUT_OFF)
     return words.take()
 

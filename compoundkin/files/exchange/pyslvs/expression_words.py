@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
 
 _WORDS = re.compile(r"#[^\n]*|\s+|[\[\](),]|[^\s\[\](),#]+")
@@ -31,7 +31,9 @@ class ExpressionWords:
         """Return the next word and go on. Raises InvalidInput where it is not the one expected."""
         word = self.next
         if expected and word != expected:
-            told = f"{expected} is expected, not {short(word)}" if word else f"ends too early: {expected} is missing"
+            told = (
+                f"{expected} is expected, not {short_repr(word)}" if word else f"ends too early: {expected} is missing"
+            )
             raise self.failed(told)
         self.next, self.line = next(self._rest, ("", self.line))
         return word
@@ -46,7 +48,7 @@ class ExpressionWords:
             return self.next != "]"
         if self.next in ("]", ")"):
             return False
-        raise self.failed(f", or ] is expected, not {short(self.next)}" if self.next else CUT_OFF)
+        raise self.failed(f", or ] is expected, not {short_repr(self.next)}" if self.next else CUT_OFF)
 
     def failed(self, what: str) -> InvalidInput:
         """Return the error of what is read now."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from compoundkin.base.display import short
+from compoundkin.base.display import short_repr
 from compoundkin.files.exchange.pmks.joint_text import is_short
 from compoundkin.files.exchange.problems import Problems
 
@@ -46,7 +46,9 @@ def project_entries(text: str, problems: Problems) -> dict[str, tuple[str, int]]
         elif key and (not line.strip() or line[0] in " \t-"):
             found[key][0].append(line)
         elif line.strip() and not line.startswith(("#", "---", "...", "%YAML")):
-            problems.add(f"line {number}", f"{short(line[:40])} is no entry of a project", "entries are key: value")
+            problems.add(
+                f"line {number}", f"{short_repr(line[:40])} is no entry of a project", "entries are key: value"
+            )
             if len(problems.found) > _MOST_ENTRIES:
                 break
     return {key: ("\n".join(lines), number) for key, (lines, number) in found.items()}
@@ -59,7 +61,7 @@ def _of_one_line(text: str, problems: Problems) -> dict[str, tuple[str, int]]:
         entry = re.match(r"\s*(['\"]?)(\w+)\1\s*:\s", f"{piece} ")
         if entry is None:
             if piece.strip():
-                problems.add("", f"{short(piece.strip()[:40])} is no entry of a project", "entries are key: value")
+                problems.add("", f"{short_repr(piece.strip()[:40])} is no entry of a project", "entries are key: value")
             continue
         if entry[2] in found:
             problems.add("", f"{entry[2]!r} is given twice", "leave one of them out")
@@ -108,7 +110,7 @@ def scalar(raw: str, where: str, problems: Problems) -> str:
     """Return the text that a raw one means: quoted, folded, or plain."""
     text = raw.strip()
     if text.startswith(_REFUSED):
-        problems.add(where, f"{short(text[:20])} is a tag or an anchor of YAML", "only plain texts are read")
+        problems.add(where, f"{short_repr(text[:20])} is a tag or an anchor of YAML", "only plain texts are read")
         return ""
     if not is_short(text, problems):
         return ""

@@ -1,4 +1,7 @@
-"""What a page needs to solve its mechanism anew: dimensions, drivers at its poses, the program, words for gaps."""
+"""The program of a live page: dimensions, drivers at its poses, outputs, words for gaps.
+
+Where the program reproduces the solved values of the mechanism's own dimensions, the page need not hold them.
+"""
 
 from __future__ import annotations
 
@@ -9,20 +12,31 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.analysis.characteristics.group_figures import coriolis_names, index_names
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
+from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.kinematics import Motion as Motion_of_kinematics
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.one_design import motion_of_design
-from compoundkin.model.attributes import RADIANS, coordinate_dimension, unit_of
-from compoundkin.programs.calls.seed_values import seed_values
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
-from compoundkin.programs.tables.page_program import PageProgram, RecordedReason
-from compoundkin.view.page.live.followed_quantities import followed_quantities
-from compoundkin.view.page.live.own_values import OwnValues
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.model.attributes import (
+    LENGTH,
+    OF_LINKS,
+    RADIANS,
+    coordinate_dimension,
+    derivative_order,
+    motion_figure,
+    unit_of,
+)
+from compoundkin.programs.dimensions import FreeDimension
+from compoundkin.programs.page_program import PageProgram, RecordedReason
+from compoundkin.programs.recording.recorded_motion import ProgramOutput, output_of
+from compoundkin.programs.solved_designs import seed_values
+from compoundkin.view.page.live.compact_data import table_data
 from compoundkin.view.page.live.panel_data import panel_data, template_data
-from compoundkin.view.page.live.table_data import table_data
-from compoundkin.view.page.markup import exact
-from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.page.markup import packed_doubles
+from compoundkin.view.report.pose_sample import Sample
 
 
 def live_data(sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str]) -> dict[str, Any] | None:
@@ -112,7 +126,7 @@ class LiveData:
         program = self.program
         own = seed_values(program.seeds, self.motion)
         for row, (given, state) in enumerate(zip(program.seeds, program.carried[0], strict=True), len(program.drives)):
-            values = exact(own[given][0][self.chosen])
+            values = packed_doubles(own[given][0][self.chosen])
             kinds = {"angle": state.is_angle, "corrected": state.is_corrected}
             yield {"row": row, "now": self.places[state.now.x], "own": values, **kinds}
 
@@ -136,7 +150,12 @@ class LiveData:
         ]
         dimension = coordinate_dimension(self.motion.structure.driven_angles[name])
         unit = unit_of(self.motion.mechanism.unit, dimension)
-        return {"name": name, "unit": unit, "value": exact(values[0]), "rates": [exact(v) for v in values[1:]]}
+        return {
+            "name": name,
+            "unit": unit,
+            "value": packed_doubles(values[0]),
+            "rates": [packed_doubles(v) for v in values[1:]],
+        }
 
     def _link(self, name: str) -> dict[str, Any]:
         at = [[self.places[node] for node in nodes] for nodes in self.program.links[name]]
@@ -144,8 +163,8 @@ class LiveData:
         return {"at": at, "wrapped": wrapped, "own": self._own.has_link(name)}
 
     @cached_property
-    def _own(self) -> OwnValues:
-        return OwnValues(self.program, self.chosen)
+    def _own(self) -> ReproducedValues:
+        return ReproducedValues(self.program, self.chosen)
 
     def _outputs(self) -> Iterator[dict[str, Any]]:
         for output, number in zip(self.program.outputs, self.program.recorded, strict=True):
@@ -153,3 +172,98 @@ class LiveData:
             parts = {part: self.places[node] for part, node in nodes.items()}
             own = self._own.has_output(output, [*nodes.values()])
             yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped, "own": own}
+
+
+# In parts of the largest value: what is packed with seven digits agrees.
+AGREES = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ReproducedValues:
+    """The values that a program finds at the poses of a page."""
+
+    program: PageProgram
+    chosen: Number
+
+    @cached_property
+    def failed(self) -> Number:
+        """Where the motion is not assembled."""
+        return self.program.motion.failed[0, self.chosen] != 0
+
+    @cached_property
+    def closes(self) -> bool:
+        """Whether it is assembled where the motion is."""
+        goods = self.program.own([node for _, node in self.program.goods], self.chosen)
+        every = [np.broadcast_to(good, self.failed.shape).astype(bool) for good in goods]
+        return bool(np.array_equal(np.logical_and.reduce([np.ones(self.failed.shape, bool), *every]), ~self.failed))
+
+    def has_link(self, name: str) -> bool:
+        """Tell whether it finds a link, its velocities and accelerations."""
+        link, order = self.program.motion.links[name], self.program.order
+        wrapped = self.program.mechanism.block.world[name].theta is None
+        nodes = [node for moved in self.program.links[name] for node in moved]
+        found = self.program.own(nodes, self.chosen) if self.closes else []
+        known = [
+            part
+            for k in range(order + 1)
+            for part in self._moved(link.origin.derivative(k), getattr(link, OF_LINKS[k]))
+        ]
+        return self.closes and all(
+            self._agrees(one, other, wrapped and k == 2)
+            for k, (one, other) in enumerate(zip(found, known, strict=True))
+        )
+
+    def has_output(self, output: ProgramOutput, nodes: Sequence[int]) -> bool:
+        """Tell whether it finds an output."""
+        values = np.broadcast_to(quantity(self.program.motion, output.name).values, self.program.motion.shape)
+        parts = (values,) if len(nodes) == 1 else (values.real, values.imag)
+        found = self.program.own(nodes, self.chosen) if self.closes else []
+        return self.closes and all(
+            self._agrees(one, self._of(part), output.is_wrapped) for one, part in zip(found, parts, strict=True)
+        )
+
+    def _moved(self, z: Number, turned: Number) -> tuple[Number, Number, Number]:
+        return self._of(np.real(z)), self._of(np.imag(z)), self._of(turned)
+
+    def _of(self, values: Number) -> Number:
+        return np.broadcast_to(values, self.program.motion.shape)[..., self.chosen]
+
+    def _agrees(self, found: Number, known: Number, wrapped: bool) -> bool:
+        values = np.where(self.failed, np.nan, found)
+        if wrapped:
+            values = unwrapped(np.where(values == -np.pi, np.pi, values))
+        largest = np.nanmax(np.abs(np.where(np.isfinite(known), known, 0.0)), initial=1e-300)
+        return bool(np.allclose(values, known, rtol=0.0, atol=AGREES * largest + 1e-12, equal_nan=True))
+
+
+def followed_quantities(motion: Motion_of_kinematics, outputs: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the names of the quantities behind the figures of a report.
+
+    They are those of its outputs, the rates of these, transmission indices and Coriolis accelerations, as far as a
+    program can tell them. Of a vector it is the whole vector.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> followed_quantities(solve(load_named("jansen-leg")))[:3]
+    ('foot.position', 'foot.velocity', 'foot.acceleration')
+    """
+    asked = dict.fromkeys(name.removesuffix(f".{LENGTH}") for name in _quantity_names(motion, outputs))
+    return tuple(name for name in asked if derivative_order(name) <= motion.order and _is_recorded(motion, name))
+
+
+def _quantity_names(motion: Motion_of_kinematics, outputs: Sequence[str]) -> Iterator[str]:
+    chosen = [name for name in chosen_outputs(motion, outputs) if not motion_figure(name)[1]]
+    yield from chosen
+    for one in outputs_of(motion, chosen):
+        yield from one.names
+    yield from index_names(motion)
+    yield from coriolis_names(motion)
+
+
+def _is_recorded(motion: Motion_of_kinematics, name: str) -> bool:
+    """Tell whether it is arithmetic of one pose."""
+    try:
+        output_of(motion, name)
+    except CompoundkinError:
+        return False
+    return True

@@ -1,4 +1,4 @@
-"""A mechanism file with holes for its dimensions, which a page fills with those that it was changed to."""
+"""A mechanism file with holes for its dimensions, filled with changed values in the configuration of the motion."""
 
 from __future__ import annotations
 
@@ -12,29 +12,43 @@ from compoundkin.files import toml_text
 from compoundkin.files.document import DRAWN, GRAVITY, HEAD
 from compoundkin.files.exact_numbers import plain
 from compoundkin.files.writer import document
-from compoundkin.model.component_names import AXES
-from compoundkin.model.elements import Mode
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import AXES
+from compoundkin.model.definition import CYLINDERS, DRIVES
+from compoundkin.model.elements import Mode, mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN, pairs_among
-from compoundkin.model.written import CYLINDERS, DRIVES
-from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.dimensions import FreeDimension, StatedDimensions, mechanism_with
 
 # Texts in TOML do not hold it: there a character of control is written as an escape.
 _EDGE = "\x00"
+
+
 _HOLE = re.compile(f"{_EDGE}(\\d+)(d?){_EDGE}")
+
+
 LINKS, POINTS = "links", "points"
+
+
 # What comes before the links: single entries, and tables of the whole.
 _HEAD = ("format", *(key.name for key in HEAD), GRAVITY.name)
+
+
 _IN_DEGREES = ("angle", "turn", "sweep")
+
+
 _ENDS = ("from", "to")
+
+
 # Tables that choose the configuration: where a mechanism is changed they say which one it is in.
 _MODES = "modes"
+
 
 # A text in pieces: texts, indices of dimensions, and lists: of one index where degrees are written, of a letter and
 # 0 or 1 where x or y of a point is.
 Pieces: TypeAlias = list[str | int | list[Any]]
+
+
 # Whether it is a link, and its name: pairs may have the names of links.
 Owner: TypeAlias = tuple[bool, str]
 
@@ -57,7 +71,7 @@ def mechanism_template(
 
     A piece is text, or what the file says of one link or pair: `own` unless one of the dimensions `of` it has changed,
     any of all where `of` is null; then `changed`, whose numbers are indices of dimensions, and whose lists of one
-    number those that are written in degrees. Together they say what `designed` makes, in these `modes`; `drawn` as it
+    number those that are written in degrees. Together they say what `mechanism_with` makes, in these `modes`; `drawn` as it
     stands on the page, where modes have no signs.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
@@ -68,8 +82,8 @@ def mechanism_template(
     ['\n[links.AB]\npoints = { A = [0, 0], B = [', 0, ', 0] }\n']
     """
     found = [stated.known[name] for name in names]
-    whole = designed(stated, {one: stated.own(one) for one in found}).replace(*modes)
-    changed = _Holed(document(whole), whole, stated.items)
+    whole = mechanism_with(stated, {one: stated.own(one) for one in found}).replace(*modes)
+    changed = _DocumentWithHoles(document(whole), whole, stated.items)
     for index, one in enumerate(found):
         (changed.hold_point if one.is_of_link else changed.hold_number)(one, index)
     owners, sketch = _owners(stated, found), _drawing(list(whole.carriers)) if drawn else None
@@ -81,7 +95,7 @@ def mechanism_template(
 def _drawing(letters: Sequence[str]) -> Pieces:
     """Return the table of the drawing, with places of points in it."""
     held = {letter: [Hole(2 * k), Hole(2 * k + 1)] for k, letter in enumerate(letters)}
-    pieces = _filled(toml_text.dumps({DRAWN.name: held}))
+    pieces = _split_at_holes(toml_text.dumps({DRAWN.name: held}))
     return [[letters[one // 2], one % 2] if isinstance(one, int) else one for one in pieces]
 
 
@@ -98,7 +112,7 @@ def _owner(one: FreeDimension) -> Owner:
 
 
 @dataclass(frozen=True)
-class _Holed:
+class _DocumentWithHoles:
     """A document of a mechanism in which numbers are replaced by holes."""
 
     document: dict[str, Any]
@@ -136,7 +150,7 @@ class _Holed:
 
 
 def _pieces(
-    own: Mapping[str, Any], changed: _Holed, owners: Mapping[Owner, list[int] | None], sketch: Pieces | None
+    own: Mapping[str, Any], changed: _DocumentWithHoles, owners: Mapping[Owner, list[int] | None], sketch: Pieces | None
 ) -> Iterator[Any]:
     """Yield a piece for the head, each link, pair and cylinder, and each other table."""
     yield toml_text.dumps({name: value for name, value in own.items() if name in _HEAD})
@@ -166,10 +180,14 @@ def _text(table: str, value: Any) -> str:
 
 def _piece(owner: Owner, owners: Mapping[Owner, list[int] | None], own: dict[str, Any], changed: dict[str, Any]) -> Any:
     text = toml_text.dumps(own)
-    return {"of": owners[owner], "own": text, "changed": _filled(toml_text.dumps(changed))} if owner in owners else text
+    return (
+        {"of": owners[owner], "own": text, "changed": _split_at_holes(toml_text.dumps(changed))}
+        if owner in owners
+        else text
+    )
 
 
-def _filled(text: str) -> Pieces:
+def _split_at_holes(text: str) -> Pieces:
     """Split a text at its holes."""
     parts = _HOLE.split(text)
     found: Pieces = [parts[0]]
@@ -187,3 +205,20 @@ def _merged(pieces: Iterator[Any]) -> list[Any]:
         else:
             found.append(piece)
     return found
+
+
+def configuration_modes(motion: Motion) -> tuple[list[Mode], bool]:
+    """Return the modes of groups with signs, and whether others need a drawing. The motion has one design.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> configuration_modes(solve(load_named("crank-rocker")))
+    ([Mode(links=('coupler',), sign=-1)], False)
+    """
+    mechanism, solvers = motion.mechanism, motion.solving_order.solvers
+    found = []
+    for solver in solvers:
+        if solver.modes == 2:
+            own = next((one for one in mechanism.modes if set(one.links) & set(solver.group.links)), None)
+            found.append(mode(motion.sign(solver.index, 0), *(own.links if own else solver.group.links[:1])))
+    return found, any(solver.is_numbered for solver in solvers)

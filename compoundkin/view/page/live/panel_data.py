@@ -8,16 +8,13 @@ from functools import cached_property
 from itertools import combinations
 from typing import Any
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput
-from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.attributes import unit_of
-from compoundkin.model.component_names import AXES
-from compoundkin.model.elements import FRAME
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
-from compoundkin.view.page.live.chosen_signs import chosen_signs
-from compoundkin.view.page.live.mechanism_template import mechanism_template
+from compoundkin.model.attributes import AXES, unit_of
+from compoundkin.model.geometry import FRAME
+from compoundkin.programs.dimensions import FreeDimension, StatedDimensions
+from compoundkin.view.page.live.mechanism_template import configuration_modes, mechanism_template
 
 # Of so many pivots of the frame every distance is a row; of more those from the first.
 FEW_PIVOTS = 3
@@ -51,7 +48,7 @@ def template_data(stated: StatedDimensions, names: Sequence[str], motion: Motion
     Changed, it is to move in the configuration of the motion, which other dimensions alone might not choose.
     """
     try:
-        return mechanism_template(stated, names, *chosen_signs(motion))
+        return mechanism_template(stated, names, *configuration_modes(motion))
     except InvalidInput as error:
         return {"why": f"{error.problems[0].where}: {error.problems[0].what}."}
 
@@ -145,13 +142,18 @@ class DimensionRows:
         own = [one for one in self.free if not one.is_of_link and one.owner == name]
         docs = {key.name: key.doc for key in item.keys}
         rows = [
-            {"name": one.name, "told": _told(one, item), "doc": docs[one.word], **_kind(one, self.stated)}
+            {
+                "name": one.name,
+                "told": _number_title(one, item),
+                "doc": docs[one.word],
+                **_unit_and_size(one, self.stated),
+            }
             for one in own
         ]
         return {"name": name, "links": list(item.members), "rows": rows}
 
 
-def _told(one: FreeDimension, item: Any) -> str:
+def _number_title(one: FreeDimension, item: Any) -> str:
     """What a number is called."""
     words = {**LENGTHS, **ENDS}.get(one.word)
     if one.part and words:
@@ -159,7 +161,7 @@ def _told(one: FreeDimension, item: Any) -> str:
     return one.word.replace("_", " ") + (f" of {item.members[int(one.part)]}" if one.part else "")
 
 
-def _kind(one: FreeDimension, stated: StatedDimensions) -> dict[str, Any]:
+def _unit_and_size(one: FreeDimension, stated: StatedDimensions) -> dict[str, Any]:
     """The unit of a number, and whether it is a size, greater than nothing."""
     unit = unit_of(stated.mechanism.unit, "length") if one.word in LENGTHS else stated.unit(one)
     return {"unit": unit, "size": one.word in SIZES and stated.own(one) > 0}

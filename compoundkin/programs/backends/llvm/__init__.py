@@ -1,1 +1,0 @@
-"""LLVM: a flat program as machine code, in lanes along the poses or the designs."""

@@ -1,0 +1,262 @@
+"""The numbers of one call of a program: drivers' values and rates, free dimensions, output arrays, threads.
+
+A `ReadyProgram` computes the results of such numbers: complex arrays of two nodes, which may vary by fewer axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import prod
+from types import MappingProxyType
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.buffers import empty_arrays
+from compoundkin.base.display import ShortRepr, short_repr
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.kinematics.driver_values import RATES, by_name, inputs, times_of
+from compoundkin.kinematics.inputs import Inputs, fit
+from compoundkin.kinematics.likely_slips import warn_of_degrees
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.elements import Drive
+from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.runner import Runner
+from compoundkin.programs.dimensions import FreeDimension, drives_of_call
+from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, Carried, FlatProgram, flat_program
+from compoundkin.programs.graph.operation_graph import DRIVE, SEED, STEP, InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import INPUT
+
+
+@dataclass(frozen=True)
+class CallNumbers:
+    """The inputs of a call by what they are.
+
+    Each is a float array (1 or designs, 1 or poses); `shape` is that of the call's arrays.
+    """
+
+    given: Mapping[InputNumber, Number]
+    shape: tuple[int, ...]
+    still: frozenset[tuple[str, int]]
+
+    @property
+    def extent(self) -> tuple[int, int]:
+        """Designs x poses."""
+        return prod(self.shape[:-1]), self.shape[-1] if self.shape else 1
+
+    @property
+    def form(self) -> Any:
+        """What a program depends on: which rates are zero, and how each input varies."""
+        return self.still, self.marches, tuple(_stratum(array) for array in self.given.values())
+
+    @property
+    def marches(self) -> bool:
+        """Whether states are carried along the motion: the drivers' steps are told."""
+        return any(one.part == STEP for one in self.given)
+
+    @property
+    def is_seeded(self) -> bool:
+        """Whether something of it was found by solving."""
+        return any(one.kind == SEED for one in self.given)
+
+    @property
+    def driver_values(self) -> dict[str, Number]:
+        """The drivers' values, without rates, by name."""
+        return {one.name: value for one, value in self.given.items() if (one.kind, one.part) == (DRIVE, "0")}
+
+    def strata(self, graph: OperationGraph) -> dict[InputNumber, int]:
+        """Return how each input varies; what is found outside varies by both."""
+        known = {given: _stratum(array) for given, array in self.given.items()}
+        every = (node.given for node in graph.nodes if node.operation == INPUT and node.given)
+        return {given: known.get(given, BY_DESIGN | BY_POSE) for given in every}
+
+    def reshaped(self, shape: tuple[int, ...]) -> CallNumbers:
+        """Return the same numbers in a shape with which theirs broadcasts."""
+        if shape == self.shape:
+            return self
+        fitted = fit(shape)
+
+        def formed(array: Number) -> Number:
+            own = self.shape[:-1] if array.shape[0] > 1 else (1,) * len(self.shape[:-1])
+            return np.atleast_2d(fitted(array.reshape(*own, array.shape[1])))
+
+        return replace(self, given={given: formed(array) for given, array in self.given.items()}, shape=shape)
+
+    def arrays(self, flat: FlatProgram) -> list[Any]:
+        """Return the arrays that a program reads."""
+        begun = {one.given for one in flat.carried}
+        return [None if k in begun else self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
+
+
+def _stratum(array: Number) -> int:
+    return (BY_DESIGN if array.shape[0] > 1 else 0) | (BY_POSE if array.shape[1] > 1 else 0)
+
+
+class DriverNumbers(NamedTuple):
+    """What a call says of the drivers; the highest rate asked for."""
+
+    values: Any
+    speed: Any = None
+    acceleration: Any = None
+    jerk: Any = None
+    time: Any = None
+    order: int = RATES - 1
+
+    def times(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Number | None:
+        """Return the times of the motion; None where values are given."""
+        mechanism = order.structure.mechanism
+        return times_of(mechanism, by_name(mechanism, self.values), self.time, drives)
+
+    def inputs(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Inputs:
+        """Return them as `solve` does; raises InvalidInput for what does not fit.
+
+        `drives` are others in the place of the mechanism's own.
+        """
+        values = by_name(order.structure.mechanism, self.values)
+        times = self.times(order, drives)
+        # laws that jump tell their corners at rates that are asked for only
+        found = inputs(order, values, self.speed, self.acceleration, self.jerk, times, self.order, drives)
+        if times is None:
+            warn_of_degrees(order.structure, found)
+        return found
+
+
+def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping[FreeDimension, Number]) -> CallNumbers:
+    """Return the numbers of a call; raises InvalidInput for what does not fit."""
+    moving = {one.owner for one in dimensions if one.is_of_law}
+    driven = motion.inputs(order, drives_of_call(order.structure.mechanism.drives, dimensions) if moving else None)
+    shape = driven.shape
+    for one, value in dimensions.items():
+        shape = _broadcast_shape(shape, np.shape(value), f"dimensions.{one.name}")
+    # a rate that a law's number may change is none that is zero
+    steady = {name: vs for name, vs in driven.drives.items() if name not in moving}
+    still = frozenset((name, k) for name, vs in steady.items() for k, v in enumerate(vs) if k and np.all(v == 0))
+    fitted = fit(shape)
+    given: dict[InputNumber, Number] = {}
+    for one, place in dimensions.items():
+        given.update((each, np.array(part, float)) for each, part in one.parts_of(np.atleast_2d(fitted(place))))
+    for name, numbers in driven.drives.items():
+        for k, value in enumerate(numbers):
+            whole = fitted(_unfolded(value, driven.shape))
+            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.array(whole, float))
+    return CallNumbers(given, shape, still)
+
+
+def _unfolded(value: Number, shape: tuple[int, ...]) -> Number:
+    """Return a driver's numbers (1 or designs, 1 or poses) in the shape that was given."""
+    return value.reshape(*shape[:-1], value.shape[1]) if np.ndim(value) > 1 and value.shape[0] > 1 else value
+
+
+def _broadcast_shape(shape: tuple[int, ...], other: tuple[int, ...], where: str) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(shape, other)
+    except ValueError:
+        remedy = "give a new axis to designs: the last axis is the motion"
+        raise InvalidInput(Problem(where, f"shape {other} does not broadcast with {shape}", remedy)) from None
+
+
+def numbers_of_designs(numbers: CallNumbers, designs: Number) -> CallNumbers:
+    """Return the numbers of some designs, by index."""
+    given = {one: value[designs] if value.shape[0] > 1 else value for one, value in numbers.given.items()}
+    return replace(numbers, given=given, shape=(len(designs), numbers.extent[1]))
+
+
+def check_threads(threads: Any) -> None:
+    """Raise InvalidInput for what is no number of threads."""
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
+        raise InvalidInput(Problem("threads", f"{short_repr(threads)} is no number of threads", "write 1, 2, ..."))
+
+
+def output_arrays(out: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> dict[str, Number]:
+    """Return arrays that are to be written, as designs x poses.
+
+    `outputs` tells which are vectors. Raises InvalidInput for those that cannot hold the results.
+    """
+    if out is None:
+        return {}
+    if not isinstance(out, Mapping):
+        raise InvalidInput(Problem("out", f"{short_repr(out)} is no table by name", 'write {"G.position": array}'))
+    problems = [problem for name, array in out.items() if (problem := _array_problem(name, array, outputs, shape))]
+    problems = problems or list(_overlaps(out))
+    if problems:
+        raise InvalidInput(problems)
+    return {name: array.reshape(prod(shape[:-1]), *(shape[-1:] or (1,))) for name, array in out.items()}
+
+
+def _overlaps(out: Mapping[str, Number]) -> Iterator[Problem]:
+    """Yield arrays that would be written twice."""
+    for (name, array), (other, known) in combinations(out.items(), 2):
+        if np.may_share_memory(array, known):
+            yield Problem(f"out.{other}", f"it is in the memory of out.{name}", "give an array to each output")
+
+
+def _array_problem(name: Any, array: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> Problem | None:
+    where = f"out.{name}"
+    if name not in outputs:
+        return Problem(where, "there is no such output", suggestion(name, list(outputs)))
+    kind = np.dtype(complex if outputs[name] else float)
+    remedy = f"give numpy.empty({shape}, {kind})"
+    if not isinstance(array, np.ndarray) or array.dtype != kind:
+        what = f"an array of {array.dtype}" if isinstance(array, np.ndarray) else short_repr(array)
+        return Problem(where, f"{what} is no array of {kind}", remedy)
+    if array.shape != shape:
+        return Problem(where, f"its shape is {array.shape}, that of the call {shape}", remedy)
+    if not (array.flags.writeable and array.flags.c_contiguous):
+        return Problem(where, "it cannot be written, or is not contiguous", remedy)
+    return None
+
+
+Name = TypeVar("Name")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ReadyProgram(ShortRepr, Generic[Name]):
+    """A flat program made ready, and the nodes of what it finds by name.
+
+    Two nodes are the parts of a planar vector.
+    """
+
+    flat: FlatProgram
+    runner: Runner
+    nodes: Mapping[Name, tuple[int, ...]]
+
+    @classmethod
+    def of(
+        cls,
+        graph: OperationGraph,
+        nodes: Mapping[Name, tuple[int, ...]],
+        numbers: CallNumbers,
+        backend: str | None,
+        carried: Sequence[Carried] = (),
+    ) -> ReadyProgram[Name]:
+        """Make the program of some nodes for numbers of some form."""
+        wanted = [k for parts in nodes.values() for k in parts]
+        flat = flat_program(graph, wanted, numbers.strata(graph), carried)
+        return cls(flat, runner_of(flat, backend), nodes)
+
+    def run(
+        self, numbers: CallNumbers, threads: int = 1, given: Mapping[Name, Number] = MappingProxyType({})
+    ) -> dict[Name, Number]:
+        """Compute everything, (1 or designs, 1 or poses) each.
+
+        Arrays that are `given`, designs x poses, are written.
+        """
+        rows: list[Number] = []
+        narrow: list[tuple[Number, Number]] = []
+        shapes = {name: [self.flat.shape(k, *numbers.extent) for k in parts] for name, parts in self.nodes.items()}
+        wanted = [name for name in self.nodes if name not in given]
+        kinds = [np.dtype(complex if len(self.nodes[name]) > 1 else float) for name in wanted]
+        made = empty_arrays([(np.broadcast_shapes(*shapes[n]), kind) for n, kind in zip(wanted, kinds, strict=True)])
+        found = {**dict.fromkeys(self.nodes), **dict(zip(wanted, made, strict=True)), **given}
+        for name, whole in found.items():
+            for shape, part in zip(shapes[name], (whole.real, whole.imag), strict=False):
+                rows.append(part if shape == whole.shape else np.empty(shape))
+                if shape != whole.shape:
+                    narrow.append((part, rows[-1]))
+        self.runner(numbers.arrays(self.flat), rows, numbers.extent, threads)
+        for part, row in narrow:
+            part[...] = row
+        return found

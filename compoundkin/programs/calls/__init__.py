@@ -1,1 +1,0 @@
-"""Calls: the numbers that a program is given, and the arrays that it writes."""

@@ -1,0 +1,292 @@
+"""Near-limit screening: which poses are not assembled, and which designs have to be solved.
+
+A group passes between its modes where its discriminant touches zero, as the square of a smooth function. From two poses
+and the rates there the least value between them is known nearly: where it is far from zero against the values at the
+poses, no change point is passed. A group may also pass between its modes on the approach from the drawing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.kinematics.approach import MOST, SPACING, approach_path, drawn_value
+from compoundkin.kinematics.chosen_modes import Shown
+from compoundkin.kinematics.driver_ways import NEAR
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
+from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, InputNumber
+from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
+from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
+
+# So many poses are looked at together.
+POSES_AT_ONCE = 1 << 19
+
+
+@dataclass(frozen=True)
+class ScreenedDesigns(ShortRepr):
+    """What is found at designs near limits.
+
+    `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; `handed` are the
+    designs, by index, that only solving can tell, `near` those that were looked at.
+    """
+
+    failed: Number
+    to_solve: Number
+    near: Number
+
+    @property
+    def lost(self) -> Number:
+        """The designs, by index, that have unassembled poses and need not be solved."""
+        return np.setdiff1d(np.flatnonzero(self.failed.any(axis=1)), self.to_solve)
+
+
+def safe_margin(order: SolvingOrder, numbers: CallNumbers) -> float:
+    """Return the margin above which a design needs no look.
+
+    It grows with the square of the drivers' longest step.
+    """
+    return NEAR * max(1.0, _longest_step(order, numbers)) ** 2
+
+
+def _longest_step(order: SolvingOrder, numbers: CallNumbers) -> float:
+    """Return the longest step of a driver, in spacings at which `solve` looks for change points, as many as it does."""
+    found = 0.0
+    for name, value in numbers.driver_values.items():
+        if value.shape[1] > 1:
+            steps = value[:, 1:] - value[:, :-1]
+            found = max(found, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
+    return min(found, float(MOST))
+
+
+def _is_rigid(numbers: CallNumbers) -> bool:
+    """Tell whether no dimension varies along the motion."""
+    return all(value.shape[1] == 1 for given, value in numbers.given.items() if given.kind == DIMENSION)
+
+
+class LimitScreening(ShortRepr):
+    """The programs that look at limits, recorded when they are first needed."""
+
+    def __init__(self, recording: Recording, approach: DrawnApproach, backend: str | None) -> None:
+        self.recording, self.approach, self.backend = recording, approach, backend
+        self._ready: dict[Any, ReadyProgram[int]] = {}
+
+    def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
+        """Return which designs need a look, and which may change mode before their motion."""
+        order = self.recording.solving_order
+        if numbers.is_seeded:
+            # solving has told how they begin; near a limit it tells the rest
+            known = numbers.given.get(HOLDS, np.ones((1, 1)))[:, 0] != 0.0
+            near = ~(known & (least.min(axis=1) >= safe_margin(order, numbers)))
+            return np.zeros_like(near), near
+        near = ~(least.min(axis=1) >= safe_margin(order, numbers))
+        way = self.approach.values(numbers.driver_values) if self._squares else None
+        if not _is_rigid(numbers):
+            # solving tells all of designs whose dimensions vary along the motion
+            return np.zeros_like(near), near | (way is not None)
+        if way is None:
+            return near, np.zeros_like(near)
+        early = self._computed(
+            self._poses, _with_driver_values(numbers, way, {name: np.zeros((1, 1)) for name in way})
+        )[1]
+        return near, np.any(early < NEAR, axis=1)
+
+    def doubtful(self, numbers: CallNumbers, least: Number) -> ScreenedDesigns | None:
+        """Look at the designs that need it; return None where none does.
+
+        `least` is the least of `RecordedLimits.certain` over poses, (1 or designs, 1).
+        """
+        near, early = (np.broadcast_to(each, numbers.extent[:1]) for each in self.needed(numbers, least))
+        if not (near.any() or early.any()):
+            return None
+        failed, handed = np.zeros(numbers.extent, dtype=np.int32), early.copy()
+        designs = np.flatnonzero(near)
+        if len(designs):
+            look = self.look(numbers_of_designs(numbers, designs))
+            failed[designs] = look.failed
+            handed[designs[look.to_solve]] = True
+        return ScreenedDesigns(failed, np.flatnonzero(handed), designs)
+
+    def look(self, numbers: CallNumbers) -> ScreenedDesigns:
+        """Look at all designs of some numbers."""
+        designs, poses = numbers.extent
+        high = max(1, POSES_AT_ONCE // max(poses, 1))
+        parts = [numbers_of_designs(numbers, np.arange(d, min(d + high, designs))) for d in range(0, designs, high)]
+        found = [self._block(part) for part in parts]
+        failed, handed = (np.concatenate(each) for each in zip(*found, strict=True))
+        return ScreenedDesigns(failed, np.flatnonzero(handed), np.arange(designs))
+
+    def at_poses(self, numbers: CallNumbers) -> tuple[Number, Number]:
+        """Return which group fails at each pose, and the least margin.
+
+        It is the index plus one, else 0.
+        """
+        failed, margin, _ = self._computed(self._poses, numbers)
+        return failed.astype(np.int32), margin
+
+    def _block(self, numbers: CallNumbers) -> tuple[Number, Number]:
+        failed, margin, clear = self._computed(self._poses, numbers)
+        failed = failed.astype(np.int32)
+        handed = np.any((failed == 0) & ~((margin >= CLOSE) & (clear != 0.0)), axis=1)
+        steps = int(np.ceil(_longest_step(self.recording.solving_order, numbers)))
+        squares = self._squares if steps else None
+        if squares:
+            handed |= self._touches(squares, numbers, steps)
+        return failed, handed
+
+    def _touches(self, squares: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers, per_pose: int) -> Number:
+        """Tell which designs may pass a change point between two samples."""
+        poses = numbers.extent[1]
+        whole = {name: np.broadcast_to(v, (len(v), poses)) for name, v in numbers.driver_values.items()}
+        values = {name: _refined(value, per_pose) for name, value in whole.items()}
+        ahead = {name: value[:, 1:] - value[:, :-1] for name, value in values.items()}
+        ends = [{name: value[:, part] for name, value in values.items()} for part in (slice(-1), slice(1, None))]
+        one, two = (self._computed(squares, _with_driver_values(numbers, end, ahead)) for end in ends)
+        found: Number = np.zeros(numbers.extent[0], dtype=bool)
+        for k in range(0, len(one), 2):
+            found |= np.any(may_touch_zero(one[k], one[k + 1], two[k], two[k + 1]), axis=1)
+        return found
+
+    @cached_property
+    def _limits(self) -> RecordedLimits:
+        return RecordedLimits(record_mechanism(self.recording))
+
+    @cached_property
+    def _poses(self) -> tuple[RecordedLimits, Sequence[int]]:
+        limits = self._limits
+        return limits, (limits.failed.x, limits.margin.x, limits.clear.x)
+
+    @cached_property
+    def _squares(self) -> tuple[RecordedLimits, Sequence[int]] | None:
+        limits = RecordedLimits(record_mechanism(replace(self.recording, order=1)))
+        nodes = [number.x for pair in limits.squares for number in pair]
+        return (limits, nodes) if nodes else None
+
+    def _computed(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
+        """Return some nodes at all designs and poses."""
+        return [np.broadcast_to(one, numbers.extent) for one in self._program(asked, numbers).run(numbers).values()]
+
+    def _program(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> ReadyProgram[int]:
+        """Return the program of some nodes for numbers of these forms, made once."""
+        limits, nodes = asked
+        graph = limits.mechanism.graph
+        key = id(graph), tuple(nodes), tuple(numbers.given), numbers.form
+        if key not in self._ready:
+            asked_for = {place: (node,) for place, node in enumerate(nodes)}
+            self._ready[key] = ReadyProgram.of(graph, asked_for, numbers, self.backend)
+        return self._ready[key]
+
+
+def _refined(value: Number, per_pose: int) -> Number:
+    """Return values (1 or designs, poses) with samples between the poses."""
+    if value.shape[1] == 1 or per_pose == 1:
+        return value
+    share = np.arange(per_pose) / per_pose
+    between = value[:, :-1, None] + (value[:, 1:] - value[:, :-1])[..., None] * share
+    return np.concatenate([between.reshape(len(value), -1), value[:, -1:]], axis=1)
+
+
+def _with_driver_values(
+    numbers: CallNumbers, values: Mapping[str, Number], speeds: Mapping[str, Number]
+) -> CallNumbers:
+    """Return the same dimensions with other driver values and speeds."""
+    given = {one: value for one, value in numbers.given.items() if one.kind != DRIVE}
+    for name, value in values.items():
+        given[InputNumber(DRIVE, name, "0")] = value
+        given[InputNumber(DRIVE, name, "1")] = np.broadcast_to(speeds[name], value.shape)
+    poses = max(value.shape[1] for value in values.values())
+    return replace(numbers, given=given, shape=(numbers.extent[0], poses))
+
+
+# Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
+TOUCHING_PART = 0.25
+
+
+def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Number:
+    """Tell where functions may touch zero between the ends of a unit interval.
+
+    They are given by their values and slopes there.
+    """
+    lesser = np.minimum(y0, y1)
+    # few intervals are so: all others are done with
+    found = (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR)
+    y0, slope0, y1, slope1, lesser = (each[found] for each in (y0, slope0, y1, slope1, lesser))
+    rise = y1 - y0
+    # the slope of the cubic is slope0 + b t + a t^2
+    a, b = 3.0 * (slope0 + slope1 - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * slope0 - slope1)
+    with np.errstate(all="ignore"):
+        root = np.sqrt(np.maximum(b * b - 4.0 * a * slope0, 0.0))
+        t = np.where(b > 0.0, -2.0 * slope0 / (b + root), (root - b) / (2.0 * a))
+        t = np.clip(np.nan_to_num(t, nan=0.5), 0.0, 1.0)
+        least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
+        found[found] = least < TOUCHING_PART * lesser
+    return found
+
+
+class DrawnApproach(ShortRepr):
+    """Where a path's drivers are drawn, and the ways from there to motions."""
+
+    def __init__(self, reference: Motion, shown: Shown) -> None:
+        self.reference, self.shown = reference, shown
+        self._drawn: dict[str, Number | None] = {}
+
+    @property
+    def has_configuration(self) -> bool:
+        """Whether the configuration is shown anywhere."""
+        return bool(self.shown.poses or self.shown.beside)
+
+    def values(self, values: Mapping[str, Number]) -> Mapping[str, Number] | None:
+        """Return drivers' values on the way from where they are drawn. None where they are drawn on the motion.
+
+        `values` are those of the motion, (1 or designs, 1 or poses).
+        """
+        if not self.has_configuration or self._is_passed(values):
+            return None
+        designs, poses = np.broadcast_shapes(*(value.shape for value in values.values()))
+        drives = {name: (value,) for name, value in values.items()}
+        given = Inputs((designs, poses), self.reference.inputs.ends, drives)
+        way, _ = approach_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside)
+        return {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()} if way.poses > 1 else None
+
+    def drawn(self, name: str) -> Number | None:
+        """Return the value at which a driver is drawn. None where it is not."""
+        if name not in self._drawn:
+            order, given, shown = self.reference.solving_order, self.reference.inputs, self.shown
+            found = drawn_value(order, given, name, shown.poses, shown.beside) if self.has_configuration else None
+            self._drawn[name] = found
+        return self._drawn[name]
+
+    def _is_passed(self, values: Mapping[str, Number]) -> bool:
+        """Tell whether the only driver surely comes by its drawn value."""
+        if len(values) != 1:
+            return False
+        ((name, value),) = values.items()
+        drawn = self.drawn(name)
+        if drawn is None:
+            return True
+        if np.ndim(drawn) or value.shape[0] > 1:
+            return False
+        is_angle = self.reference.structure.driven_angles[name]
+        return passes_value(float(drawn), value.item(0), value.item(-1), is_angle)
+
+
+def passes_value(drawn: float, first: float, last: float, is_angle: bool) -> bool:
+    """Tell whether a driver comes by its drawn value on a motion.
+
+    It does where that lies between its first value and its last.
+
+    >>> passes_value(0.5, 6.0, 7.0, True), passes_value(0.5, 6.0, 7.0, False)
+    (True, False)
+    """
+    low, high = (first, last) if first <= last else (last, first)
+    # the next place at or after the lower one where the driver is as it is drawn
+    after = drawn - TURN * ((drawn - low) // TURN) if is_angle else drawn
+    return low <= after <= high

@@ -1,0 +1,364 @@
+"""A motion as data for the scripts of a page: poses, points, drivers, instant centres, quantities, forces, plots."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.centres import Centres, instant_centres
+from compoundkin.base.arrays import Number, degrees
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.loaded_motions import loaded_forces
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes import between
+from compoundkin.kinematics.extremes.inputs_between import inputs_between
+from compoundkin.kinematics.extremes.stretches import stretches_of
+from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.model.attributes import (
+    ANGULAR_ACCELERATION,
+    ANGULAR_VELOCITY,
+    TIME,
+    coordinate_dimension,
+    derivative_order,
+    unit_of,
+)
+from compoundkin.view.page.live.live_sketch import live_sketch
+from compoundkin.view.page.markup import component_values, packed_doubles, packed_floats
+from compoundkin.view.report.pose_sample import Sample
+from compoundkin.view.sketch.centre_pictures import centre_number
+from compoundkin.view.sketch.force_arrows import SHORTEST as SHORTEST_of_force_arrows
+from compoundkin.view.sketch.force_arrows import ForceCourse
+from compoundkin.view.sketch.force_pictures import KINDS, drawn_force_courses, force_scales
+from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
+from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
+
+# A page holds so many poses at most, fewer where there are many links: its data shall stay well below a megabyte.
+MOST_POSES, FEWEST_POSES = 721, 121
+
+
+MOST_NUMBERS = 90_000
+
+
+# Of a link there are so many numbers at every pose.
+OF_A_LINK = 9
+
+
+# Of more links than these the instant centres are left out.
+MOST_LINKS = 12
+
+
+# How long a motion takes to play, in seconds: one that is not in time; one in time at least and at most.
+CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
+
+
+@dataclass(frozen=True, eq=False)
+class MotionData:
+    """One design of a motion with its sketch. It says which of its poses a page holds.
+
+    It holds `most` of them, fewer where there are many links. Raises NotAssembled where no pose is assembled,
+    InvalidInput where links change their dimensions on the way.
+    """
+
+    sample: Sample
+    outputs: tuple[str, ...] = ()
+    most: int = MOST_POSES
+    with_centres: bool = True
+
+    @property
+    def motion(self) -> Motion:
+        """The motion."""
+        return self.sample.motion
+
+    @cached_property
+    def sketch(self) -> MovingSketch:
+        """Its sketch."""
+        return moving_sketch(self.motion, self.sample.design)
+
+    @cached_property
+    def chosen(self) -> Number:
+        """The indices of the poses that the page holds. All, or so many as there is room for and the one shown."""
+        links = len(self.motion.mechanism.links)
+        most = min(self.most, max(FEWEST_POSES, MOST_NUMBERS // (OF_A_LINK * links)))
+        places = np.linspace(0, self.sample.poses - 1, min(most, self.sample.poses)).round().astype(int)
+        return np.union1d(places, self.sketch.pose)
+
+    @cached_property
+    def start(self) -> int:
+        """The index, among those that the page holds, of the pose shown first."""
+        return int(np.searchsorted(self.chosen, self.sketch.pose))
+
+    def of(self, values: Any) -> Number:
+        """Return this design's part of an array at the page's poses. The array has the motion's shape."""
+        return np.asarray(self.sample.of(values))[self.chosen]
+
+    @cached_property
+    def closes(self) -> bool:
+        """Whether the last pose is the first one again. The motion can be played on and on then."""
+        return bool(self.sample.assembled.all()) and self.sample.poses > 1 and self.sketch.scene.closes
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """All of it for a script, in the user's length unit, radians and seconds."""
+        window, mechanism = self.sketch.window, self.motion.mechanism
+        column, places = self.sample.places
+        return {
+            "title": mechanism.title,
+            "unit": unit_of(mechanism.unit, "length"),
+            "poses": len(self.chosen),
+            "all": self.sample.poses,
+            "indices": packed_doubles(self.chosen) if len(self.chosen) > 1 else 0.0,
+            "start": self.start,
+            "closes": self.closes,
+            "seconds": self._seconds,
+            "order": self.motion.order,
+            "assembled": packed_doubles(self.sample.assembled[self.chosen].astype(float)),
+            "window": {
+                "scale": window.scale,
+                "x": window.corner.real,
+                "y": window.corner.imag,
+                "width": window.width,
+                "height": window.height,
+            },
+            "along": {
+                "name": column.name,
+                "unit": column.unit,
+                "values": packed_doubles(np.asarray(places)[self.chosen]),
+            },
+            "drivers": [self._quantity(driver, packed_doubles) for driver in self.sample.drivers],
+            "links": [self._link(name) for name in self.links],
+            "points": [self._point(letter) for letter in self.sketch.scene.letters],
+            "parts": self._parts,
+            **self._overlays(),
+            "outputs": [self._quantity(self.sample.quantity(name), packed_floats) for name in self.outputs],
+            "live": live_sketch(self.sample, self.chosen, self.links, self.outputs, self.sketch),
+        }
+
+    @cached_property
+    def forces(self) -> Forces | None:
+        """The forces of the motion, where it has loads."""
+        return loaded_forces(self.motion) if self.with_centres else None
+
+    def _overlays(self) -> dict[str, Any]:
+        """What can be shown in the sketch: vectors, instant centres, forces where there are any."""
+        found = force_data(self.sketch, self.forces, self._numbers, self.chosen) if self.forces is not None else {}
+        return {"vectors": dict(self._vectors()), **self._centres(), **({"forces": found} if found else {})}
+
+    @property
+    def _seconds(self) -> float:
+        return CYCLE if self.slowness is None else self.slowness * float(np.ptp(self.sample.times))
+
+    @cached_property
+    def slowness(self) -> float | None:
+        """How many times slower than it runs a motion in time is played. None for one that is not in time."""
+        times = self.sample.times
+        if times is None or np.ptp(times) == 0:
+            return None
+        lasts = float(np.ptp(times))
+        return float(np.clip(lasts, QUICKEST, SLOWEST)) / lasts
+
+    def _quantity(self, found: Quantity, packed: Any) -> dict[str, Any]:
+        floor, values = self.sample.floor(found), np.asarray(found.values)[self.chosen]
+        kept = {name: packed(part) for name, part in component_values(values, floor).items()}
+        return {"name": found.name, "unit": found.unit, "order": found.order, "floor": floor, "parts": kept}
+
+    @cached_property
+    def _numbers(self) -> Mapping[str, int]:
+        return {name: k for k, name in enumerate(self.links)}
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """The links that there are to be seen."""
+        thought = self.motion.mechanism.auxiliary_links
+        return tuple(name for name in self.motion.mechanism.links if name not in thought)
+
+    def _link(self, name: str) -> dict[str, Any]:
+        link, scene = self.motion.links[name], self.sketch.scene
+        found: dict[str, Any] = {"name": name, "number": scene.numbers[name], "group": scene.groups[name]}
+        z = self.of(link.origin.position)
+        found |= {
+            "x": packed_doubles(z.real),
+            "y": packed_doubles(z.imag),
+            "angle": packed_doubles(self.of(link.angle)),
+        }
+        for k, (rate, turning) in enumerate((("v", ANGULAR_VELOCITY), ("a", ANGULAR_ACCELERATION)), start=1):
+            if k <= self.motion.order:
+                z = self.of(link.origin.derivative(k))
+                found[rate] = [
+                    packed_floats(z.real),
+                    packed_floats(z.imag),
+                    packed_floats(self.of(getattr(link, turning))),
+                ]
+        return found
+
+    def _point(self, letter: str) -> dict[str, Any]:
+        link = self.motion.mechanism.carriers[letter][0]
+        at = self.sketch.scene.points[link][letter]
+        return {"name": letter, "link": self._numbers[link], "x": at.real, "y": at.imag}
+
+    @property
+    def _parts(self) -> list[list[float]]:
+        """Of every part of the sketch: its link, the point that it is seen from, and whether it turns."""
+        return [[self._numbers[p.link], p.at.real, p.at.imag, int(p.turns)] for p in self.sketch.parts]
+
+    def _vectors(self) -> Iterator[tuple[str, Any]]:
+        """For each kind of vectors its scale, picture units for a unit of theirs, and what is said of it."""
+        for kind, (order, _) in KINDS_OF_VECTOR.items():
+            scale = self.sketch.scale(kind) if order <= self.motion.order else None
+            if scale is not None:
+                yield kind, {"scale": scale.per_unit, "text": scale.text, "length": scale.amount * scale.per_unit,
+                             "shortest": SHORTEST}  # fmt: skip
+
+    def _centres(self) -> dict[str, Any]:
+        """The instant centres in homogeneous coordinates, and for each secondary one the centres that give it."""
+        mechanism = self.motion.mechanism
+        if not self.with_centres or len(mechanism.links) > MOST_LINKS or not mechanism.drives:
+            return {"centres": [], "lines": []}
+        centres = instant_centres(self.motion)
+        couples = list(centres)
+        found = [self._centre(centres, couple) for couple in couples]
+        index = {tuple(sorted(couple)): k for k, couple in enumerate(couples)}
+        return {"centres": found, "lines": list(_lines(centres, index))}
+
+    def _centre(self, centres: Centres, couple: tuple[str, str]) -> dict[str, Any]:
+        centre, size = centres[couple], self.motion.size
+        shape = self.motion.shape
+        xyw = [np.where(centre.found, centre.homogeneous[..., k], np.nan).reshape(shape) for k in range(3)]
+        # (x, y, w) may be of any length: that of (x, y) in the mechanism's size, and w, together one
+        length = np.sqrt((xyw[0] / size) ** 2 + (xyw[1] / size) ** 2 + xyw[2] ** 2)
+        with np.errstate(invalid="ignore"):
+            packed = [packed_floats(self.of(np.where(centre.at_infinity, 0.0, c) if k == 2 else c) / self.of(length))
+                      for k, c in enumerate(xyw)]  # fmt: skip
+        name = centre_number(self.sketch.scene, *couple)
+        return {"name": name, "links": list(couple), "at": packed}
+
+
+def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[list[int]]:
+    """For each line that gives a centre: the centre, and those known ones that it goes through."""
+    names = {f"({a} {b})": index[tuple(sorted((a, b)))] for one, two in centres for a, b in ((one, two), (two, one))}
+    for step in centres.derivation():
+        for line in step.lines if step.kind != "primary" else ():
+            known = [names[text] for text in line if text in names]
+            if known:
+                yield [index[tuple(sorted(step.centre))], *known]
+
+
+# A place that moves on its link by less than this part of the size is fixed there.
+FIXED_PLACE = 1e-9
+
+
+def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
+    """Return the arrows of forces at some poses.
+
+    They have one scale, and each its place, force, kind and words.
+    """
+    courses = drawn_force_courses(sketch, forces)
+    scales = force_scales(sketch, forces, courses)
+    if not scales:
+        return {}
+    one = scales[0]
+    return {
+        "scale": one.per_unit,
+        "text": one.text,
+        "length": one.amount * one.per_unit,
+        "shortest": SHORTEST_of_force_arrows,
+        "unit": forces.units.force,
+        "kinds": {scale.kind: KINDS[scale.kind] for scale in scales},
+        "arrows": [_force_arrow(forces, course, links, chosen, sketch.design) for course in courses],
+    }
+
+
+def _force_arrow(
+    forces: Forces, course: ForceCourse, links: Mapping[str, int], chosen: Number, design: int
+) -> dict[str, Any]:
+    """One arrow. Its place is a point of its link where it is fixed there, else a place at every pose."""
+    link, shown = forces.links[course.shown.link], course.shown
+
+    def row(values: Any) -> Number:
+        rows = np.broadcast_to(values, forces.shape).reshape(forces.inputs.designs, -1)
+        return np.asarray(rows[design])
+
+    own = (course.at - row(link.origin.position)) * np.exp(-1j * row(link.angle))
+    known = own[np.isfinite(own)]
+    force = course.force[chosen]
+    packed = [packed_floats(force.real), packed_floats(force.imag)]
+    found = {"name": shown.name, "told": shown.told, "kind": shown.kind, "force": packed}
+    if len(known) and np.max(np.abs(known - known[0])) <= FIXED_PLACE * forces.motion.size:
+        return {**found, "link": links[shown.link], "x": float(known[0].real), "y": float(known[0].imag)}
+    at = course.at[chosen]
+    return {**found, "at": [packed_floats(at.real), packed_floats(at.imag)]}
+
+
+# Plots that a page makes by itself go to accelerations.
+ORDERS = range(3)
+
+
+def plot_data(moving: MotionData) -> dict[str, Any]:
+    """Return the pace of the axis, the jumps, and what is rounding.
+
+    The pace is at the page's poses, rounding of lengths and angles by the orders of their rates. A jump has its place,
+    counted in the page's poses, whether it is the end or the beginning of a smooth stretch, and
+    what outputs and drivers are there.
+    """
+    return {"rate": _pace(moving), "jumps": _jumps(moving), "rounding": _rounding(moving)}
+
+
+def _pace(moving: MotionData) -> Any:
+    """Return the rate of what plots run along, by the second. None where there is none."""
+    sample, motion = moving.sample, moving.motion
+    name = sample.places[0].name
+    if name == TIME:
+        return 1.0
+    if name not in motion.drives or not motion.order:
+        return None
+    rates = sample.of(motion.inputs.drives[name][1])[moving.chosen]
+    return packed_doubles(degrees(rates) if motion.drives[name].is_angle else rates) if np.all(rates) else None
+
+
+def _jumps(moving: MotionData) -> list[dict[str, Any]]:
+    motion, design = moving.motion, moving.sample.design
+    if motion.inputs.poses < 2:
+        return []
+    s = stretches_of(motion)
+    mine = s.design == design
+    begins, ends = (mine & (at < 0) & ~s.limits[:, k] for k, at in enumerate((s.first, s.last)))
+    places = np.concatenate([s.low[begins], s.high[ends]])
+    if not len(places):
+        return []
+    known = {name: _values_at(moving, name, places) for name in moving.outputs}
+    parts = [{name: _finite_values(of, k) for name, of in known.items()} for k in range(len(places))]
+    drives = _drives_at(moving, places)
+    on_page = np.interp(places, moving.chosen, np.arange(len(moving.chosen)))
+    return [
+        {"place": float(place), "begins": bool(k < np.count_nonzero(begins)), "values": parts[k], "drives": drives[k]}
+        for k, place in enumerate(on_page)
+    ]
+
+
+def _values_at(moving: MotionData, name: str, places: Number) -> dict[str, Number]:
+    """Return the parts of an output at places of the motion."""
+    with np.errstate(all="ignore"):
+        there = between(moving.motion, moving.sample.design, places, max(moving.motion.order, derivative_order(name)))
+        found = quantity(there, name).shown
+    return component_values(np.ravel(found.values), moving.sample.floor(moving.sample.quantity(name)))
+
+
+def _drives_at(moving: MotionData, places: Number) -> list[list[list[float]]]:
+    """Return value, rate and second of each driver at places of the motion."""
+    designs = np.full(len(places), moving.sample.design)
+    found = inputs_between(moving.motion, designs, places, max(ORDERS)).drives.values()
+    rows = [[np.broadcast_to(np.ravel(v), len(places)).tolist() for v in values[: len(ORDERS)]] for values in found]
+    return [[[values[k] for values in row] for row in rows] for k in range(len(places))]
+
+
+def _finite_values(parts: dict[str, Number], k: int) -> dict[str, float | None]:
+    return {name: float(values[k]) if np.isfinite(values[k]) else None for name, values in parts.items()}
+
+
+def _rounding(moving: MotionData) -> dict[str, list[float]]:
+    """Return for lengths and angles, by the order of their rates, the bounds below which they are rounding."""
+    kinds = [coordinate_dimension(is_angle) for is_angle in (False, True)]
+    return {kind: [moving.sample.floor(Quantity("", "", np.zeros(1), k, kind)) for k in ORDERS] for kind in kinds}

@@ -1,0 +1,481 @@
+"""Pictures of forces: on the sketch of a mechanism, as force polygons, on free bodies, and along a moving sketch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.dynamics.forces import Forces
+from compoundkin.model.geometry import FRAME
+from compoundkin.view.sketch.force_arrows import (
+    AROUND_DRIVER,
+    SHORTEST,
+    ActingForce,
+    DrawnForce,
+    ForceCourse,
+    acting_forces,
+    force_arrow,
+    force_courses,
+    force_name,
+    force_scale,
+    force_text,
+    is_drawn_once,
+    moment_arcs,
+)
+from compoundkin.view.sketch.kinematic_sketch import MovingSketch, by_links, in_layers, window_on
+from compoundkin.view.sketch.labels import (
+    NARROW,
+    SIDE,
+    WIDE,
+    Label,
+    label_around,
+    label_shapes,
+    labels_of,
+    lines_below,
+    lines_of_text,
+    placed,
+    point_letters,
+    text_half,
+)
+from compoundkin.view.sketch.painter import Painter, pin_shapes
+from compoundkin.view.sketch.picture import MARGIN, Picture, PicturePart, Window, checked_size, fitted_window, in_rows
+from compoundkin.view.sketch.picture_options import PictureOptions, label_kinds, pose_notes, scene_of
+from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.shapes import (
+    CircleShape,
+    Shape,
+    ShapeGroup,
+    Text,
+    arrow_shapes,
+    moved_shapes,
+    shape_corners,
+    sheet,
+    unit_direction,
+)
+from compoundkin.view.sketch.sketch_style import INERTIA, LETTER, LINE, LOAD, REACTION, SMALL
+from compoundkin.view.sketch.vectors import VectorScale, round_below
+
+# The longest force is this part of the picture's diagonal.
+LONGEST = 0.2
+
+
+# What is smaller than this part of the largest force or moment is left out of a sketch, which has little room.
+SMALL_PART = 0.03
+
+
+# An arrow that tells a colour is so long.
+KEY = 22.0
+
+
+# The kinds of arrows, as they are told below a picture.
+KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: "inertia"}
+
+
+@dataclass(frozen=True, eq=False)
+class ForcesAtPose:
+    """What acts on the links at a pose, and what is drawn of it."""
+
+    forces: Forces
+    scene: Scene
+    on: Mapping[str, tuple[ActingForce, ...]]
+
+    def shown(self, link: str | None) -> list[ActingForce]:
+        """Return what is drawn in a sketch. All that acts on a link, or each pair's force on its second one."""
+        if link is not None:
+            return list(self.on[link])
+        found = [one for own in self.on.values() for one in own if is_drawn_once(one, self.scene.legend)]
+        force, moment = (max(map(abs, sizes), default=0.0) * SMALL_PART
+                         for sizes in ([one.force for one in found], [one.moment for one in found]))  # fmt: skip
+        kept = (replace(one, force=one.force if abs(one.force) >= force else 0j,
+                        moment=one.moment if abs(one.moment) >= moment else 0.0) for one in found)  # fmt: skip
+        return [one for one in kept if one.force or one.moment or one.is_open]
+
+    def middle(self, one: ActingForce) -> complex:
+        """Return the middle of the link on which a force acts, in the plane."""
+        points = self.scene.points[one.link].values()
+        return complex(np.mean([self.scene.at(one.link, p) for p in points])) if points else one.at
+
+
+def forces_at_pose(forces: Forces, wishes: PictureOptions) -> ForcesAtPose:
+    """Return what acts at the pose that is asked for. Raises UnknownName for a link that there is not."""
+    scene = scene_of(forces.motion, wishes.at, wishes.pose, wishes.design)
+    if wishes.link is not None:
+        scene.mechanism.link(wishes.link)
+    return ForcesAtPose(forces, scene, acting_forces(forces, scene))
+
+
+def force_sketch(forces: Forces, wishes: PictureOptions) -> Picture:
+    """Draw the sketch with the forces at one pose."""
+    known, asked = forces_at_pose(forces, wishes), label_kinds(wishes.labels)
+    scene, shown = known.scene, known.shown(wishes.link)
+    window = window_on(scene)
+    scale = force_scale(shown, LONGEST * window.diagonal, forces.units.force)
+    if scale is None and not any(one.moment for one in shown):
+        raise InvalidInput(Problem("forces", "no force acts at this pose", "choose another pose"))
+    window = _with_room(known, window, shown, scale)
+    painter = Painter(scene, window)
+    shapes, names = _acting(known, painter, shown, scale)
+    laid = in_layers(painter)
+    own = labels_of(painter, laid, asked)
+    labels = [label for label, _, _ in names] if asked else []
+    behind = [one.shape for one in laid]
+    found = placed([*own, *labels], [*behind, *shapes], window.width, window.height)
+    texts = [*label_shapes(scene, {label.key: found[label.key] for label in own})]
+    texts += [
+        part for label, text, kind in names if asked for part in force_name(label.key, text, found[label.key], kind)
+    ]
+    return picture_with_notes(known, window, [*behind, *shapes, *texts], scale, shown, "forces", wishes.size)
+
+
+def _with_room(known: ForcesAtPose, window: Window, shown: Sequence[ActingForce], scale: VectorScale | None) -> Window:
+    """The window made large enough for the arrows."""
+    arrows = _arrows(known, window, shown, scale)
+    if not arrows:
+        return window
+    tips = [end for one in arrows for end in (one.start, one.stop)]
+    inner = [MARGIN * (1 + 1j), complex(window.width, window.height) - MARGIN * (1 + 1j)]
+    return fitted_window(window, np.array([*inner, *tips]))
+
+
+def _acting(
+    known: ForcesAtPose, painter: Painter, shown: Sequence[ActingForce], scale: VectorScale | None
+) -> tuple[list[Shape], list[tuple[Label, str, str]]]:
+    """The arrows and arcs, and their labels with texts and kinds."""
+    window = painter.window
+    arrows = _arrows(known, window, shown, scale)
+    shapes = [shape for one in arrows for shape in one.shapes]
+    names = [(one.label(one.force.name, f"force {k}"), one.force.name, one.force.kind)
+             for k, one in enumerate(arrows) if one.is_seen]  # fmt: skip
+    for one, arc, label in moment_arcs(shown, lambda at: complex(window.at(at)), painter.middle, AROUND_DRIVER):
+        shapes += arc
+        names.append((label, one.turning, one.kind))
+    return shapes, names
+
+
+def _arrows(
+    known: ForcesAtPose, window: Window, shown: Sequence[ActingForce], scale: VectorScale | None
+) -> list[DrawnForce]:
+    """The arrows; forces that press on their link come from outside, so that its bars stay to be seen."""
+    if scale is None:
+        return []
+    return [force_arrow(one, complex(window.at(one.at)), scale, complex(window.at(known.middle(one)))) for one in shown]
+
+
+def picture_with_notes(
+    known: ForcesAtPose,
+    window: Window,
+    shapes: Sequence[Shape],
+    scale: VectorScale | None,
+    shown: Sequence[ActingForce],
+    what: str,
+    size: float | None,
+) -> Picture:
+    """Return a picture of forces with what stands below it.
+
+    That is the pose, the links' numbers, units, the scale.
+    """
+    scene = known.scene
+    texts, height = notes_below(known, shown, scale, window.width, window.height)
+    paper = sheet(window.width, height)
+    title = f"{scene.mechanism.title}: {what}"
+    told = "; ".join(f"{one.told} {abs(one.force):.4g}" for one in shown if one.force)
+    return Picture((paper, *shapes, *texts), window.width, height, title, told, checked_size(size), window)
+
+
+def notes_below(
+    known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale | None, width: float, height: float
+) -> tuple[list[Shape], float]:
+    """Return what stands below a picture of forces, and the height with it."""
+    scene = known.scene
+    notes = [*pose_notes(scene), *(f"{number} {name}" for name, number in scene.legend.items())]
+    notes += list(_units(known, shown, scale))
+    texts, height = lines_below(lines_of_text(notes, width - 2.0 * SIDE), height)
+    if scale is None:
+        return texts, height
+    seen = (one for one in shown if one.moment or abs(one.force) * scale.per_unit >= SHORTEST)
+    kinds = dict.fromkeys(one.kind for one in seen)
+    keys = [(scale.amount * scale.per_unit, "drive", scale.text), *((KEY, kind, KINDS[kind]) for kind in kinds)]
+    x = SIDE
+    for length, kind, words in keys:
+        far = length + 0.5 * SIDE + len(words) * SMALL * NARROW
+        if x > SIDE and x + far > width - SIDE:
+            x, height = SIDE, height + LINE
+        texts += [*arrow_shapes(complex(x, height), complex(x + length, height), kind),
+                  Text(complex(x + length + 0.5 * SIDE, height), words, "note", "start")]  # fmt: skip
+        x += far + 1.5 * SIDE
+    return texts, height + LINE
+
+
+def _units(known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale | None) -> Iterator[str]:
+    """What there is to say of units, of statics, of arcs, of forces too small to be drawn."""
+    units = known.forces.units
+    yield f"forces in {units.force}"
+    if not known.forces.inertia:
+        yield "statics"
+    if any(one.moment for one in shown):
+        yield f"moments in {units.moment}, arcs not to scale"
+    unknown = dict.fromkeys(one.name for one in shown if one.is_open)
+    if unknown:
+        yield f"not determined by equilibrium: {', '.join(unknown)}"
+    small = [one for one in shown if one.force and scale is not None and abs(one.force) * scale.per_unit < SHORTEST]
+    if small:
+        yield f"not drawn: {', '.join(f'{one.name} {force_text(abs(one.force))}' for one in small)}"
+
+
+# The greatest distance between two corners of a polygon, picture units: of several, of a single one.
+POLYGON_LENGTH, POLYGON_LENGTH_ALONE = 170.0, 380.0
+
+
+POLYGON_HEADING, BELOW = 30.0, 14.0
+
+
+# Forces that lie on each other are drawn beside their line.
+ASIDE = 4.0
+
+
+# Labels are tried at these parts of a force, so far beside it.
+ALONG, BESIDE = (0.5, 0.35, 0.65, 0.22, 0.78), (4.0, 12.0, 22.0)
+
+
+def force_polygons(forces: Forces, wishes: PictureOptions) -> Picture:
+    """Draw the polygon of all forces on every link, or on one.
+
+    Each has its own scale. Loads come first, then weight and inertia, then reactions, which close it.
+
+    Raises InvalidInput where no link has forces. Source: P. Varignon, Nouvelle mécanique, 1725.
+    """
+    known = forces_at_pose(forces, wishes)
+    links = [wishes.link] if wishes.link is not None else [name for name in known.scene.legend if name != FRAME]
+    longest = POLYGON_LENGTH_ALONE if len(links) == 1 else POLYGON_LENGTH
+    parts = [part for link in links for part in _polygon_part(known, link, longest)]
+    if not parts:
+        raise InvalidInput(Problem("forces", "no force acts on these links", "choose another pose or link"))
+    shapes, width, height = in_rows(parts)
+    notes = [
+        *pose_notes(known.scene),
+        f"forces in {forces.units.force}",
+        *(f"{number} {name}" for name, number in known.scene.legend.items()),
+    ]
+    texts, height = lines_below(lines_of_text(notes, width - 2.0 * SIDE), height)
+    title = f"{known.scene.mechanism.title}: force polygon{'' if len(links) == 1 else 's'}"
+    return Picture((sheet(width, height), *shapes, *texts), width, height, title, "", checked_size(wishes.size))
+
+
+def _polygon_part(known: ForcesAtPose, link: str, longest: float) -> list[PicturePart]:
+    """The polygon of a link; nothing for one without forces."""
+    forces = sorted((one for one in known.on[link] if one.force), key=lambda one: one.kind == REACTION)
+    ends = np.cumsum([0j, *(complex(np.conjugate(one.force)) for one in forces)])
+    spread = max((abs(a - b) for a in ends for b in ends), default=0.0)
+    scale = force_scale(forces, 1.0, known.forces.units.force) if spread else None
+    if scale is None:
+        return []
+    scale = VectorScale(scale.kind, longest / spread, scale.amount, scale.text)
+    corner = [complex(end * scale.per_unit) for end in ends]
+    return [_polygon_panel(known, link, forces, corner, scale)]
+
+
+def _polygon_panel(
+    known: ForcesAtPose, link: str, forces: Sequence[ActingForce], corner: Sequence[complex], scale: VectorScale
+) -> PicturePart:
+    shapes, labels, texts = _sides(forces, corner)
+    points = np.array([*corner, *(place for label in labels for place in (label.places[0] - label.half,
+                                                                           label.places[0] + label.half))])  # fmt: skip
+    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
+    size = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j) - low
+    title = f"{known.scene.numbers[link]} {link}"
+    told = Text(0j, scale.text, "note", "start")
+    ruler = scale.amount * scale.per_unit
+    wide = max(size.real, len(title) * LETTER * WIDE, ruler + (len(scale.text) + 4) * SMALL * WIDE)
+    low -= (wide - size.real) / 2.0
+    shapes = moved_shapes(shapes, -low)
+    every = [Label(label.key, label.half, tuple(p - low for p in label.places), label.costs) for label in labels]
+    found = placed(every, shapes, wide, size.imag)
+    names = [part for label, (text, kind) in zip(every, texts, strict=True)
+             for part in force_name(label.key, text, found[label.key], kind)]  # fmt: skip
+    heading = Text(complex(wide / 2.0, POLYGON_HEADING / 2.0), title, "heading")
+    foot = complex((wide - ruler) / 2.0 - SIDE, POLYGON_HEADING + size.imag + BELOW / 2.0)
+    line = [*arrow_shapes(foot, foot + ruler, "drive"), *moved_shapes([told], foot + ruler + 0.5 * SIDE)]
+    group = ShapeGroup((heading, *moved_shapes([*shapes, *names], POLYGON_HEADING * 1j), *line), links=(link,))
+    return PicturePart((group,), wide, size.imag + POLYGON_HEADING + BELOW + LINE)
+
+
+def _sides(
+    forces: Sequence[ActingForce], corner: Sequence[complex]
+) -> tuple[list[Shape], list[Label], list[tuple[str, str]]]:
+    """The arrows of a polygon, their labels outside of it, and what these say."""
+    middle = complex(np.mean(corner))
+    shapes: list[Shape] = [CircleShape(corner[0], 2.0, "dot")]
+    labels, texts = [], []
+    flat = _is_flat(corner)
+    for k, one in enumerate(forces):
+        start, stop = corner[k], corner[k + 1]
+        across = 1j * unit_direction(stop - start)
+        if flat:
+            start, stop = (place - across * ASIDE for place in (start, stop))
+        shapes.append(
+            ShapeGroup(arrow_shapes(start, stop, one.kind), title=f"{one.told}: {force_text(abs(one.force))}")
+        )
+        text = f"{one.name} {force_text(abs(one.force))}"
+        labels.append(_beside(f"side {k}", text, start, stop, middle))
+        texts.append((text, one.kind))
+    return shapes, labels, texts
+
+
+def _is_flat(corner: Sequence[complex]) -> bool:
+    """Whether all forces lie on one line."""
+    longest = max((end - corner[0] for end in corner), key=abs)
+    e = unit_direction(longest)
+    return bool(max(abs((np.conjugate(e) * (end - corner[0])).imag) for end in corner) < ASIDE)
+
+
+def _beside(key: str, text: str, start: complex, stop: complex, middle: complex) -> Label:
+    """A label beside a force, rather outside of the polygon."""
+    half, across = text_half(text, SMALL), 1j * unit_direction(stop - start)
+    outside = 1.0 if (np.conjugate(across) * ((start + stop) / 2.0 - middle)).real >= 0 else -1.0
+    reach = abs(across.real) * half.real + abs(across.imag) * half.imag
+    tried = [(share, side, off) for share in ALONG for off in BESIDE for side in (outside, -outside)]
+    places = tuple(start + (stop - start) * share + across * side * (reach + off) for share, side, off in tried)
+    costs = tuple(20.0 * abs(share - 0.5) + off + (6.0 if side != outside else 0.0) for share, side, off in tried)
+    return Label(key, half, places, costs)
+
+
+# Links are drawn in this part of the size of a sketch; a single one in this.
+PART_OF_SKETCH, ALONE = 0.55, 1.0
+
+
+# The longest force is so long, picture units.
+BODY_FORCE_LENGTH, BODY_FORCE_LENGTH_ALONE = 84.0, 130.0
+
+
+# Above each body, for its heading.
+BODY_HEADING = 30.0
+
+
+# The circle at a mass centre, and the dot in it.
+CENTRE, DOT = 4.0, 1.5
+
+
+def free_bodies(forces: Forces, wishes: PictureOptions) -> Picture:
+    """Draw every link on its own, or one, with all that acts on it.
+
+    All forces are to one scale; they press on a link from outside and pull away from it. Moments are arcs, not to
+    scale. Source: any course of statics (free-body diagram).
+    """
+    known = forces_at_pose(forces, wishes)
+    links = [wishes.link] if wishes.link is not None else [name for name in known.scene.legend if name != FRAME]
+    shown = [one for link in links for one in known.on[link]]
+    scale = force_scale(shown, BODY_FORCE_LENGTH_ALONE if len(links) == 1 else BODY_FORCE_LENGTH, forces.units.force)
+    first, part = window_on(known.scene), ALONE if len(links) == 1 else PART_OF_SKETCH
+    window = Window(first.scale * part, first.corner, first.width * part, first.height * part)
+    shapes, width, height = in_rows([_body(known, window, link, scale) for link in links])
+    texts, height = notes_below(known, shown, scale, width, height)
+    title = f"{known.scene.mechanism.title}: free {'body' if len(links) == 1 else 'bodies'}"
+    told = "; ".join(f"{one.told} {abs(one.force):.4g}" for one in shown if one.force)
+    return Picture((sheet(width, height), *shapes, *texts), width, height, title, told, checked_size(wishes.size))
+
+
+def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | None) -> PicturePart:
+    """A link with its arrows, their names and values."""
+    scene, own = known.scene, known.on[link]
+    painter = Painter(scene, window, frozenset({link}))
+    points = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
+    middle = complex(np.mean(points)) if points else window.at(0j)
+    arrows = [] if scale is None else [force_arrow(one, complex(window.at(one.at)), scale, middle) for one in own]
+    arcs = list(moment_arcs(own, lambda at: complex(window.at(at)), middle))
+    shapes = [
+        *by_links([*in_layers(painter, grounded=False), *pin_shapes(painter)]),
+        *_mass_centre(known, window, link),
+    ]
+    shapes += [shape for one in arrows for shape in one.shapes]
+    shapes += [shape for _, arc, _ in arcs for shape in arc]
+    names = _force_names(arrows)
+    for one, _, label in arcs:
+        text = f"{one.turning} {force_text(abs(one.moment))}"
+        names.append((_around(label, text), text, one.kind))
+    return _body_panel(painter, link, shapes, [*point_letters(painter)], names, points)
+
+
+def _force_names(arrows: Sequence[DrawnForce]) -> list[tuple[Label, str, str]]:
+    """The names of forces with their values."""
+    found = []
+    for k, one in enumerate(one for one in arrows if one.is_seen):
+        text = f"{one.force.name} {force_text(abs(one.force.force))}"
+        found.append((one.label(text, f"force {k}"), text, one.force.kind))
+    return found
+
+
+def _around(label: Label, text: str) -> Label:
+    """The label of an arc with a longer text."""
+    middle = label.places[0]
+    return label_around(label.key, middle, text_half(text, SMALL), 3.0)
+
+
+def _mass_centre(known: ForcesAtPose, window: Window, link: str) -> list[Shape]:
+    """The mark of the mass centre, where the link has a mass."""
+    own: list[ActingForce] = [one for one in known.on[link] if one.name.startswith(("m", "−m"))]
+    if link not in known.scene.mechanism.masses or not own:
+        return []
+    at = complex(window.at(own[0].at))
+    return [CircleShape(at, CENTRE, "pin ink"), CircleShape(at, DOT, "dot")]
+
+
+def _body_panel(
+    painter: Painter,
+    link: str,
+    shapes: list[Shape],
+    own: list[Label],
+    names: Sequence[tuple[Label, str, str]],
+    points: Sequence[complex],
+) -> PicturePart:
+    """A link with its heading, in a sheet that just holds it and its names."""
+    scene = painter.scene
+    extent = np.array([*shape_corners(shapes), *points, *(label.places[0] - label.half for label, _, _ in names),
+                       *(label.places[0] + label.half for label, _, _ in names)])  # fmt: skip
+    low = complex(extent.real.min(), extent.imag.min()) - MARGIN * (1 + 1j)
+    size = complex(extent.real.max(), extent.imag.max()) + MARGIN * (1 + 1j) - low
+    title = f"{scene.numbers[link]} {link}"
+    wide = max(size.real, len(title) * LETTER * WIDE)
+    low -= (wide - size.real) / 2.0
+    shapes = moved_shapes(shapes, -low)
+    every = [_shifted(label, -low) for label in (*own, *(label for label, _, _ in names))]
+    found = placed(every, shapes, wide, size.imag)
+    texts = label_shapes(scene, {label.key: found[label.key] for label in own})
+    texts += [part for label, text, kind in names for part in force_name(label.key, text, found[label.key], kind)]
+    heading = Text(complex(wide / 2.0, BODY_HEADING / 2.0), title, "heading")
+    group = ShapeGroup((heading, *moved_shapes([*shapes, *texts], BODY_HEADING * 1j)), links=(link,))
+    return PicturePart((group,), wide, size.imag + BODY_HEADING)
+
+
+def _shifted(label: Label, by: complex) -> Label:
+    own = tuple((a + by, b + by) for a, b in label.own)
+    return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
+
+
+def drawn_force_courses(sketch: MovingSketch, forces: Forces) -> tuple[ForceCourse, ...]:
+    """Return the forces that are drawn along a motion.
+
+    That in each pair is drawn on its later link; forces that are always small beside the largest are left out.
+    """
+    found = force_courses(forces, sketch.scene, sketch.design)
+    kept = [one for own in found.values() for one in own if is_drawn_once(one.shown, sketch.scene.legend)]
+    largest = max(map(_longest, kept), default=0.0)
+    return tuple(one for one in kept if largest and _longest(one) >= SMALL_PART * largest)
+
+
+def force_scales(sketch: MovingSketch, forces: Forces, courses: tuple[ForceCourse, ...]) -> tuple[VectorScale, ...]:
+    """Return the scale of each kind of forces, one for all."""
+    longest = max(map(_longest, courses), default=0.0)
+    if not longest:
+        return ()
+    per_unit, amount = LONGEST * sketch.window.diagonal / longest, round_below(longest)
+    kinds = dict.fromkeys(one.shown.kind for one in courses)
+    return tuple(VectorScale(kind, per_unit, amount, f"{amount:g} {forces.units.force}") for kind in kinds)
+
+
+def _longest(one: ForceCourse) -> float:
+    """The greatest length of a force along the motion."""
+    sizes = np.abs(one.force)
+    return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))

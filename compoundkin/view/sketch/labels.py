@@ -1,0 +1,615 @@
+"""Labels of pictures: letters at points, numbers on links, notes below, and where they stand.
+
+Of several places for each label the one that covers least is taken, the same every time. Obstacles are the lines and
+small circles of shapes. A number is nearer to its own link than to any other; labels of a moving sketch cover least over
+the whole motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs.symbols import Sliding, Wheel
+from compoundkin.view.sketch.painter import (
+    Laid,
+    Layer,
+    Painter,
+    edges,
+    guide_line,
+    joints,
+    rod_line,
+    skeleton,
+    visible_points,
+)
+from compoundkin.view.sketch.picture import Window
+from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
+from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, PIN, SMALL, style_of
+from compoundkin.view.sketch.sketch_style import LINE as LINE_of_sketch_style
+
+# Places along a bar for its number, the middle first; and how far beside it, in picture units.
+ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
+
+
+BESIDE = (0.0, 13.0, -13.0, 20.0, -20.0, 30.0, -30.0)
+
+
+# The first of those lines is so far below a sketch.
+BELOW = 7.0
+
+
+# Those lines begin so far from the left edge, and end so far from the right one.
+SIDE = 16.0
+
+
+# Width of a letter in a long line, in parts of its height.
+NARROW = 0.54
+
+
+# Between the parts of a line below a picture.
+SEPARATOR = " · "
+
+
+# Beside a bar is worse than on it by this.
+OFF_BAR = 6.0
+
+
+# Beside a wheel is worse than on it by this.
+OUTSIDE = 30.0
+
+
+# On the edge of a plate is worse than inside it by this.
+ON_EDGE = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class LabelCourse:
+    """How places of a picture move. At each of some poses they are turned about zero, then shifted, complex (poses,).
+
+    At the first pose, the one shown, they are where they are.
+    """
+
+    turn: Number
+    shift: Number
+
+    def at(self, places: Number) -> Number:
+        """Return where places (...) are, (poses, ...)."""
+        shape = (-1, *[1] * np.ndim(places))
+        return places * self.turn.reshape(shape) + self.shift.reshape(shape)
+
+    def seen(self, places: Number) -> Number:
+        """Return places (poses, ...) as seen from what takes this course."""
+        shape = (-1, *[1] * (np.ndim(places) - 1))
+        return (places - self.shift.reshape(shape)) / self.turn.reshape(shape)
+
+
+@dataclass(frozen=True, eq=False)
+class LabelCourses:
+    """The courses of what links carry. What stays upright at points has theirs, by letters."""
+
+    of_links: Mapping[str, LabelCourse]
+    of_points: Mapping[str, LabelCourse]
+    others: LabelCourse
+
+    def of(self, one: Laid) -> LabelCourse:
+        """Return the course of a shape."""
+        return self.of_points.get(one.letter, self.others) if one.letter else self.of_links.get(one.link, self.others)
+
+    def of_label(self, key: str) -> LabelCourse:
+        """Return the course of a label: "link crank" or "point A"."""
+        kind, _, name = key.partition(" ")
+        return (self.of_links if kind == "link" else self.of_points).get(name, self.others)
+
+
+# Of a picture of one pose.
+STILL = LabelCourses({}, {}, LabelCourse(np.ones(1, dtype=complex), np.zeros(1, dtype=complex)))
+
+
+def labels_of(
+    painter: Painter, laid: Sequence[Laid], asked: Sequence[str], courses: LabelCourses = STILL
+) -> list[Label]:
+    """Return the labels that are asked for. A number of a link is nearer to it than to any other."""
+    numbers = beside_their_links(numbered(painter), laid, courses) if "links" in asked else []
+    return [*numbers, *(point_letters(painter) if "points" in asked else [])]
+
+
+def point_letters(painter: Painter) -> list[Label]:
+    """Return a label for every point, away from the middle of the mechanism."""
+    found = []
+    for letter, at in visible_points(painter.scene, painter.window).items():
+        if not any(map(painter.shows, painter.scene.mechanism.carriers[letter])):
+            continue
+        away = at - painter.middle
+        prefer = away / abs(away) + 0.4 * (0.7 - 0.7j) if abs(away) > 1.0 else 1 - 1j
+        clear = PIN + (6.0 if len(joints(painter, letter)) > 1 else 3.0)
+        found.append(label_around(f"point {letter}", at, text_half(letter, LETTER), clear, prefer))
+    return found
+
+
+def numbered(painter: Painter) -> list[Label]:
+    """Return a label for the number of every link but the frame. On its bar or plate, else beside it."""
+    return [_number(painter, name) for name in filter(painter.shows, painter.scene.legend) if name != FRAME]
+
+
+def _number(painter: Painter, name: str) -> Label:
+    corners = _cylinder(painter, name) or skeleton(painter.scene, painter.window, name)
+    half = complex(NUMBER, NUMBER)
+    key = f"link {name}"
+    if not corners:
+        return label_around(key, painter.middle, half, 0.0)
+    if len(corners) == 1:
+        inside = [s for s in painter.scene.seen if isinstance(s.mark, Wheel) and s.members[s.mark.member] == name]
+        if not inside:
+            return label_around(key, corners[0], half, 10.0, -1 + 1j)
+        radius = max(float(s.mark.radius) for s in inside if isinstance(s.mark, Wheel)) * painter.window.scale
+        ring = [corners[0] + radius * 0.55 * complex(np.exp(2j * np.pi * (k + 0.5) / 12)) for k in range(12)]
+        beside = label_around(key, corners[0], half, radius).places
+        return Label(key, half, (*ring, *beside), (*[0.0] * len(ring), *[OUTSIDE] * len(beside)))
+    # a plate has its number in its middle, and rather not on an edge
+    places, costs = ([complex(np.mean(corners))], [0.0]) if len(corners) > 2 else ([], [])
+    on_bar = 0.0 if len(corners) == 2 else ON_EDGE
+    for a, b in edges(corners):
+        across = 1j * (b - a) / abs(b - a)
+        for share in ALONG:
+            for off in BESIDE:
+                places.append(a + (b - a) * share + across * off)
+                costs.append(abs(off) / 4.0 + (OFF_BAR if off else on_bar) + 6.0 * abs(share - 0.5))
+    return Label(key, half, tuple(places), tuple(costs), (*edges(corners), *_guides(painter, name)))
+
+
+def _guides(painter: Painter, name: str) -> list[tuple[complex, complex]]:
+    """The guides and rods of a link, which its number may be on too."""
+    found = []
+    for seen in painter.scene.seen:
+        if isinstance(seen.mark, Sliding) and not painter.is_cylinder(seen):
+            line, own = (rod_line, 1) if painter.is_rod(seen) else (guide_line, 0)
+            if name == seen.members[own] != FRAME:
+                found.append(line(painter, name, seen.mark))
+    return found
+
+
+def _cylinder(painter: Painter, name: str) -> list[complex]:
+    """Where the number of a cylinder's barrel may be, or that of its rod."""
+    for seen in painter.scene.seen:
+        mark, alone = seen.mark, len(painter.scene.points[name]) == 1
+        if isinstance(mark, Sliding) and alone and name in seen.members and painter.is_cylinder(seen):
+            foot, eye = painter.place(seen.members[0], mark.at), painter.place(seen.members[1], mark.block)
+            shares = (0.1, 0.6) if name == seen.members[0] else (0.6, 1.0)
+            return [foot + (eye - foot) * share for share in shares]
+    return []
+
+
+def label_shapes(scene: Scene, found: dict[str, complex]) -> list[Shape]:
+    """Return the labels as shapes, at their places."""
+    shapes: list[Shape] = []
+    for key, at in found.items():
+        kind, _, name = key.partition(" ")
+        if kind == "link":
+            shapes.append(badge(scene, name, at))
+        else:
+            shapes.append(Text(at, name, "letter" if kind == "point" else "centre-name"))
+    return shapes
+
+
+def badge(scene: Scene, name: str, at: complex) -> Shape:
+    """Return the number of a link in a circle of its colour."""
+    rim = CircleShape(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}")
+    return ShapeGroup((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
+
+
+def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
+    """Break parts of text in lines no wider than this, in picture units.
+
+    >>> lines_of_text(["1 frame", "2 crank"], 60.0)
+    ['1 frame', '2 crank']
+    """
+    lines: list[str] = []
+    for part in parts:
+        longer = f"{lines[-1]}{SEPARATOR}{part}" if lines else part
+        if lines and len(longer) * SMALL * NARROW <= width:
+            lines[-1] = longer
+        else:
+            lines.append(part)
+    return lines
+
+
+def width_with(texts: Sequence[Shape]) -> float:
+    """Return how wide a picture must be for what stands below it. It has the same room at its right."""
+    ends = [shape.at.real + len(shape.text) * SMALL * NARROW for shape in texts if isinstance(shape, Text)]
+    return max(ends, default=0.0) + SIDE
+
+
+def lines_below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
+    """Return lines of text below a picture, and the height with them."""
+    places = [complex(SIDE, height + BELOW + LINE_of_sketch_style * k) for k in range(len(lines))]
+    shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
+    return shapes, round(height + (BELOW + LINE_of_sketch_style * len(lines) if lines else 0.0), 1)
+
+
+# So many poses of a sketch with few labels are looked at, fewer where there are many labels.
+MOST, LEAST, LABELS = 12, 3, 240
+
+
+# A label that leaves the picture makes it larger: that costs less than to be cut off.
+LARGER = 0.02
+
+
+def poses_looked_at(shown: int, count: int, labels: int) -> Number:
+    """Return indices of poses along a motion, that shown first."""
+    wanted = int(np.clip(LABELS // max(labels, 1), LEAST, MOST))
+    others = np.linspace(0, count - 1, min(wanted, count)).round().astype(int)
+    return np.concatenate([[shown], others[others != shown]])
+
+
+def label_courses(scene: Scene, window: Window, poses: Number) -> LabelCourses:
+    """Return how links and points move over some poses. The first of them is the one shown."""
+    links, points = {}, {}
+    for name, pose in scene.whole.items():
+        z, u = (np.broadcast_to(np.atleast_1d(v.c[0]), (scene.count,))[poses] for v in (pose.z, pose.u))
+        turn, at = np.conjugate(u / u[0]), window.at(z)
+        links[name] = LabelCourse(turn, at - at[0] * turn)
+    for letter in scene.letters:
+        at = window.at(np.broadcast_to(scene.places(letter), (scene.count,))[poses])
+        points[letter] = LabelCourse(np.ones_like(at), at - at[0])
+    still = LabelCourse(np.ones(len(poses), dtype=complex), np.zeros(len(poses), dtype=complex))
+    return LabelCourses(links, points, still)
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """Lines and circles that labels should not be on. They are those of some poses, complex (poses, count, 2)."""
+
+    lines: Number
+    rounds: Number
+    width: float
+    height: float
+
+    @classmethod
+    def of(cls, laid: Sequence[Laid], courses: LabelCourses, width: float, height: float) -> Surroundings:
+        """Return those of shapes on their courses."""
+        lines, rounds = [], []
+        # on a hatching a label can be read: it has paper around it
+        for one in (one for one in laid if one.layer > Layer.BACK):
+            course, (straight, small) = courses.of(one), obstacles([one.shape])
+            lines.append(course.at(straight))
+            middles = course.at(small[:, 0])
+            rounds.append(np.stack([middles, np.broadcast_to(small[:, 1], middles.shape)], axis=-1))
+        nothing = np.zeros((len(courses.others.turn), 0, 2), dtype=complex)
+        return cls(np.concatenate([nothing, *lines], axis=1), np.concatenate([nothing, *rounds], axis=1), width, height)
+
+    def costs(self, label: Label, course: LabelCourse) -> Number:
+        """Return what each place costs on the average of the poses."""
+        at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
+        lines = course.seen(self.lines).reshape(-1, 2)
+        middles = course.seen(self.rounds[..., 0])
+        rounds = np.stack([middles, self.rounds[..., 1]], axis=-1).reshape(-1, 2)
+        poses = len(course.turn)
+        outside = beyond(course.at(at), half, self.width, self.height)
+        found: Number = np.array(label.costs) + on_shapes(at, half, lines, rounds) / poses - on_own(label, at, half)
+        return found + LARGER * outside.mean(axis=0)
+
+
+def placed_along(labels: Sequence[Label], courses: LabelCourses, around: Surroundings) -> dict[str, complex]:
+    """Return a place for each label at the pose shown."""
+    own = [courses.of_label(label.key) for label in labels]
+    fixed = {label.key: around.costs(label, course) for label, course in zip(labels, own, strict=True)}
+    nothing: Number = np.zeros((len(courses.others.turn), 0), dtype=complex)
+    turn = np.column_stack([nothing, *(course.turn for course in own)])
+    shift = np.column_stack([nothing, *(course.shift for course in own)])
+    return settled_labels(labels, fixed, LabelCrowd(labels, turn, shift))
+
+
+# What it costs to be nearer to another link, and so much more for each picture unit; distances that differ by less are
+# equal: links that lie on each other.
+WRONG, WORSE, EQUAL = 400.0, 3.0, 0.5
+
+
+# So much nearer than any other link it had better be, and what a picture unit less costs.
+CLEARLY, UNCLEAR = 7.0, 1.5
+
+
+def is_of_link(one: Laid) -> bool:
+    """Tell whether a shape shows which link it is of. Pins are of several, arrows and the frame of none."""
+    return Layer.FRAME < one.layer < Layer.PIN and one.link != FRAME
+
+
+def distances(at: Number, lines: Number) -> Number:
+    """Return how far places are from lines, (places, lines)."""
+    start, way = lines[None, :, 0], (lines[:, 1] - lines[:, 0])[None]
+    off = at[:, None] - start
+    length = np.abs(way) ** 2
+    share = np.clip((np.conjugate(way) * off).real / np.where(length > 0, length, 1.0), 0.0, 1.0)
+    return np.abs(off - share * way)
+
+
+def own_distances(at: Number, shapes: Iterable[Laid]) -> Number:
+    """Return how far places are from what is drawn of a link. Inside a plate or wheel it is nothing."""
+    shapes = list(shapes)
+    lines = np.array(list(straight_lines(one.shape for one in shapes)), dtype=complex).reshape(-1, 2)
+    found = distances(at, lines).min(axis=1) if len(lines) else np.full(len(at), np.inf)
+    for shape in (one.shape for one in shapes):
+        if isinstance(shape, CircleShape):
+            found = np.minimum(found, np.maximum(0.0, np.abs(at - shape.centre) - shape.radius))
+        elif isinstance(shape, Polygon):
+            corners = np.array(shape.points, dtype=complex)[:, None] - at
+            winding = np.angle(np.roll(corners, -1, axis=0) * np.conjugate(corners)).sum(axis=0)
+            found = np.where(np.abs(winding) > np.pi, 0.0, found)
+    return found
+
+
+def costs_of(own: Number, other: Number) -> Number:
+    """Return what places cost by their distances to their own link and another."""
+    wrong = own - other > EQUAL
+    unclear = np.maximum(0.0, np.minimum(own, CLEARLY) - np.maximum(0.0, other - own)) * UNCLEAR
+    return np.where(wrong, WRONG + WORSE * np.minimum(np.maximum(own - other, 0.0), own), 0.0) + np.where(
+        own > EQUAL, unclear, 0.0
+    )
+
+
+def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid], courses: LabelCourses = STILL) -> list[Label]:
+    """Return labels, those of links with the costs of being nearer to another link. These are of all poses."""
+    shown = [one for one in laid if is_of_link(one)]
+    links = list(dict.fromkeys(one.link for one in shown))
+    rows = [(courses.of(one), obstacles([one.shape])[0], links.index(one.link)) for one in shown]
+    owner = np.repeat([k for *_, k in rows], [len(lines) for _, lines, _ in rows]) if rows else np.zeros(0, dtype=int)
+    lines = np.concatenate([course.at(lines) for course, lines, _ in rows], axis=1) if rows else np.zeros((1, 0, 2))
+    found = []
+    for label in labels:
+        kind, _, name = label.key.partition(" ")
+        if kind == "link" and name in links and len(links) > 1:
+            own = own_distances(np.array(label.places), [one for one in shown if one.link == name])
+            others = courses.of_label(label.key).seen(lines[:, owner != links.index(name)])
+            label = label.with_costs(_of_all_poses(np.array(label.places), own, others))
+        found.append(label)
+    return found
+
+
+def _of_all_poses(at: Number, own: Number, lines: Number) -> Number:
+    """What places cost on the average of the poses, by their own distances and those of other lines at each pose."""
+    # what is farther than this from all places is none of the nearest that count
+    middle, far = at.mean(), np.abs(at - at.mean()).max() + own.max() + CLEARLY
+    costs = []
+    for at_pose in lines:
+        near = (
+            np.abs((at_pose[:, 0] + at_pose[:, 1]) / 2.0 - middle) - np.abs(at_pose[:, 1] - at_pose[:, 0]) / 2.0 < far
+        )
+        other = distances(at, at_pose[near]).min(axis=1, initial=np.inf)
+        costs.append(costs_of(own, other))
+    return np.mean(costs, axis=0)
+
+
+# Width of a letter in parts of its height, a little more than in the usual fonts.
+WIDE = 0.62
+
+
+# What it costs to be in the way: of another label, of the edge of the picture, of a line, of a circle.
+LABEL, EDGE, LINE, ROUND = 1000.0, 4000.0, 12.0, 30.0
+
+
+# Places are tried at so many directions and distances around a point.
+DIRECTIONS = 16
+
+
+RINGS = (0.0, 5.0, 11.0, 18.0, 27.0, 38.0, 52.0, 70.0)
+
+
+AROUND = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+
+
+# What it costs to be a picture unit farther away.
+FAR = 1.1
+
+
+# Labels keep this distance.
+ROOM = 1.5
+
+
+# Costs that differ beyond these digits are equal: rounding must not decide.
+DIGITS = 6
+
+
+# What is drawn last is placed again so many times, when all others are known.
+ROUNDS = 2
+
+
+@dataclass(frozen=True)
+class Label:
+    """A label to be placed. Half its width and height, and its places in the order of preference, with their costs.
+
+    `own` are lines that it may be on.
+    """
+
+    key: str
+    half: complex
+    places: tuple[complex, ...]
+    costs: tuple[float, ...]
+    own: tuple[tuple[complex, complex], ...] = ()
+
+    def with_costs(self, more: Number) -> Label:
+        """Return the same label, its places the dearer by some costs."""
+        costs = tuple((np.array(self.costs) + more).tolist())
+        return Label(self.key, self.half, self.places, costs, self.own)
+
+
+def text_half(text: str, size: float) -> complex:
+    """Return half the width and height of a line of text."""
+    return complex(max(1, len(text)) * WIDE * size / 2.0, 0.42 * size)
+
+
+def label_around(key: str, at: complex, half: complex, clear: float, prefer: complex = 1 - 1j) -> Label:
+    """Return a label beside a point, from `clear` away on. Rather to the side `prefer`."""
+    better = prefer / abs(prefer)
+    reach = np.abs(AROUND.real) * half.real + np.abs(AROUND.imag) * half.imag
+    rings = np.array(RINGS)[:, None]
+    places = (at + AROUND * (clear + reach + rings)).ravel()
+    costs = (FAR * rings + 2.5 * (1.0 - (np.conjugate(better) * AROUND).real)).ravel()
+    return Label(key, half, tuple(places.tolist()), tuple(costs.tolist()))
+
+
+def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:
+    """Return a place for each label, in the order of the labels. All are placed again twice."""
+    lines, rounds = obstacles(shapes)
+    fixed = {}
+    for label in labels:
+        at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
+        covered = on_shapes(at, half, lines, rounds) + beyond(at, half, width, height)
+        fixed[label.key] = np.array(label.costs) + covered - on_own(label, at, half)
+    still = np.ones((1, len(labels)), dtype=complex)
+    return settled_labels(labels, fixed, LabelCrowd(labels, still, 0.0 * still))
+
+
+def settled_labels(labels: Sequence[Label], fixed: Mapping[str, Number], crowd: LabelCrowd) -> dict[str, complex]:
+    """Return a place for each label. All are placed again twice, by fixed costs and those of being on others."""
+    found: dict[str, complex] = {}
+    for _ in range(1 + ROUNDS):
+        for k, label in enumerate(labels):
+            costs = fixed[label.key] + crowd.costs(k, label)
+            found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
+            crowd.put(k, found[label.key])
+    return found
+
+
+class LabelCrowd:
+    """Where labels are at some poses, and what others cost there.
+
+    Places are turned about zero, then shifted: complex (poses, labels), both.
+    """
+
+    def __init__(self, labels: Sequence[Label], turn: Number, shift: Number) -> None:
+        self._turn, self._shift = turn, shift
+        self._half = np.array([label.half for label in labels])
+        # what is nowhere yet is near nothing
+        self._middles: Number = np.full(turn.shape, complex(np.nan, np.nan))
+
+    def put(self, k: int, place: complex) -> None:
+        """Put a label at a place."""
+        self._middles[:, k] = place * self._turn[:, k] + self._shift[:, k]
+
+    def costs(self, k: int, label: Label) -> Number:
+        """Return what each place of a label costs, on the average of the poses."""
+        places = np.array(label.places) * self._turn[:, k, None] + self._shift[:, k, None]
+        near = self._near(k, places)
+        gap = places[:, :, None] - self._middles[:, None, near]
+        found: Number = crowded(gap, label.half, self._half[near]).sum(axis=2).mean(axis=0)
+        return found
+
+    def _near(self, k: int, places: Number) -> Number:
+        """Indices of the others that any of the places is near at any pose: of all else nothing is counted."""
+        reach = self._half[k] + self._half + ROOM * (1 + 1j)
+        x, y, at = places.real, places.imag, self._middles
+        wide = (at.real - x.max(axis=1, keepdims=True) < reach.real) & (
+            x.min(axis=1, keepdims=True) - at.real < reach.real
+        )
+        high = (at.imag - y.max(axis=1, keepdims=True) < reach.imag) & (
+            y.min(axis=1, keepdims=True) - at.imag < reach.imag
+        )
+        near = (wide & high).any(axis=0)
+        near[k] = False
+        return np.flatnonzero(near)
+
+
+def beyond(at: Number, half: complex, width: float, height: float) -> Number:
+    """Return what it costs places to be outside the picture."""
+    outside = np.maximum(0.0, half.real - at.real) + np.maximum(0.0, at.real + half.real - width)
+    return EDGE * (outside + np.maximum(0.0, half.imag - at.imag) + np.maximum(0.0, at.imag + half.imag - height))
+
+
+def on_own(label: Label, at: Number, half: complex) -> Number:
+    """Return what `on_shapes` counts of lines that a label may be on."""
+    return LINE * lengths_in_boxes(at, half, np.array(label.own)).sum(axis=1) if label.own else 0.0
+
+
+def on_shapes(at: Number, half: complex, lines: Number, rounds: Number) -> Number:
+    """Return what it costs places to be on lines and circles."""
+    costs: Number = np.zeros(len(at))
+    lines = lines[_within(at, half, lines.real.min(axis=1), lines.real.max(axis=1), 1)] if len(lines) else lines
+    lines = lines[_within(at, half, lines.imag.min(axis=1), lines.imag.max(axis=1), 1j)] if len(lines) else lines
+    if len(lines):
+        costs = costs + LINE * lengths_in_boxes(at, half, lines).sum(axis=1)
+    if len(rounds):
+        gap = np.abs((at[:, None] - rounds[None, :, 0]).real) - half.real - rounds[None, :, 1].real
+        high = np.abs((at[:, None] - rounds[None, :, 0]).imag) - half.imag - rounds[None, :, 1].real
+        costs = costs + ROUND * ((gap < 0) & (high < 0)).sum(axis=1)
+    return costs
+
+
+def _within(at: Number, half: complex, low: Number, high: Number, axis: complex) -> Number:
+    """Tell which of some ranges along an axis can be met by any of the places: the others cost nothing."""
+    along, reach = (np.conjugate(axis) * at).real, half.real if axis == 1 else half.imag
+    return (low <= along.max() + reach) & (high >= along.min() - reach)
+
+
+def lengths_in_boxes(at: Number, half: complex, lines: Number) -> Number:
+    """Return the length of each line in the box around each place.
+
+    It is in parts of the box's half diagonal, at least one.
+    """
+    a, d = lines[None, :, 0] - at[:, None], (lines[:, 1] - lines[:, 0])[None]
+    low: Number = np.zeros(np.broadcast_shapes(a.shape, d.shape))
+    high = np.ones_like(low)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for start, way, reach in ((a.real, d.real, half.real), (a.imag, d.imag, half.imag)):
+            one, two = (-reach - start) / way, (reach - start) / way
+            still = way == 0
+            near, far = np.where(still, -np.inf, np.minimum(one, two)), np.where(still, np.inf, np.maximum(one, two))
+            out = still & (np.abs(start) > reach)
+            low, high = np.maximum(low, np.where(out, np.inf, near)), np.minimum(high, far)
+    length = np.maximum(high - low, 0.0) * np.abs(d)
+    return np.where(high > low, 1.0 + length / abs(half), 0.0)
+
+
+def crowded(gap: Number, half: complex, others: Number) -> Number:
+    """Return what it costs labels to be on others. `gap` is from middle to middle."""
+    wide = half.real + others.real + ROOM - np.abs(gap.real)
+    high = half.imag + others.imag + ROOM - np.abs(gap.imag)
+    return LABEL * np.where((wide > 0) & (high > 0), 1.0 + np.minimum(wide, high), 0.0)
+
+
+# A larger circle is in the way with its line only.
+BIG = 12.0
+
+
+# Its line is so many chords.
+CHORDS = 24
+
+
+def obstacles(shapes: Iterable[Shape]) -> tuple[Number, Number]:
+    """Return lines and circles that labels should not be on.
+
+    They are (start, stop) and (middle, radius), complex (count, 2).
+    """
+    shapes = list(shapes)
+    lines, rounds = list(straight_lines(shapes)), list(_rounds(shapes))
+    return np.array(lines, dtype=complex).reshape(-1, 2), np.array(rounds, dtype=complex).reshape(-1, 2)
+
+
+def straight_lines(shapes: Iterable[Shape]) -> Iterator[tuple[complex, complex]]:
+    """Return the straight lines of shapes, those of large circles as chords."""
+    for shape in shapes:
+        if isinstance(shape, ShapeGroup):
+            yield from straight_lines(shape.shapes)
+        elif isinstance(shape, Polyline):
+            yield from pairwise(shape.points)
+        elif isinstance(shape, Polygon):
+            yield from pairwise((*shape.points, shape.points[0]))
+        elif isinstance(shape, Strokes):
+            yield from (line for whole in shape.lines for line in pairwise(whole))
+        elif isinstance(shape, ArcShape):
+            yield shape.start, shape.stop
+        elif isinstance(shape, CircleShape) and shape.radius > BIG:
+            rim = shape.centre + shape.radius * np.exp(2j * np.pi * np.arange(CHORDS + 1) / CHORDS)
+            yield from pairwise(complex(p) for p in rim)
+
+
+def _rounds(shapes: Iterable[Shape]) -> Iterator[tuple[complex, float]]:
+    for shape in shapes:
+        if isinstance(shape, ShapeGroup):
+            yield from _rounds(shape.shapes)
+        elif isinstance(shape, CircleShape) and shape.radius <= BIG:
+            yield shape.centre, shape.radius

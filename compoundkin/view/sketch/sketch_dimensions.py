@@ -1,0 +1,509 @@
+"""Dimensions of a sketch: lengths and angles of links, guides and wheels, offsets of the frame's pivots and guides.
+
+Each number stands where it covers least of what is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.model.attributes import unit_suffix
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs.symbols import Sliding, Wheel
+from compoundkin.view.sketch.labels import DIGITS, EDGE, LABEL, LINE, ROUNDS, WIDE, Label, distances, straight_lines
+from compoundkin.view.sketch.painter import Painter, edges, link_corners
+from compoundkin.view.sketch.picture import Window
+from compoundkin.view.sketch.scene import PairMark, Scene
+from compoundkin.view.sketch.shapes import Polyline, Shape, Strokes, Text, arrow_head, unit_direction
+from compoundkin.view.sketch.sketch_style import SMALL
+
+
+def dimension_shapes(
+    painter: Painter, drawn: Sequence[Shape], labels: Sequence[Label], found: Mapping[str, complex]
+) -> list[Shape]:
+    """Draw the dimensions of links and guides. They are beside what is drawn and beside the labels."""
+    solid = [shape for shape in drawn if not isinstance(shape, Strokes)]
+    lines = np.array(list(straight_lines(solid)), dtype=complex).reshape(-1, 2)
+    boxes = [(found[label.key], label.half) for label in labels]
+    wanted = [*guide_dimensions(painter), *link_dimensions(painter)]
+    places = placed_dimensions(wanted, lines, boxes, painter.window)
+    return [shape for one, at in zip(wanted, places, strict=True) for shape in dimension_drawing(one.text, at)]
+
+
+# Numbers stand at these shares of a line, and so far beside it, in picture units.
+SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+
+
+OFFSETS = (0.0, 6.0, 13.0, 22.0)
+
+
+# Arcs of angles have these radii.
+RADII = (26.0, 36.0, 48.0, 62.0)
+
+
+# An arc is a line through so many points.
+ON_ARC = 13
+
+
+# The radius of a wheel is drawn in one of so many directions.
+DIRECTIONS = 16
+
+
+# Lengths below this part of the size are nothing, angles below this (radians) are none.
+NOTHING, PARALLEL = 1e-6, 1e-4
+
+
+def link_dimensions(painter: Painter) -> list[Dimension]:
+    """Return the dimensions of all links but the frame, and of guides and wheels."""
+    scene = painter.scene
+    shown = [name for name in scene.legend if name != FRAME and painter.shows(name)]
+    found = [one for name in shown for one in _of_link(painter, name)]
+    wheels: list[tuple[str, complex, float]] = []
+    for seen in scene.seen:
+        if isinstance(seen.mark, Sliding) and seen.members[0] in shown:
+            found += _of_guide(painter, seen, seen.mark)
+        elif isinstance(seen.mark, Wheel):
+            link, radius = seen.members[seen.mark.member], float(seen.mark.radius)
+            wheel = link, complex(seen.mark.at), radius
+            if all(link != o[0] or abs(wheel[1] - o[1]) + abs(radius - o[2]) > _nothing(painter) for o in wheels):
+                wheels.append(wheel)
+                found.append(_radius(painter, link, wheel[1], radius))
+    return found
+
+
+def _nothing(painter: Painter) -> float:
+    return NOTHING * float(painter.scene.mechanism.geometry.size)
+
+
+def _of_link(painter: Painter, name: str) -> Iterator[Dimension]:
+    """The lengths between the points of a bar in their order; of a plate two sides and the angle between them."""
+    scene = painter.scene
+    points = list({complex(p): k for k, p in scene.points[name].items()})
+    if len(points) < 2:
+        return
+    places = [painter.place(name, p) for p in points]
+    corners = link_corners(places)
+    if len(corners) < 3:
+        e = unit_direction(points[-1] - points[0]) if abs(points[-1] - points[0]) > 0 else 1.0
+        for p, q in pairwise(sorted(points, key=lambda p: (np.conjugate(e) * p).real)):
+            if abs(q - p) > _nothing(painter):
+                yield length_dimension(painter, painter.place(name, p), painter.place(name, q), abs(q - p))
+        return
+    joined = {letter for pair in scene.structure.pairs for letter in pair.letters}
+    ordered = sorted(scene.points[name].items(), key=lambda one: one[0] not in joined)
+    first, second, *others = [complex(p) for _, p in ordered]
+    sides = edges(corners)
+    yield _side(painter, name, first, second, sides)
+    for other in others:
+        if abs(other - first) > _nothing(painter):
+            yield _side(painter, name, first, other, sides)
+            yield from angle_dimension(painter, painter.place(name, first), *(
+                painter.place(name, p) for p in (second, other)))  # fmt: skip
+
+
+def _side(painter: Painter, name: str, p: complex, q: complex, sides: Sequence[tuple[complex, complex]]) -> Dimension:
+    """The length of a plate from point to point, with a line where none of its edges is there."""
+    a, b = painter.place(name, p), painter.place(name, q)
+    is_edge = any({a, b} == set(side) for side in sides)
+    line: tuple[Shape, ...] = () if is_edge else (Polyline((a, b), "dimension"),)
+    return length_dimension(painter, a, b, abs(q - p), line)
+
+
+def length_dimension(
+    painter: Painter, a: complex, b: complex, length: float, shapes: tuple[Shape, ...] = (), sign: str = ""
+) -> Dimension:
+    """Return the dimension of a length. Its number is along the line from place to place."""
+    text = f"{sign}{number_text(length, painter.scene.mechanism.unit)}"
+    e, across = upright(b - a), 1j * upright(b - a)
+    places = []
+    beyond = max(0.0, text_width(text) - abs(b - a))
+    for share in SHARES:
+        for off in OFFSETS:
+            # above the line rather than below it, and not where the number is longer than its line
+            for side in (-1.0, 1.0):
+                at = a + (b - a) * share + across * side * (BESIDE + off)
+                places.append(
+                    DimensionPlace(at, e, 1.2 * off + 14.0 * abs(share - 0.5) + (side > 0) + beyond / 10.0, shapes)
+                )
+    return Dimension(text, tuple(places))
+
+
+def angle_dimension(painter: Painter, at: complex, one: complex, other: complex) -> Iterator[Dimension]:
+    """Return the dimension of the angle between two directions from a place. None where they are parallel."""
+    first, second = unit_direction(one - at), unit_direction(other - at)
+    angle = float(np.angle(second * np.conjugate(first)))
+    if PARALLEL < abs(angle) < np.pi - PARALLEL:
+        text = number_text(float(np.rad2deg(abs(angle))), "", is_angle=True)
+        reach = 0.8 * min(abs(one - at), abs(other - at))
+        places: list[DimensionPlace] = []
+        for k, radius in enumerate(RADII):
+            places += _on_arc(text, at, first, angle, min(radius, reach + 8.0 * k), 4.0 * k)
+        yield Dimension(text, tuple(places))
+
+
+def _on_arc(
+    text: str, at: complex, first: complex, angle: float, radius: float, cost: float
+) -> Iterator[DimensionPlace]:
+    """The places of an angle's number outside and inside its arc, and beside it."""
+    arc = [complex(p) for p in at + radius * first * np.exp(1j * angle * np.linspace(0.0, 1.0, ON_ARC))]
+    drawn = (
+        Polyline(tuple(arc), "dimension"),
+        arrow_head(arc[-1], arc[-1] - arc[-2], "dimension-head", HEAD),
+        arrow_head(arc[0], arc[0] - arc[1], "dimension-head", HEAD),
+    )
+    for turn, more in ((0.5, 0.0), (0.3, 3.0), (0.7, 3.0)):
+        e = complex(first * np.exp(1j * angle * turn))
+        half = abs(e.real) * text_width(text) / 2.0 + abs(e.imag) * 5.0
+        for away in (half + 3.0, half + 12.0, -half - 3.0):
+            yield DimensionPlace(at + e * (radius + away), 1.0, cost + more + abs(away) / 8.0, drawn)
+    for turn in (-12.0 / radius, abs(angle) + 12.0 / radius):
+        e = complex(first * np.exp(1j * np.sign(angle) * turn))
+        yield DimensionPlace(at + e * (radius + 2.0), 1.0, cost + 8.0, drawn)
+
+
+def _of_guide(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Dimension]:
+    """How far a guide on a moving link is from the first of its points, and at which angle to a line of the link."""
+    link = seen.members[0]
+    points = [complex(p) for p in painter.scene.points[link].values()]
+    along = complex(mark.along)
+    for p in points[:1]:
+        foot = complex(mark.at) + along * (np.conjugate(along) * (p - mark.at)).real / abs(along) ** 2
+        if abs(foot - p) > _nothing(painter):
+            a, b = painter.place(link, p), painter.place(link, foot)
+            yield length_dimension(painter, a, b, abs(foot - p), tuple(dimension_line(a, b)))
+    others = [p for p in points if abs(p - mark.at) > _nothing(painter)]
+    if others:
+        at, other = painter.place(link, mark.at), painter.place(link, others[0])
+        way = at + painter.along(link, along) * abs(other - at)
+        yield from angle_dimension(painter, at, other, way)
+
+
+def _radius(painter: Painter, link: str, middle: complex, radius: float) -> Dimension:
+    """The radius of a wheel, in a direction where there is room."""
+    at = painter.place(link, middle)
+    text = f"r = {number_text(radius, painter.scene.mechanism.unit)}"
+    wide, length = text_width(text) / 2.0, radius * painter.window.scale
+    places = []
+    for k in range(DIRECTIONS):
+        e = complex(np.exp(2j * np.pi * (k + 0.5) / DIRECTIONS))
+        rim, written = at + e * length, upright(e)
+        across = -1j * written * BESIDE
+        drawn: tuple[Shape, ...] = (Polyline((at, rim), "dimension"), arrow_head(rim, e, "dimension-head", HEAD))
+        if length > 2.0 * wide + 14.0:
+            places += [DimensionPlace(at + e * length * s + across, written, 0.0, drawn) for s in (0.55, 0.7)]
+        outer = (Polyline((at, rim + e * (2.0 * wide + 8.0)), "dimension"), drawn[1])
+        places.append(DimensionPlace(rim + e * (wide + 8.0) + across, written, 6.0, outer))
+    return Dimension(text, tuple(places))
+
+
+# From the sketch to the first dimension line, and from line to line, in picture units.
+FIRST, ROW = 12.0, 20.0
+
+
+# Extension lines begin so far from their points, below pivots and beside them, and end so far beyond the line.
+BELOW_PIVOT, BESIDE_PIVOT, BEYOND = 24.0, 9.0, 4.0
+
+
+# The horizontal line at an inclined guide is so long.
+LEVEL = 60.0
+
+
+# A number is so far above its line, and so far beyond a short one.
+ABOVE, AFTER, ROOM = 7.0, 18.0, 4.0
+
+
+# The outermost line is so much nearer to the edge than a row.
+EDGE_ROOM = 3.0
+
+
+class Offset(NamedTuple):
+    """An offset between neighbours along an axis of the picture, from where to where. It stands in a row."""
+
+    start: float
+    stop: float
+    points: tuple[complex, complex]
+    text: str
+    row: int
+
+
+def room_for_offsets(scene: Scene, window: Window) -> Window:
+    """Return the window with room for the offsets of the frame."""
+    across, down = _offsets(scene, window, 0), _offsets(scene, window, 1)
+    left, below = (FIRST + ROW * _rows(rows) if rows else 0.0 for rows in (down, across))
+    # the number of a short one may stand beyond all that is drawn
+    above = max([0.0, *(-_reach(one, 1)[0] for one in down)])
+    right = max([0.0, *(_reach(one, 0)[1] - window.width for one in across)])
+    corner = window.corner + complex(-left, above) / window.scale
+    return Window(window.scale, corner, round(window.width + left + right, 1), round(window.height + below + above, 1))
+
+
+def offset_shapes(scene: Scene, window: Window) -> list[Shape]:
+    """Draw the offsets of pivots and guides. Those across are below the sketch, those up and down at its left."""
+    across, down = _offsets(scene, window, 0), _offsets(scene, window, 1)
+    base = window.height - ROW * _rows(across) + ABOVE
+    left = ROW * _rows(down) - EDGE_ROOM
+    shapes: list[Shape] = []
+    for one in across:
+        y = base + ROW * one.row
+        shapes += [
+            Polyline((complex(p.real, p.imag + BELOW_PIVOT), complex(p.real, y + BEYOND)), "extension")
+            for p in one.points
+        ]
+        shapes += _line(one, complex(one.start, y), complex(one.stop, y), 1 + 0j)
+    for one in down:
+        x = left - ROW * one.row
+        shapes += [
+            Polyline((complex(p.real - BESIDE_PIVOT, p.imag), complex(x - BEYOND, p.imag)), "extension")
+            for p in one.points
+        ]
+        shapes += _line(one, complex(x, one.stop), complex(x, one.start), -1j)
+    return shapes
+
+
+def _extension(start: complex, stop: complex) -> Shape:
+    return Polyline((start, stop), "extension")
+
+
+def _line(one: Offset, start: complex, stop: complex, along: complex) -> list[Shape]:
+    """One dimension line with its number, beyond its end where it is longer."""
+    short = text_width(one.text) + ROOM > abs(stop - start)
+    at = stop + along * (AFTER + text_width(one.text) / 2.0) if short else (start + stop) / 2.0
+    return [
+        *dimension_line(start, stop),
+        *dimension_drawing(one.text, DimensionPlace(at - 1j * along * ABOVE, along, 0.0)),
+    ]
+
+
+def _rows(found: Sequence[Offset]) -> int:
+    return 1 + max((one.row for one in found), default=-1)
+
+
+def _fixed_points(scene: Scene) -> Iterator[tuple[complex, bool, bool]]:
+    """Places on the frame, and whether their x and their y are dimensions: pivots, and guides along an axis."""
+    carriers = scene.mechanism.carriers
+    for letter, place in scene.carried.items():
+        if FRAME in carriers[letter]:
+            yield complex(place), True, True
+    for seen in scene.seen:
+        mark = seen.mark
+        if isinstance(mark, Sliding) and seen.members[0] == FRAME:
+            e = complex(mark.along)
+            foot = complex(mark.at + mark.along * mark.low)
+            yield foot, abs(e.real) < NOTHING, abs(e.imag) < NOTHING
+
+
+def _offsets(scene: Scene, window: Window, axis: int) -> list[Offset]:
+    """The offsets between neighbours along an axis of the picture, 0 across, 1 down."""
+    tolerance = NOTHING * float(scene.mechanism.geometry.size)
+    own: list[tuple[float, complex]] = []
+    for place, *counts in _fixed_points(scene):
+        value = place.imag if axis else place.real
+        at = complex(window.at(place))
+        same = next((k for k, (other, _) in enumerate(own) if abs(other - value) <= tolerance), None)
+        if counts[axis] and same is None:
+            own.append((value, at))
+        elif counts[axis] and same is not None:
+            # the extension line begins at the nearest of several points
+            nearer = own[same][1].real > at.real if axis else own[same][1].imag < at.imag
+            own[same] = (value, at) if nearer else own[same]
+    own.sort(key=lambda one: one[1].imag if axis else one[1].real)
+    found: list[Offset] = []
+    for (first, p), (second, q) in pairwise(own):
+        start, stop = (p.imag, q.imag) if axis else (p.real, q.real)
+        text = number_text(abs(second - first), scene.mechanism.unit)
+        one = Offset(start, stop, (p, q), text, 0)
+        taken = {o.row for o in found if _meet(_reach(one, axis), _reach(o, axis))}
+        found.append(one._replace(row=next(k for k in range(len(own)) if k not in taken)))
+    return found
+
+
+def _reach(one: Offset, axis: int) -> tuple[float, float]:
+    """From where to where a dimension line and its number reach; the number of a short one is beyond its end."""
+    wide = text_width(one.text)
+    more = AFTER + wide + ROOM if wide + ROOM > one.stop - one.start else 0.0
+    return (one.start - more, one.stop) if axis else (one.start, one.stop + more)
+
+
+def _meet(one: tuple[float, float], other: tuple[float, float]) -> bool:
+    return one[0] < other[1] - NOTHING and other[0] < one[1] - NOTHING
+
+
+def guide_dimensions(painter: Painter) -> list[Dimension]:
+    """Return angles of inclined guides on the frame, and their distances from a pivot."""
+    scene, found = painter.scene, []
+    nothing = NOTHING * float(scene.mechanism.geometry.size)
+    pivots = [complex(p) for k, p in scene.carried.items() if FRAME in scene.mechanism.carriers[k]]
+    known: list[tuple[complex, complex]] = []
+    for mark in (seen.mark for seen in scene.seen if seen.members[0] == FRAME):
+        if not isinstance(mark, Sliding):
+            continue
+        at, e = complex(mark.at), unit_direction(complex(mark.along))
+        # several blocks may run on one guide
+        is_known = any(abs((np.conjugate(e) * f).imag) < NOTHING and _off(p - at, e) <= nothing for p, f in known)
+        if is_known or min(abs(e.real), abs(e.imag)) < NOTHING:
+            continue
+        known.append((at, e))
+        found += _inclination(painter, mark)
+        if pivots and _off(pivots[0] - at, e) > nothing:
+            foot = at + e * (np.conjugate(e) * (pivots[0] - at)).real
+            a, b = painter.place(FRAME, pivots[0]), painter.place(FRAME, foot)
+            found.append(length_dimension(painter, a, b, abs(foot - pivots[0]), tuple(dimension_line(a, b))))
+    return found
+
+
+def _off(way: complex, e: complex) -> float:
+    """How far a way leads off a direction."""
+    return float(abs((np.conjugate(e) * way).imag))
+
+
+def _inclination(painter: Painter, mark: Sliding) -> list[Dimension]:
+    """The angle of a guide and a horizontal line through its end."""
+    low, high = (painter.place(FRAME, mark.at + mark.along * s) for s in (mark.low, mark.high))
+    high = high if abs(high - low) > LEVEL else low + LEVEL * painter.along(FRAME, mark.along)
+    level = low + LEVEL * np.sign(high.real - low.real)
+    ray = _extension(low, level)
+    angles = angle_dimension(painter, low, level, high)
+    return [Dimension(one.text, tuple(p._replace(shapes=(ray, *p.shapes)) for p in one.places)) for one in angles]
+
+
+# A number has so many digits, and no zeros at its end.
+SIGNIFICANT = 4
+
+
+# What has more places than these before or behind its point is written with a power of ten.
+GREATEST, LEAST = 6, -4
+
+
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+# Half the height of a number with the room around it, in picture units; and how far it stands beside its line.
+HALF = 6.0
+
+
+BESIDE = 10.5
+
+
+# What is steeper than this is read from the right, from below to above.
+STEEP = 0.1
+
+
+# Heads of dimension lines, in parts of an arrow's.
+HEAD = 0.62
+
+
+class DimensionPlace(NamedTuple):
+    """A place of a dimension. It has the middle of its number, its direction, what it costs and what is drawn."""
+
+    at: complex
+    along: complex
+    cost: float
+    shapes: tuple[Shape, ...] = ()
+
+
+class Dimension(NamedTuple):
+    """A dimension, its number and its places. They are in the order of preference."""
+
+    text: str
+    places: tuple[DimensionPlace, ...]
+
+
+def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
+    """Return a length or an angle (degrees) as it is written.
+
+    Far from 1 it has a power of ten.
+
+    >>> number_text(123.456, "mm"), number_text(0.1 + 0.2, "m"), number_text(45.0, "", is_angle=True)
+    ('123.5 mm', '0.3 m', '45°')
+    >>> number_text(2.5e-05, "km")
+    '2.5·10⁻⁵ km'
+    """
+    power = int(np.floor(np.log10(abs(value)))) if value else SIGNIFICANT
+    if LEAST <= power <= GREATEST:
+        text, raised = f"{value:.{max(0, SIGNIFICANT - 1 - power)}f}", ""
+    else:
+        text, exponent = f"{value:.{SIGNIFICANT - 1}e}".split("e")
+        raised = f"·10{str(int(exponent)).translate(RAISED)}"
+    text = text.rstrip("0").rstrip(".") if "." in text else text
+    return f"{text}{raised}{unit_suffix(is_angle, unit)}"
+
+
+def text_width(text: str) -> float:
+    """Return how wide the number of a dimension is."""
+    return len(text) * WIDE * SMALL
+
+
+def upright(along: complex) -> complex:
+    """Return a direction or its opposite. What is written along it is read from below or the right."""
+    e = unit_direction(along)
+    return -e if e.real < -STEEP or (abs(e.real) <= STEEP and e.imag > 0) else e
+
+
+def placed_dimensions(
+    wanted: Sequence[Dimension], lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
+) -> list[DimensionPlace]:
+    """Return a place for each dimension. It is off lines (count, 2) and boxes (middle, half), if that is possible."""
+    discs = [[_discs(place, dimension.text) for place in dimension.places] for dimension in wanted]
+    every = [np.array(of_one) for of_one in discs]
+    fixed = [_fixed(d, at, lines, boxes, window) for d, at in zip(wanted, every, strict=True)]
+    chosen: dict[int, int] = {}
+    for _ in range(1 + ROUNDS):
+        for k, at in enumerate(every):
+            others = [every[j][i] for j, i in chosen.items() if j != k]
+            costs = fixed[k]
+            if others:
+                gap = np.abs(at[:, :, None] - np.concatenate(others))
+                costs = (
+                    costs
+                    + LABEL * (gap < 2.0 * HALF).any(axis=(1, 2))
+                    + LABEL / 10.0 * (gap < 2.0 * HALF).sum(axis=(1, 2))
+                )
+            chosen[k] = int(np.argmin(np.round(costs, DIGITS)))
+    return [dimension.places[chosen[k]] for k, dimension in enumerate(wanted)]
+
+
+def _discs(place: DimensionPlace, text: str) -> Number:
+    """Middles of discs that cover the number at a place."""
+    reach = max(0.0, text_width(text) / 2.0 - HALF)
+    return place.at + unit_direction(place.along) * np.linspace(-reach, reach, max(2, int(np.ceil(reach / HALF)) + 1))
+
+
+def _fixed(
+    dimension: Dimension, at: Number, lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
+) -> Number:
+    """What places cost by what is drawn there."""
+    costs = np.array([place.cost for place in dimension.places])
+    if len(lines):
+        near = distances(at.ravel(), lines).reshape(*at.shape, -1) < HALF
+        costs = costs + LINE * near.any(axis=1).sum(axis=1) + LINE / 2.0 * near.sum(axis=(1, 2))
+    for middle, half in boxes:
+        gap = at - middle
+        covered = (np.abs(gap.real) < half.real + HALF) & (np.abs(gap.imag) < half.imag + HALF)
+        costs = costs + LABEL * covered.any(axis=1)
+    outside = np.maximum(0.0, HALF - at.real) + np.maximum(0.0, at.real + HALF - window.width)
+    outside += np.maximum(0.0, HALF - at.imag) + np.maximum(0.0, at.imag + HALF - window.height)
+    return costs + EDGE * outside.sum(axis=1)
+
+
+def dimension_drawing(text: str, place: DimensionPlace) -> list[Shape]:
+    """Return a dimension as shapes: its lines, and its number with paper around it."""
+    angle = float(np.rad2deg(np.angle(unit_direction(place.along))))
+    styles = ("halo dimension-text", "dimension-text")
+    return [*place.shapes, *(Text(place.at, text, style, angle=angle) for style in styles)]
+
+
+def dimension_line(start: complex, stop: complex) -> list[Shape]:
+    """Draw a line with heads at both ends, from outside where it is short."""
+    e, length = unit_direction(stop - start), abs(stop - start)
+    inward = 1.0 if length > 22.0 else -1.0
+    ends = (start, stop) if inward > 0 else (start - e * 13.0, stop + e * 13.0)
+    heads = [
+        arrow_head(start, -e * inward, "dimension-head", HEAD),
+        arrow_head(stop, e * inward, "dimension-head", HEAD),
+    ]
+    return [Polyline(ends, "dimension"), *heads]
