@@ -45,10 +45,10 @@ if TYPE_CHECKING:
     from compoundkin import profiles as profiles
     from compoundkin import results as results
     from compoundkin.analysis.centres import instant_centres
-    from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
+    from compoundkin.analysis.characteristics.characteristics import characteristics
     from compoundkin.analysis.checks import verify
     from compoundkin.analysis.equations.loop_equations import loop_equations
-    from compoundkin.analysis.interference.interference_of_motion import interference
+    from compoundkin.analysis.interference import interference
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.dynamics.force_analysis import force_analysis
@@ -144,7 +144,7 @@ _LATE = {
     "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
     "around": "studies.variations.around",
-    "characteristics": "analysis.characteristics.characteristics_of_motion",
+    "characteristics": "analysis.characteristics.characteristics",
     "circuits": "configurations.circuit_search",
     "compile": "programs.compiled_path",
     "configurations": "configurations.enumeration",
@@ -152,8 +152,8 @@ _LATE = {
     "draw": "view.sketch",
     "force_analysis": "dynamics.force_analysis",
     "gaps": "kinematics.gaps",
-    "instant_centres": "analysis.centres.centres_of_motion",
-    "interference": "analysis.interference.interference_of_motion",
+    "instant_centres": "analysis.centres.instant_centres",
+    "interference": "analysis.interference",
     "load": "files",
     "loop_equations": "analysis.equations.loop_equations",
     "mobility_analysis": "structure.redundancy.mobility_analysis",

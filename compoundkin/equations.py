@@ -8,12 +8,11 @@
 
 from __future__ import annotations
 
-from compoundkin.analysis.equations.freudenstein import freudenstein
-from compoundkin.analysis.equations.loop_constants import FourBarConstants, SliderCrankConstants
+from compoundkin.analysis.equations.freudenstein import FourBarConstants, SliderCrankConstants, freudenstein
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations, newton_iterations
+from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.analysis.equations.rate_equations import RateEquations, SymbolArray
-from compoundkin.analysis.equations.rate_solution import RateSolution
-from compoundkin.analysis.equations.written_equations import latex, text
+from compoundkin.analysis.equations.reduced_system import RateSolution
 
 __all__ = [
     "FourBarConstants",

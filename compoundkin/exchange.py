@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from compoundkin.analysis.comparison.comparison_of_mechanisms import compare
+from compoundkin.analysis.comparison import compare
 from compoundkin.files.exchange.conversion import read, write
 from compoundkin.files.exchange.known_formats import formats
 from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkage

@@ -28,7 +28,7 @@ from compoundkin.model.laws import (
     time_table,
 )
 from compoundkin.model.prescribed_motion import place_table
-from compoundkin.synthesis.found_laws import driven_forward, found_law
+from compoundkin.synthesis.inversion import driven_forward, found_law
 
 __all__ = [
     "ConstantAcceleration", "ConstantSpeed", "FunctionLaw", "Law", "MotionTable", "Program", "ProgramSegment",

@@ -7,17 +7,13 @@
 
 from __future__ import annotations
 
-from compoundkin.analysis.characteristics.advantage_figures import AdvantageFigures
-from compoundkin.analysis.characteristics.curve_features import PathFeatures, path_features
-from compoundkin.analysis.characteristics.figure import PlacedFigure, Range
-from compoundkin.analysis.characteristics.four_bar_types import FourBar, four_bar_code
-from compoundkin.analysis.characteristics.group_figures import GroupFigures
-from compoundkin.analysis.characteristics.linkage_types import SliderCrank, linkage_types
-from compoundkin.analysis.characteristics.output_dwells import Dwell
-from compoundkin.analysis.characteristics.output_figures import OutputFigures
-from compoundkin.analysis.characteristics.output_strokes import QuickReturn
-from compoundkin.analysis.characteristics.path_stretches import Stretch, straightness
-from compoundkin.configurations.reached_region import workspace
+from compoundkin.analysis.characteristics.dwells import Dwell
+from compoundkin.analysis.characteristics.figures import PlacedFigure, Range
+from compoundkin.analysis.characteristics.linkage_types import FourBar, SliderCrank, four_bar_code, linkage_types
+from compoundkin.analysis.characteristics.output_figures import OutputFigures, QuickReturn
+from compoundkin.analysis.characteristics.path_features import PathFeatures, Stretch, path_features, straightness
+from compoundkin.analysis.characteristics.transmission import AdvantageFigures, GroupFigures
+from compoundkin.configurations.workspace import workspace
 
 __all__ = [
     "AdvantageFigures",

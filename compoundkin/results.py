@@ -8,9 +8,9 @@ True
 from __future__ import annotations
 
 from compoundkin.analysis.centres import Centres
-from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
+from compoundkin.analysis.characteristics.characteristics import Characteristics
 from compoundkin.analysis.checks import Check, Finding
-from compoundkin.analysis.comparison.comparison_findings import (
+from compoundkin.analysis.comparison_result import (
     ComparedDriver,
     ComparedFact,
     ComparedLength,
@@ -19,9 +19,9 @@ from compoundkin.analysis.comparison.comparison_findings import (
     TurnDifference,
 )
 from compoundkin.analysis.equations.loop_equations import LoopEquations
-from compoundkin.analysis.interference.interference_findings import Interference, LinkClearance, LinkTouch
+from compoundkin.analysis.interference import Interference, LinkClearance, LinkTouch
 from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.configurations.reached_region import Workspace
+from compoundkin.configurations.workspace import Workspace
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.efficiency import Efficiency
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, PairFriction, Wedged

@@ -58,8 +58,10 @@ ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {
 FACE = sorted(path for path in FILES if path.parent == PACKAGE)
 # Files that play the same part in sister folders.
 SAME_PART = {"__init__.py", "contract.py"}
-# Pins follow from shared letters, so revolute pairs are made of them; __init__ gives users the words.
+# Pins follow from shared letters, so revolute pairs are made of them; a prescribed motion is made of a cross slide or a
+# turntable; __init__ gives users the words.
 ALLOWED_KINDS = {("model/definition.py", "Revolute"), ("structure/__init__.py", "Revolute")}
+ALLOWED_KINDS |= {("model/prescribed_motion.py", kind) for kind in ("Prismatic", "Revolute", "Slot")}
 OF_KINDS = ("model/pairs/", "kinematics/groups/")
 # Words of attributes that are keys of files, words of drives, façades or single letters as well.
 COMMON = {"advantage", "angle", "displacement", "x", "y", "speed", "rate", "value", "second", "acceleration", "jerk"}

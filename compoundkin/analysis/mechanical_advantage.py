@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.analysis.coupler.relative_motion import moving, relative_link, relative_point
+from compoundkin.analysis.coupler.relative_motion import check_moving, relative_link, relative_point
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, dot
 from compoundkin.base.display import ShortRepr
@@ -72,7 +72,7 @@ def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage
     >>> mechanical_advantage(motion, "rocker", "crank").velocity_ratio.round(3).tolist()     # Norton: 6.998 / 25
     [0.28]
     """
-    moving(motion, "the mechanical advantage")
+    check_moving(motion, "the mechanical advantage")
     _one_driver(motion)
     out, lag = (_rate(motion, port, where) for port, where in ((output, "output"), (input, "input")))
     return balance(out, lag, motion.regular.reshape(motion.shape))

@@ -61,7 +61,7 @@ def _write_driven(motion: Motion, links: tuple[str, ...], path: str | None) -> i
     from compoundkin.files import dumps, save
     from compoundkin.model.elements import Drive
     from compoundkin.model.geometry import FRAME
-    from compoundkin.synthesis.found_laws import driven_forward
+    from compoundkin.synthesis.inversion import driven_forward
 
     ends = [(link, on or FRAME) for link, _, on in (name.partition("/") for name in links)]
     made = driven_forward(motion, *(Drive(link, link, on) for link, on in ends))

@@ -129,7 +129,7 @@ def _newton(structure: Structure, driven: dict[str, float], motion: Motion, esti
 
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.analysis.equations.newton_iterations import newton_iterations
-    from compoundkin.analysis.equations.pose_values import pose_values
+    from compoundkin.analysis.equations.reduced_system import pose_values
     from compoundkin.cli.drive_options import read_estimates
     from compoundkin.view.report.equations_sections import newton_section
 

@@ -13,7 +13,7 @@ from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_
 from compoundkin.cli.shell import put, say
 
 if TYPE_CHECKING:
-    from compoundkin.configurations.reached_region import Workspace
+    from compoundkin.configurations.workspace import Workspace
     from compoundkin.structure import Structure
 
 
@@ -48,7 +48,7 @@ def command(
 
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.cli.shell import working
-    from compoundkin.configurations.reached_region import EVERY_MODE, workspace
+    from compoundkin.configurations.workspace import EVERY_MODE, workspace
     from compoundkin.kinematics.solution import solving_order_of
 
     if path is not None:

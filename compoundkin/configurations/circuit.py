@@ -1,11 +1,18 @@
-"""Circuits, their branches and limit positions: what `circuits` finds."""
+"""Circuits with their branches, limit positions, change points and toggle positions, made from chains of segments."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from compoundkin.configurations.segments import Visit
+import numpy as np
+
+from compoundkin.base.arrays import TURN, Number, wrapped
+from compoundkin.base.bracketing import bisect_brackets
+from compoundkin.configurations.segment_poses import SegmentPoses
+from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, RANGE, SegmentChain, Segments, Visit
 from compoundkin.kinematics.configuration import Configuration
+from compoundkin.model.pairs import Pair
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,3 +115,190 @@ class Toggle:
     configuration: Configuration
     circuit: int
     branch: int
+
+
+CELLS = 72
+
+
+HALVINGS = 48
+
+
+# A link whose rate is below this (of the size, or radians, a radian of the segment's angle) throughout stands still.
+STILL = 1e-9
+
+
+def circuits_of_chains(placing: SegmentPoses, chains: tuple[SegmentChain, ...], period: float) -> tuple[Circuit, ...]:
+    """Return the circuits, numbered in the order of their first segments."""
+    segments = placing.segments
+    places = _places(segments)
+    rows, sides = (np.array(part, dtype=int) for part in zip(*places, strict=True))
+    middles, low, high = (segments.low[rows] + segments.high[rows]) / 2.0, segments.low[rows], segments.high[rows]
+    every = placing.configurations(rows, np.choose(sides + 1, (middles, low, high)), sides)
+    known = dict(zip(places, every, strict=True))
+    found, first = [], 1
+    for number, chain in enumerate(chains, start=1):
+        found.append(_Maker(placing, chain, period, known, number, first).circuit())
+        first += len(found[-1].branches)
+    return tuple(found)
+
+
+def _places(segments: Segments) -> list[tuple[int, int]]:
+    """Return the middles of all segments, and those of their ends that are limit positions or change points."""
+    ends = np.isin(segments.kind, (LIMIT, CHANGE)).tolist()
+    return [(row, side) for row in range(segments.rows) for side in (NONE, 0, 1) if side == NONE or ends[row][side]]
+
+
+class _Maker:
+    """Makes one circuit."""
+
+    def __init__(
+        self,
+        placing: SegmentPoses,
+        chain: SegmentChain,
+        period: float,
+        known: dict[tuple[int, int], Configuration],
+        number: int,
+        first: int,
+    ) -> None:
+        self.placing, self.chain, self.period, self.known = placing, chain, period, known
+        self.number, self.first = number, first
+        self.parts = chain.branches()
+
+    def circuit(self) -> Circuit:
+        """Return the circuit."""
+        limits = self._limits()
+        branches = tuple(self._branch(i, limits) for i in range(len(self.parts)))
+        travel = sum(v.sense * self._length(v) for v in self.chain.visits)
+        winding = int(np.rint(travel / TURN)) if self.chain.closed and self.period else 0
+        low, high = self._span(self.chain.visits)
+        shift = self._value(low) - low
+        around = tuple(limits.values()), self._changes(), low + shift, high + shift, winding
+        return Circuit(self.number, branches, *around, self.chain.closed)
+
+    def _span(self, visits: Iterable[Visit]) -> tuple[float, float]:
+        """Return the least and greatest driver value of some segments, periods counted."""
+        segments = self.placing.segments
+        ends = [(segments.low[v.row] + v.periods * self.period, segments.high[v.row] + v.periods * self.period)
+                for v in visits]  # fmt: skip
+        return float(min(low for low, _ in ends)), float(max(high for _, high in ends))
+
+    def _length(self, visit: Visit) -> float:
+        segments = self.placing.segments
+        return float(segments.high[visit.row] - segments.low[visit.row])
+
+    def _limits(self) -> dict[tuple[int, int], Limit]:
+        """Return the limit positions by the index of the branch before, and side; between each branch and the next."""
+        found = {}
+        segments, count = self.placing.segments, len(self.parts)
+        for i, part in enumerate(self.parts):
+            last = part[-1]
+            if segments.kind[last.row, last.left] != LIMIT or segments.partner[last.row, last.left] == NONE:
+                continue
+            other = (i + 1) % count
+            place = (last.row, last.left)
+            group = int(segments.group[place])
+            links = self.placing.sweep.solving_order.structure.groups[group].links
+            value = self._value((segments.low, segments.high)[last.left][last.row])
+            numbers = (self.first + i, self.first + other)
+            one = self.known[place]
+            found[i, last.left] = Limit(value, last.left == 1, group, links, one, self.number, numbers)
+        return found
+
+    def _value(self, s: float) -> float:
+        """Return a driver's value, an angle between -pi and pi."""
+        return float(wrapped(s)) if self.period else float(s)
+
+    def _branch(self, i: int, limits: dict[tuple[int, int], Limit]) -> Branch:
+        part = self.parts[i]
+        low, high = self._span(part)
+        turns = len(self.parts) == 1 and self.chain.closed
+        shift = -low if turns else self._value(low) - low
+        before = (i - 1) % len(self.parts)
+        rising = part[0].sense > 0
+        start, end = limits.get((before, part[0].entered)), limits.get((i, part[-1].left))
+        if before == i:
+            start = None
+        middle = self.known[max(part, key=self._length).row, NONE]
+        ends = (start, end) if rising else (end, start)
+        outer = (part[0].row, part[0].entered), (part[-1].row, part[-1].left)
+        open_ends = tuple(self._open(*end) for end in outer if self.placing.segments.partner[end] == NONE)
+        return Branch(self.first + i, self.number, low + shift, high + shift, ends, open_ends, middle, part, shift)
+
+    def _open(self, row: int, side: int) -> str:
+        segments = self.placing.segments
+        kind = segments.kind[row, side]
+        if kind == END:
+            pair = self.placing.sweep.solving_order.guide_ends.pairs[int(segments.group[row, side])]
+            return f"an end of {pair.name}"
+        return {RANGE: "the end of the range", AWAY: "a link at infinity"}.get(int(kind), "a place not resolved")
+
+    def _changes(self) -> tuple[ChangePoint, ...]:
+        found = []
+        segments = self.placing.segments
+        for i, part in enumerate(self.parts):
+            for visit in part:
+                place = (visit.row, visit.left)
+                if segments.kind[place] == CHANGE:
+                    group = int(segments.group[place])
+                    links = self.placing.sweep.solving_order.structure.groups[group].links
+                    value = self._value((segments.low, segments.high)[visit.left][visit.row])
+                    one = self.known[place]
+                    found.append(ChangePoint(value, group, links, one, self.number, self.first + i))
+        return tuple(found)
+
+
+def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[Toggle, ...]:
+    """Return all toggle positions, by circuit and branch. They are in the order in which the circuit passes them."""
+    found: dict[int, list[tuple[float, Toggle]]] = {}
+    with np.errstate(all="ignore"):
+        for link, pair in _on_frame(placing):
+            for row, phi, toggle in _of_link(placing, circuits, link, pair):
+                found.setdefault(row, []).append((phi, toggle))
+    ordered = []
+    for visit in (v for c in circuits for b in c.branches for v in b.visits):
+        ordered += [t for _, t in sorted(found.get(visit.row, []), key=lambda e: (visit.sense * e[0], e[1].link))]
+    return tuple(ordered)
+
+
+def _on_frame(placing: SegmentPoses) -> Iterator[tuple[str, Pair]]:
+    """Yield links that a pair of one freedom joins to the frame, no driver being in it."""
+    ground = placing.sweep.solving_order.structure.ground.links[0]
+    driven = {d.pair.name for d in placing.sweep.solving_order.structure.driven.values()}
+    for name, pair in placing.sweep.solving_order.pairs.items():
+        if pair.held == 2 and name not in driven and ground in pair.members and len(pair.members) == 2:
+            yield next(link for link in pair.members if link != ground), pair
+
+
+def _of_link(
+    placing: SegmentPoses, circuits: tuple[Circuit, ...], link: str, pair: Pair
+) -> Iterator[tuple[int, float, Toggle]]:
+    segments = placing.segments
+    rows, phi = np.arange(segments.rows), (np.arange(CELLS) + 0.5) * np.pi / CELLS
+    rate = _rate(placing, pair, rows, np.broadcast_to(phi, (len(rows), CELLS)))
+    size = 1.0 if pair.free_is_angle else placing.sweep.solving_order.size
+    moving = np.max(np.abs(rate), axis=1) > STILL * size
+    at, cell = np.nonzero((rate[:, 1:] > 0) != (rate[:, :-1] > 0))
+    kept = moving[at]
+    at, low, high = at[kept], phi[cell[kept]], phi[cell[kept] + 1]
+    rising = _rate(placing, pair, at, high[:, None])[:, 0] > 0 if len(at) else np.zeros(0, dtype=bool)
+    low, _ = bisect_brackets(
+        lambda middle: (_rate(placing, pair, at, middle[:, None])[:, 0] > 0) != rising, low, high, HALVINGS
+    )
+    values = segments.at(at, low[:, None])[:, 0] if len(at) else np.zeros(0)
+    owner = {v.row: (c, b) for c in circuits for b in c.branches for v in b.visits}
+    period = placing.sweep.solving_order.structure.driven_angles[placing.sweep.driver]
+    for row, angle, s, one in zip(
+        at.tolist(), low.tolist(), values.tolist(), placing.configurations(at, values), strict=True
+    ):
+        circuit, branch = owner[row]
+        value = wrapped(s) if period else s
+        yield row, angle, Toggle(float(value), link, pair.name, one, circuit.number, branch.number)
+
+
+def _rate(placing: SegmentPoses, pair: Pair, rows: Number, phi: Number) -> Number:
+    """Return the derivative of a pair's coordinate by the angle along segments, (rows, columns)."""
+    segments = placing.segments
+    block = placing.sweep.run(segments, rows, segments.at(rows, phi), segments.rate(rows, phi))
+    poses = tuple(block.world[name] for name in pair.members)
+    coordinate = pair.coordinate(block.ends[pair.name], poses)
+    return np.broadcast_to(coordinate.c[1] if len(coordinate.c) > 1 else 0.0, phi.shape)

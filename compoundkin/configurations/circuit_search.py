@@ -14,14 +14,21 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
 from compoundkin.configurations import closed_form_segments, general_segments
-from compoundkin.configurations.chain_circuits import built, toggles_of
-from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit, Toggle
-from compoundkin.configurations.driver_range import range_of, starting_values
-from compoundkin.configurations.end_segments import cut_at_ends
+from compoundkin.configurations.circuit import (
+    Branch,
+    Circuit,
+    CircuitPlace,
+    Limit,
+    Toggle,
+    circuits_of_chains,
+    toggles_of,
+)
+from compoundkin.configurations.closed_form_segments import cut_at_ends
+from compoundkin.configurations.driver_range import driver_range, starting_values
 from compoundkin.configurations.enumeration import AllModes, closed_redundant
 from compoundkin.configurations.routes import Route, located, place_of, route
 from compoundkin.configurations.segment_poses import SegmentPoses, Sweep
-from compoundkin.configurations.segments import Segments, chains_of
+from compoundkin.configurations.segments import Segments, segment_chains
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.inputs import Inputs
@@ -141,7 +148,7 @@ def circuits(
         if not segments.rows:
             raise NotAssembled(Problem("circuits", f"the mechanism cannot be assembled at any value of {name!r}"))
         placing = SegmentPoses(sweep, segments, design)
-        found = built(placing, chains_of(segments), period)
+        found = circuits_of_chains(placing, segment_chains(segments), period)
         start = starting_configuration(solving_order, known, design)
         place = None if start is None else place_of(placing, found, period, start)
     consistent = good and not lost
@@ -171,7 +178,7 @@ def _driver(solving_order: SolvingOrder, driver: str | None) -> str:
 
 def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tuple[Segments, float, int, bool]:
     """Return all segments, the driver's period, how many arcs were lost, whether the counts agree."""
-    start, period = range_of(sweep, between, value)
+    start, period = driver_range(sweep, between, value)
     turns = max(1, round(period / TURN))
     for fineness in FINENESS:
         segments, lost = _lifted(sweep, start, fineness * turns)
@@ -188,10 +195,10 @@ def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, 
         if not segments.rows:
             break
         if solver.is_numbered:
-            segments, missing = general_segments.lifted(sweep, segments, k, fineness)
+            segments, missing = general_segments.lifted_by_continuation(sweep, segments, k, fineness)
             lost += missing
         elif solver.has_limits:
-            segments = closed_form_segments.lifted(sweep, segments, k, fineness)
+            segments = closed_form_segments.lifted_by_closed_form(sweep, segments, k, fineness)
         if segments.rows > MOST_SEGMENTS:
             what = f"the circuits are in more than {MOST_SEGMENTS:,} pieces: the groups multiply them"
             raise InvalidInput(Problem("circuits", what, "ask for a part of the mechanism"))

@@ -1,4 +1,7 @@
-"""Segments lifted over a group with a closed form: cut where its margin is zero, one segment for each mode."""
+"""Segments lifted over a group with a closed form: cut where its margin is zero, one segment for each mode.
+
+In the same way segments are cut at the ends of guides, once all groups are lifted.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,19 @@ from compoundkin.kinematics.block import BLOCK, Block
 # Each segment is sampled in so many cells; the curve of a margin between two samples is that of half a turn of the
 # driver or less, divided by it.
 CELLS = 72
+
+
 # A margin whose neighbours exceed it by less than this part of itself does not come near zero between them.
 SHALLOW = 0.25
+
+
 HALVINGS = 52
+
+
 # How far aside of a double zero the margin is looked at: it then has digits enough, and the last time no curvature.
 BESIDE = (1e-3, 1e-5, 1e-5)
+
+
 STEPS = 60
 
 
@@ -44,7 +55,7 @@ class Cut(NamedTuple):
     sign: int
 
 
-def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> Segments:
+def lifted_by_closed_form(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> Segments:
     """Return the segments of the first `k` groups and group `k`.
 
     The group is of one mode or two; cells are divided by `fineness`.
@@ -216,3 +227,26 @@ class _Ends:
             sign = -cut.sign if self.at_limit[cut.parent, own] and not self.single else cut.sign
             partner = self.known.get((partner, None, side, sign), NONE)
         return kind, group, partner, side
+
+
+def cut_at_ends(sweep: Sweep, segments: Segments, fineness: int = 1) -> Segments:
+    """Return the parts of segments on which no guide is left. All groups are lifted."""
+    guide_ends = sweep.solving_order.guide_ends
+    if not guide_ends.pairs or not segments.rows:
+        return segments
+    margins = _EndMargins(sweep, segments, None, CELLS * fineness)
+    # what only touches an end goes on
+    events = [[event for event in found if not event.touching] for found in events_of(margins)]
+    found = glued(segments, None, list(cuts_between(margins, events, (1,))), margins.at_ends())
+    rows, sides = np.nonzero(found.kind == END)
+    if len(rows):
+        values = np.where(sides == 1, found.high[rows], found.low[rows])
+        found.group[rows, sides] = guide_ends.nearest(sweep.run(found, rows, values[:, None]))[:, 0]
+    return found
+
+
+class _EndMargins(Margins):
+    """How far all pairs are from the ends of their guides."""
+
+    def of(self, block: Block) -> Number:
+        return self.sweep.solving_order.guide_ends.margin(block)

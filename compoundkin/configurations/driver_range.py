@@ -33,7 +33,7 @@ SAME = 1e-9
 BEYOND = 1.25
 
 
-def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Segments, float]:
+def driver_range(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Segments, float]:
     """Return the segment of the driver alone, and its value's period.
 
     The period is 0 where it has none; `start` is one of its values.
@@ -49,7 +49,7 @@ def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tup
         if turns is None:
             return driver_segment(start - TURN, start + TURN, periodic=False), 0.0
         return driver_segment(BEGIN, BEGIN + TURN * turns, periodic=True), TURN * turns
-    reach = BEYOND * (reach_of(sweep.solving_order) + abs(start))
+    reach = BEYOND * (greatest_reach(sweep.solving_order) + abs(start))
     on_frame = driven.link in sweep.solving_order.structure.ground.links
     return driver_segment(-reach if on_frame else 0.0, reach, periodic=False), 0.0
 
@@ -64,7 +64,7 @@ def _checked(between: Sequence[float]) -> tuple[float, float]:
     return low, high
 
 
-def reach_of(solving_order: SolvingOrder) -> float:
+def greatest_reach(solving_order: SolvingOrder) -> float:
     """Return a length that no displacement of pinned links exceeds. It is the sum of the links' extents."""
     points = solving_order.structure.mechanism.geometry.points.values()
     return float(sum(_extent(list(placed.values())) for placed in points)) or solving_order.size

@@ -1,7 +1,11 @@
-"""`configurations`: every way in which a mechanism can be assembled at given driver values."""
+"""`configurations`: every way in which a mechanism can be assembled at given driver values.
+
+For special dimensions the mechanism still moves while all drivers stand still: a curve of configurations.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import prod
@@ -14,10 +18,10 @@ from compoundkin.base.arrays import TURN, Number, degrees, first_entry
 from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.configurations.driver_range import reach_of
-from compoundkin.configurations.resting_curve import curve_at
+from compoundkin.configurations.driver_range import greatest_reach
 from compoundkin.configurations.segment_poses import drawn_angle
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.configuration import Configuration, ConfigurationCurve, dimensions_at
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.driver_values import by_name, inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
@@ -28,13 +32,22 @@ from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
+from compoundkin.structure.redundancy.constraint_equations import ConstraintEquations
+from compoundkin.structure.redundancy.diagnosis import WIDEST
+from compoundkin.structure.redundancy.finite_motion import resting_motion
 
 # A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.
 CLOSED = 1e-6
+
+
 # More configurations than this of one mechanism are distinguished by nobody; those of more bodies no search finds.
 MOST, MOST_BODIES = 4096, 24
+
+
 # Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
 TRIED = 721
+
+
 HALVINGS = 40
 
 
@@ -177,7 +190,7 @@ def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Conf
         given = inputs(solving_order, by_name(solving_order.structure.mechanism, values), None, None, None)
         found = AllModes.of(solving_order, given)
         real = found.real
-        curve = curve_at(solving_order.structure, given) if found.is_lacking else None
+        curve = resting_curve(solving_order.structure, given) if found.is_lacking else None
         if not real.any() and curve is None:
             raise NotAssembled(_nothing(solving_order, given))
         return replace(found.kept(real, given.shape), curve=curve)
@@ -201,7 +214,7 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, name: str) -> tuple[flo
     first = given.cut(slice(0, 1), slice(0, 1))
     here = float(first_entry(first.drives[name][0]))
     is_angle = solving_order.structure.driven_angles[name]
-    span = TURN / 2.0 if is_angle else 2.0 * reach_of(solving_order)
+    span = TURN / 2.0 if is_angle else 2.0 * greatest_reach(solving_order)
     offsets = np.linspace(-span, span, TRIED)
     good = _any(solving_order, first, name, here + offsets)
     if not good.any():
@@ -219,3 +232,27 @@ def _any(solving_order: SolvingOrder, given: Inputs, name: str, values: Number) 
     rest = {other: tuple(first_entry(v) for v in vs) for other, vs in given.drives.items()}
     drives = {**rest, name: (values[None],)}
     return AllModes.of(solving_order, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))
+
+
+# A link moves if its part of the motion is above this.
+MOVES = 1e-6
+
+
+def resting_curve(structure: Structure, given: Inputs) -> ConfigurationCurve | None:
+    """Find a curve of configurations at the first driver values. None where the search meets none."""
+    equations = ConstraintEquations(structure.mechanism)
+    if equations.width > WIDEST:
+        return None
+    values = {name: float(first_entry(numbers[0])) for name, numbers in given.drives.items()}
+    found = resting_motion(equations, np.array(list(values.values())), len(structure.passive))
+    if found is None:
+        return None
+    share = np.linalg.norm(found.along, axis=1)
+    links = tuple(name for name, k in equations.column.items() if np.max(share[k : k + 3]) > MOVES)
+    return ConfigurationCurve(links, _at(structure, values, equations, found.state))
+
+
+def _at(
+    structure: Structure, values: Mapping[str, float], equations: ConstraintEquations, state: np.ndarray
+) -> Configuration:
+    return Configuration(structure, values, equations.poses(state), {}, {}, dimensions_at(structure, 0, 0))

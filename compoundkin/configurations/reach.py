@@ -1,7 +1,8 @@
-"""How far places are inside the reach of a point: the least margin of the best configuration that leads there."""
+"""How far places are inside the reach of a point: the least margin of the best configuration, in the modes that count."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -9,23 +10,36 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, wrapped
 from compoundkin.base.bracketing import bisect_brackets, false_position
+from compoundkin.base.errors import UnassembledPoses
 from compoundkin.configurations.enumeration import AllModes, closed_redundant
-from compoundkin.configurations.led_point import LedPoint, LiveSigns
-from compoundkin.configurations.own_modes import ROUNDING, OwnModes
+from compoundkin.configurations.prescribed_point import ModeSigns, PrescribedPoint
 from compoundkin.configurations.region_boundary import Depths
+from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.limits import EDGE
 from compoundkin.kinematics.solving_order import run
+from compoundkin.structure.kinematic_structure import Structure
 
 # So many configurations of places are assembled at once: their arrays stay in the caches.
 BLOCK = 65536
+
+
 # An angle of the point's link is tried at so many places of a turn; then a step to both sides of the best few, or so
 # far about those at two neighbours; in so many parts at once, each time finer.
 ANGLES, PEAKS, PARTS, FINE = 60, 3, 12, 1e-9
+
+
 STEP, BETWEEN = TURN / ANGLES, TURN / 24.0
+
+
 # A place of the boundary is found to a margin of this part, or in so many trials; less where angles are looked for.
 FLAT, TRIALS = 1e-12, 60
+
+
 FLAT_BY_ANGLES, TRIALS_BY_ANGLES = 1e-10, 16
+
+
 # Groups without margins tell no more than whether they close, and take long: to a millionth of a step.
 HALVINGS = 20
 
@@ -39,9 +53,9 @@ class Reach:
     point's link where it is fixed.
     """
 
-    led: LedPoint
+    led: PrescribedPoint
     ranges: Mapping[str, tuple[float, float]]
-    signs: OwnModes
+    signs: GroupModes
     live: Mapping[int, Number] | None = None
     angle: float | None = None
 
@@ -137,7 +151,7 @@ class Reach:
             else:
                 count = len(next(iter(self.live.values()), (1,)))
                 block.shape = (count, *block.shape)
-                run(self.led.led, block, LiveSigns({k: v[:, None, None] for k, v in self.live.items()}))
+                run(self.led.led, block, ModeSigns({k: v[:, None, None] for k, v in self.live.items()}))
             closed = closed_redundant(self.led.led, block)
             found = np.broadcast_to(np.where(closed, self._least(block), -1.0), block.shape).reshape(-1, len(z))
             held = self.signs.held(self.led, block, found) if own and self.signs.signs else found
@@ -172,3 +186,67 @@ def _peaks(values: Number) -> Number:
     """Return the indices (few, n) of the highest peaks of values (m, n) around a turn."""
     high = (values >= np.roll(values, 1, axis=0)) & (values >= np.roll(values, -1, axis=0))
     return np.argsort(np.where(high, values, -np.inf), axis=0)[-PEAKS:]
+
+
+# A group is in its own mode where it is the same within this part of the size (or radians).
+SAME = 1e-7
+
+
+# A configuration found by driving is at its own place within this margin: rounding at ends of ranges.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class GroupModes:
+    """The modes that count, by groups of the driven mechanism. Of other groups any does."""
+
+    signs: Mapping[int, int]
+
+    def held(self, led: PrescribedPoint, block: Block, found: Number) -> Number:
+        """Return margins (configurations, n) of a led block, negative in another mode.
+
+        That of the driven mechanism. Also those beyond the ends of a range, so that margins have no jumps.
+        """
+        driven = led.driven
+        drives = {**led.given.drives, **{name: (one.c[0],) for name, one in led.coordinates(block).items()}}
+        other = driven.start(led.given.ends, led.given.driven(drives).series(0), 0, block.shape)
+        for name in (name for group in driven.structure.groups for name in group.links):
+            other.world[name] = block.world[name]
+        for k, sign in self.signs.items():
+            inside = _in_mode(other, driven.solvers[k], sign, driven.size)
+            found = np.minimum(found, np.broadcast_to(inside, block.shape).reshape(found.shape))
+        return found
+
+
+def _in_mode(block: Block, solver: GroupSolver, sign: int, size: float) -> Number:
+    """Return the margin of a group of the driven mechanism, negative where it is not in a mode."""
+    trial = block.copy()
+    trial.limits = EDGE
+    solver.close(trial, float(sign))
+    pairs = [(trial.world[body.links[0]], block.world[body.links[0]]) for body in solver.group.bodies]
+    gaps = [np.abs(one.z.c[0] - two.z.c[0]) / size + np.abs(one.u.c[0] - two.u.c[0]) for one, two in pairs]
+    away = np.maximum.reduce(gaps)
+    margin = solver.margin(trial)
+    margin = np.ones((1, 1)) if margin is None else np.maximum(margin, 0.0)
+    return np.where(away < SAME, margin, -margin)
+
+
+def value_in_range(value: float, span: tuple[float, float] | None) -> float:
+    """Return where a driver stands. At its own value, or in the middle of its range.
+
+    >>> value_in_range(1.0, (0.0, 2.0)), value_in_range(5.0, (0.0, 2.0)), value_in_range(5.0, None)
+    (1.0, 1.0, 5.0)
+    """
+    return value if span is None or span[0] <= value <= span[1] else 0.5 * (span[0] + span[1])
+
+
+def reference_pose(structure: Structure, values: Mapping[str, float], modes: Mapping[str, int] | str | None) -> Motion:
+    """Return one pose of a mechanism, from which its modes are taken."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnassembledPoses)
+        return solve(structure, {name: [value] for name, value in values.items()}, order=0, modes=modes)
+
+
+def signs_of_pose(pose: Motion) -> dict[int, int]:
+    """Return the modes that a pose is in, by the groups with signs."""
+    return {solver.index: pose.sign(solver.index, 0) for solver in pose.solving_order.solvers if solver.modes == 2}

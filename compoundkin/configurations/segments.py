@@ -177,7 +177,7 @@ class SegmentChain:
         return list(pairwise(around))
 
 
-def chains_of(segments: Segments) -> tuple[SegmentChain, ...]:
+def segment_chains(segments: Segments) -> tuple[SegmentChain, ...]:
     """Return all circuits, in the order of their first segments."""
     seen = np.zeros(segments.rows, dtype=bool)
     found = []

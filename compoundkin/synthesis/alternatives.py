@@ -17,8 +17,7 @@ from compoundkin.structure.cycles import find
 from compoundkin.structure.decomposition import decomposed, without_leads
 from compoundkin.synthesis.chains import Coloured, canonical
 from compoundkin.synthesis.chains.coloured_graphs import Permutation
-from compoundkin.synthesis.chains.mechanism_names import titled
-from compoundkin.synthesis.chains.structure_names import configurations_of, structure_joints
+from compoundkin.synthesis.chains.mechanism_names import configurations_of, structure_joints, titled
 from compoundkin.synthesis.driver_places import (
     DriverPlace,
     UncheckedMechanism,

@@ -10,7 +10,7 @@ from typing import Any
 from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
-from compoundkin.analysis.interference.interference_findings import Interference
+from compoundkin.analysis.interference import Interference
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits

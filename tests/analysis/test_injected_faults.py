@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.checks.choice_check import choice_findings
-from compoundkin.analysis.checks.continuation_check import continuation_findings
+from compoundkin.analysis.checks.continuation_check import choice_findings, continuation_findings
 from compoundkin.analysis.checks.residuals import residuals
 from tests import catalog
 from tests.analysis.injected_faults import flips, link_faults

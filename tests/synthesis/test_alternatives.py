@@ -12,7 +12,7 @@ from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
-from compoundkin.synthesis.chains.structure_names import group_count
+from compoundkin.synthesis.chains.mechanism_names import group_count
 from compoundkin.synthesis.inversion import with_driver, with_frame
 from compoundkin.view.report.atlas_sections import alternatives_section
 from tests import catalog

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.analysis.centres.centres_of_motion import instant_centres
 from compoundkin.analysis.centres.derivation_steps import DerivationStep
-from compoundkin.analysis.centres.instant_centres import Centre, Centres, Status
+from compoundkin.analysis.centres.instant_centres import Centre, Centres, Status, instant_centres
 
 __all__ = ["Centre", "Centres", "DerivationStep", "Status", "instant_centres"]

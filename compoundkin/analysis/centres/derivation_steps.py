@@ -12,7 +12,7 @@ BY_RATES = 2**30
 
 
 @dataclass(frozen=True)
-class Given:
+class PairCentre:
     """A primary centre: the pair itself."""
 
     found: Couple
@@ -106,7 +106,7 @@ class SolvedCentre:
     found: Couple
 
 
-Rule: TypeAlias = Given | LineCrossing | Trial | SolvedCentre
+Rule: TypeAlias = PairCentre | LineCrossing | Trial | SolvedCentre
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def steps_of(diagram: Diagram, rule: Rule) -> tuple[DerivationStep, ...]:
     if isinstance(rule, Trial):
         return tuple(_trial_step(diagram, rule, found) for found in rule.found)
     names = (diagram.links[rule.found[0]], diagram.links[rule.found[1]])
-    if isinstance(rule, Given):
+    if isinstance(rule, PairCentre):
         return (DerivationStep(names, "primary", (), diagram.primaries[rule.primary].text),)
     if isinstance(rule, LineCrossing):
         lines = tuple(line_names(diagram, rule.found, via) for via in rule.lines)

@@ -1,32 +1,38 @@
-"""The instant centres of a motion, as data."""
+"""The instant centres of a motion: by geometry alone, run over blocks of poses, and the velocities they give.
+
+Velocities from centres and the drivers' rates are independent of the solved ones, and verify them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.centres.centre_velocities import (
-    CentreVectors,
-    Velocities,
-    VelocityCheck,
-    collinearity_of,
-    velocities_of,
-    velocity_check,
-)
-from compoundkin.analysis.centres.circle_diagram import Couple, couple
-from compoundkin.analysis.centres.derivation_steps import DerivationStep, crossing_text
+from compoundkin.analysis.centres.circle_diagram import Couple, Diagram, couple, diagram_of
+from compoundkin.analysis.centres.derivation import Derivation, derive
+from compoundkin.analysis.centres.derivation_steps import DerivationStep, SolvedCentre, crossing_text
+from compoundkin.analysis.centres.driver_rates import DriverRates
+from compoundkin.analysis.centres.evaluation import Evaluation, recompute
+from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, cross, dot, norm
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.poses import FIXED, Pose
 from compoundkin.kinematics import Motion
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs.contract import Line
 
 # A centre farther away than this many times the mechanism's size is at infinity: rounding hides anything farther.
 INFINITY = 1e13
+
+
 # Below this conditioning fewer than four digits of a centre are left: it is not given.
 NOTHING = 1e-12
 
@@ -97,6 +103,26 @@ class Centre(ShortRepr):
         places, texts = self.elsewhere
         at = np.flatnonzero(places == flat)
         return texts[int(at[0])] if at.size else self.how
+
+
+@dataclass(frozen=True, eq=False)
+class CentreVectors:
+    """The centres of a motion as unit vectors in own coordinates, by couples.
+
+    `spread` is their magnification of errors, `lines` the two lines where other ones than the derivation's were taken.
+    """
+
+    motion: Motion
+    plan: Derivation
+    scale: OwnCoordinates
+    places: PrimaryCentres
+    units: dict[Couple, Number]
+    spread: dict[Couple, Number]
+    lines: dict[Couple, tuple[Number, Number, Number]]
+
+    def trusted(self, c: Couple) -> Number:
+        """Return a centre's unit vectors, NaN where it is not known well."""
+        return np.where(self.spread[c] * LEAST_CONDITIONING <= 1.0, self.units[c], np.nan)
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,3 +231,275 @@ class Centres(CentreVectors, DisplaysHtml):
             names, how, point.T.reshape(*shape, 3), shown.reshape(shape),
             status.astype(np.int8).reshape(shape), self.scale.size, elsewhere,
         )  # fmt: skip
+
+
+# Poses a block: temporaries of a few dozen arrays of this length stay in a second-level cache.
+BLOCK = 4096
+
+
+@checked
+def instant_centres(motion: Motion) -> Centres:
+    """Return all instant centres of a motion at every pose, by geometry alone.
+
+    Pairs give the primary centres; the others follow as crossings of two lines on which three centres of three
+    links lie, in an order that depends on the graph only; where that stalls, by trial positions or, with several
+    drivers, by their rates. Where two lines nearly coincide, others are taken.
+
+    Raises NotDetermined where nothing moves or the drivers do not determine the motion.
+
+    >>> import compoundkin as ck
+    >>> four_bar = ck.Mechanism(
+    ...     "Four-bar", ck.link("frame", A=(0, 0), D=(4, 0)), ck.link("crank", A=(0, 0), B=(1, 0)),
+    ...     ck.link("coupler", B=(0, 0), C=(3, 0)), ck.link("rocker", D=(0, 0), C=(3, 0)), ck.drive("crank"))
+    >>> centre = instant_centres(ck.solve(four_bar, {"crank": ck.deg([0, 90])}))["frame", "coupler"]
+    >>> centre.how
+    'line (frame crank)(crank coupler) x line (frame rocker)(rocker coupler)'
+    >>> centre.point[1].round(6).item().real
+    0.0
+    """
+    with np.errstate(all="ignore"):
+        derivation = derive(diagram_of(motion.structure))
+        scale = centred_coordinates(motion)
+        places = primary_centres(motion, derivation.diagram, scale)
+        needed = motion.order > 0 and any(isinstance(rule, SolvedCentre) for rule in derivation.rules)
+        solved = solved_twists(motion, scale) if needed else None
+        units, spread, lines = _concatenated(motion, derivation, places, solved)
+    return Centres(motion, derivation, scale, places, units, spread, lines)
+
+
+_BlockResult = tuple[dict[Couple, Number], dict[Couple, Number], dict[Couple, tuple[Number, Number, Number]]]
+
+
+def _concatenated(
+    motion: Motion, derivation: Derivation, places: PrimaryCentres, solved: Number | None
+) -> _BlockResult:
+    """Return all blocks in one."""
+    count = motion.inputs.designs * motion.inputs.poses
+    blocks = [slice(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
+    parts = [_block(derivation, places, solved, block) for block in blocks]
+    if len(parts) == 1:
+        return parts[0].points, parts[0].spread, parts[0].lines
+    points: dict[Couple, Number] = {}
+    spread: dict[Couple, Number] = {}
+    for c in parts[0].points:
+        points[c] = _joined([part.points[c] for part in parts], blocks)
+        spread[c] = _joined([part.spread[c] for part in parts], blocks)
+    return points, spread, _lines(parts, blocks)
+
+
+def _block(derivation: Derivation, places: PrimaryCentres, solved: Number | None, block: slice) -> Evaluation:
+    units = [_cut(unit, block) for unit in places.units]
+    rates = [_cut(rate, block) for rate in places.rates]
+    part = Evaluation(derivation, units, rates)
+    part.run(None if solved is None else solved[..., block])
+    recompute(part)
+    return part
+
+
+def _cut(array: Number, block: slice) -> Number:
+    return array if array.shape[-1] == 1 else array[..., block]
+
+
+def _joined(parts: list[Number], blocks: list[slice]) -> Number:
+    """Return one array of all poses. One column where it is the same at all."""
+    if all(part.shape[-1] == 1 for part in parts) and blocks[0].stop > 1:
+        return parts[0]
+    full = [np.broadcast_to(p, (*p.shape[:-1], b.stop - b.start)) for p, b in zip(parts, blocks, strict=True)]
+    return np.concatenate(full, axis=-1)
+
+
+def _lines(parts: list[Evaluation], blocks: list[slice]) -> dict[Couple, tuple[Number, Number, Number]]:
+    found: dict[Couple, tuple[Number, Number, Number]] = {}
+    for c in dict.fromkeys(c for part in parts for c in part.lines):
+        own = [(part.lines[c], b.start) for part, b in zip(parts, blocks, strict=True) if c in part.lines]
+        first, second = (np.concatenate([lines[k] for lines, _ in own]) for k in (1, 2))
+        found[c] = np.concatenate([lines[0] + start for lines, start in own]), first, second
+    return found
+
+
+def centred_coordinates(motion: Motion) -> OwnCoordinates:
+    """Return own coordinates around the middle of the frame's points."""
+    points = list(motion.mechanism.geometry.points[FRAME].values())
+    middle = np.mean([np.mean(p) for p in points]) if points else 0.0
+    return OwnCoordinates(complex(middle), motion.size)
+
+
+def primary_centres(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> PrimaryCentres:
+    """Return the primary centres at every pose, poses and designs in one axis."""
+    units, lengths = [], []
+    for primary in diagram.primaries:
+        pair = motion.solving_order.pairs[primary.pair]
+        first, second = (_without_derivatives(motion.poses[name]) for name in pair.members[:2])
+        centre = pair.centre(motion.inputs.ends[primary.pair], (first, second))
+        assert centre is not None
+        vector = _flattened(motion, scale.own_line(centre) if isinstance(centre, Line) else scale.own(*centre))
+        length = norm(vector)
+        units.append(vector / length)
+        lengths.append(length)
+    rates = tuple(
+        _flattened(motion, np.asarray(motion.inputs.drives[d.driver][1], dtype=float)[None])[0]
+        * lengths[d.primary]
+        * d.sign
+        for d in diagram.drives
+    )
+    return PrimaryCentres(tuple(units), rates)
+
+
+def _without_derivatives(pose: Pose) -> Pose:
+    """Return the pose without its derivatives."""
+    return pose if pose is FIXED else Pose.of(pose.z.c[0], pose.u.c[0])
+
+
+def _flattened(motion: Motion, vector: Number) -> Number:
+    """(3, 1 or designs, 1 or poses) with the last two axes as one. One column where it never changes."""
+    if vector[0].size == 1:
+        return vector.reshape(-1, 1)
+    shape = (len(vector), motion.inputs.designs, motion.inputs.poses)
+    return np.ascontiguousarray(np.broadcast_to(vector, shape)).reshape(len(vector), -1)
+
+
+def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
+    """Return every link's twist as solved, (links, 3, poses), in own coordinates.
+
+    Raises InvalidInput for a motion of order 0.
+    """
+    motion.grid.require(1)
+    count = motion.inputs.designs * motion.inputs.poses
+    shape = (motion.inputs.designs, motion.inputs.poses)
+    found = np.zeros((len(motion.mechanism.links), 3, count))
+    for k, name in enumerate(motion.mechanism.links):
+        pose = motion.poses[name]
+        u, du = pose.u.derivative(0), pose.u.derivative(1)
+        omega = np.imag(np.conjugate(u) * du)
+        # i v0 is omega times the centre; v0 is the velocity of the link's point at the world's origin
+        about = 1j * (pose.z.derivative(1) - 1j * omega * pose.z.derivative(0))
+        parts = [np.broadcast_to(v, shape).ravel() for v in (np.real(about), np.imag(about), omega)]
+        found[k] = scale.own(*parts)
+    return found
+
+
+# Below this conditioning (rounding becomes 1e-10) a centre is given, but proves nothing to 1e-9.
+LEAST_CONDITIONING = 1e-6
+
+
+# A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
+SLOWEST = 1e-6
+
+
+@dataclass(frozen=True, repr=False)
+class Velocities(ShortRepr):
+    """What the centres and the drivers' rates say. Arrays of the motion's shape, NaN where they say nothing.
+
+    `twists[link]` (3, poses) in own coordinates relative to the frame; `conditioning[link]` is near 0 where rounding
+    is magnified, relative to the fastest link.
+    """
+
+    centres: CentreVectors
+    twists: Mapping[str, Number]
+    conditioning: Mapping[str, Number]
+    fastest: Number
+
+    def angular_velocity(self, link: str) -> Number:
+        """Return a link's angular velocity, rad/s."""
+        return self.twists[link][2].reshape(self.centres.motion.shape)
+
+    def at(self, link: str, position: Number) -> Number:
+        """Return the velocity of a link's point at a place, complex, length/s."""
+        x, y, w = self.twists[link]
+        scale = self.centres.scale
+        own = (np.broadcast_to(position, self.centres.motion.shape).reshape(-1) - scale.origin) / scale.size
+        return (1j * (w * own - (x + 1j * y)) * scale.size).reshape(self.centres.motion.shape)
+
+
+@dataclass(frozen=True, repr=False)
+class VelocityCheck(ShortRepr):
+    """Solved velocities against those from centres, relative to the fastest link.
+
+    By link and by point.
+    A link's is the larger of those of its angular velocity and of the velocity of its frame's origin. NaN where the
+    comparison is not made: at poses without rates, and where conditioning is below POOR.
+    """
+
+    links: Mapping[str, Number]
+    points: Mapping[str, Number]
+
+    @property
+    def worst(self) -> float:
+        """The largest disagreement; NaN if nothing was compared."""
+        values = np.array([np.fmax.reduce(v, axis=None) for v in (*self.links.values(), *self.points.values())])
+        return float(np.fmax.reduce(values)) if values.size else float("nan")
+
+    @property
+    def compared(self) -> float:
+        """The part of all links and poses that was compared."""
+        return float(np.mean([np.mean(~np.isnan(v)) for v in self.links.values()]))
+
+
+def velocities_of(centres: CentreVectors) -> Velocities:
+    """Return the velocities that follow from the drivers' rates by centres alone."""
+    with np.errstate(all="ignore"):
+        rates = DriverRates(centres.plan, centres.units, centres.spread)
+        rates.run(centres.places.units, centres.places.rates)
+        factor = centres.places.rates[0] if len(centres.places.rates) == 1 else np.ones(1)
+        body = centres.plan.body
+        numbers = {name: k for k, name in enumerate(centres.plan.diagram.links)}
+        scale = rates.fastest()
+        twists, conditioning = {}, {}
+        for name, k in numbers.items():
+            twist, error = rates.relative(body[numbers[FRAME]], body[k])
+            twists[name] = twist * factor
+            conditioning[name] = np.where(np.isfinite(error), scale / np.maximum(error, scale), 0.0)
+    # a mechanism of one body has constants where others have a value a pose
+    count = centres.motion.inputs.designs * centres.motion.inputs.poses
+    return Velocities(
+        centres,
+        {name: np.broadcast_to(twist, (3, count)) for name, twist in twists.items()},
+        {name: np.broadcast_to(value, (count,)) for name, value in conditioning.items()},
+        np.broadcast_to(scale * np.abs(factor), (count,)),
+    )
+
+
+def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
+    """Compare a motion's velocities with those from centres, where conditioning is not below POOR."""
+    shape = motion.shape
+    regular = np.broadcast_to(motion.regular, (motion.inputs.designs, motion.inputs.poses)).reshape(shape)
+    links, points = {}, {}
+    usable = {n: regular & (c.reshape(shape) >= LEAST_CONDITIONING) for n, c in found.conditioning.items()}
+    slowest = SLOWEST * float(np.max(found.fastest, where=np.all(list(usable.values()), axis=0).ravel(), initial=0.0))
+    scale = np.maximum(found.fastest, slowest if slowest > 0.0 else 1.0).reshape(shape)
+    with np.errstate(all="ignore"):
+        for name in motion.mechanism.links:
+            link = motion.links[name]
+            turning = np.abs(found.angular_velocity(name) - link.angular_velocity)
+            going = np.abs(found.at(name, np.asarray(link.origin.position)) - np.asarray(link.origin.velocity))
+            gap = np.maximum(turning, going / motion.size)
+            links[name] = np.where(usable[name], _certain(gap / scale), np.nan)
+        for letter, carriers in motion.mechanism.carriers.items():
+            point = motion.points[letter]
+            gap = np.abs(found.at(carriers[0], np.asarray(point.position)) - np.asarray(point.velocity))
+            points[letter] = np.where(usable[carriers[0]], _certain(gap / (scale * motion.size)), np.nan)
+    return VelocityCheck(links, points)
+
+
+def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number]:
+    """Return how far the three centres of three links are from one line. The volume of their unit vectors.
+
+    NaN where one of them is not known.
+    """
+    body, names = centres.plan.body, centres.plan.diagram.links
+    shape = centres.motion.shape
+    found = {}
+    for i, j, k in combinations(range(len(names)), 3):
+        if len({body[i], body[j], body[k]}) < 3:
+            continue
+        sides = [couple(body[a], body[b]) for a, b in ((i, j), (j, k), (i, k))]
+        p, q, r = (centres.trusted(c) for c in sides)
+        volume = np.abs(dot(p, cross(q, r)))
+        count = centres.motion.inputs.designs * centres.motion.inputs.poses
+        found[names[i], names[j], names[k]] = np.broadcast_to(volume, (count,)).reshape(shape)
+    return found
+
+
+def _certain(value: Number) -> Number:
+    """Return what is not a number where it is compared is not agreement."""
+    return np.where(np.isnan(value), np.inf, value)

@@ -1,23 +1,29 @@
-"""Types of all four-bars and slider-cranks of a mechanism: which links turn fully, and how such a linkage is called.
+"""Types of all four-bars and slider-cranks of a mechanism: which links turn fully, and the name of the type.
 
-A slider-crank is judged like a four-bar: of its two links with two pins the shorter, r, turns fully against all others
-where r + |e| < l, e the distance between the lines along which the slide's two pins move.
-Source: R. L. Norton, Design of Machinery, sections 2.13 to 2.16.
+With the lengths s shortest, l longest, p and q, the shortest link turns fully against all others where s + l < p + q
+(Grashof). A slider-crank is judged like a four-bar: of its two links with two pins the shorter, r, turns fully against
+all others where r + |e| < l, e the distance between the lines along which the slide's two pins move.
+
+Sources: R. L. Norton, Design of Machinery, sections 2.13 to 2.16; C. R. Barker, A complete classification of planar
+four-bar linkages, Mechanism and Machine Theory 20 (1985) 535-554.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
+from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.four_bar_types import EQUAL, FourBar, four_bar_code
-from compoundkin.analysis.characteristics.four_links import FourLinks, loops_of_four
-from compoundkin.base.arguments import check_design, checked
-from compoundkin.base.arrays import Number, cross
+from compoundkin.base.arguments import check_design, checked, real_numbers
+from compoundkin.base.arrays import LONGEST, Number, cross
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
+from compoundkin.structure.kinematic_structure import Structure as Structure_of_kinematic_structure
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,7 @@ def linkage_types(what: Mechanism | Structure, design: int = 0) -> tuple[FourBar
     """
     structure = decompose(what) if isinstance(what, Mechanism) else what
     check_design(design, _designs(structure))
-    measured = Measured(structure, design)
+    measured = MeasuredLoops(structure, design)
     found = (
         measured.slider_crank(loop) if loop.slide else measured.four_bar(loop) for loop in loops_of_four(structure)
     )
@@ -112,7 +118,7 @@ def _designs(structure: Structure) -> int:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredLoops:
     """Loops of one design with their lengths, those of the first pose."""
 
     structure: Structure
@@ -166,3 +172,219 @@ class Measured:
             return value
         rows = np.reshape(value, (-1, np.shape(value)[-1]))
         return rows[min(self.design, len(rows) - 1), 0]
+
+
+# Lengths whose sums differ by less than this part of the loop are equal: a change point, and not a gap of rounding.
+EQUAL = 1e-9
+
+
+# Three links that rock, before the number of the longest link.
+_ROCKERS = 3 * "R"
+
+
+NAMES = {
+    "GCCC": "double-crank (drag link)",
+    "GCRR": "crank-rocker",
+    "GRCR": "Grashof double-rocker",
+    "GRRC": "rocker-crank",
+    **{f"{_ROCKERS}{k}": "triple-rocker" for k in range(1, 5)},
+    "SCCC": "change-point double-crank",
+    "SCRR": "change-point crank-rocker",
+    "SRCR": "change-point double-rocker",
+    "SRRC": "change-point rocker-crank",
+    "S2X": "change-point linkage with two pairs of equal links",
+    "S3X": "change-point linkage of four equal links",
+    "": "cannot be assembled",
+}
+
+
+_GRASHOF, _CHANGE = ("GCCC", "GCRR", "GRCR", "GRRC"), ("SCCC", "SCRR", "SRCR", "SRRC")
+
+
+# Two pairs of equal links: opposite to each other, or side by side.
+PARALLELOGRAM, KITE = "parallelogram (or antiparallelogram)", "kite (deltoid)"
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """A loop of four pins. Links and lengths are those of base, input, coupler and output.
+
+    `code` is Barker's: G with C for a crank and R for a rocker at input, coupler and output; RRR with 1 to 4 for which
+    link is longest; S for change points. `driven` is the link that is solved first, "" where none is before the rest.
+    """
+
+    links: tuple[str, str, str, str]
+    pins: tuple[str, str, str, str]
+    lengths: tuple[float, float, float, float]
+    code: str
+    driven: str
+
+    @property
+    def name(self) -> str:
+        """What such a linkage is called."""
+        if self.code == "S2X":
+            base, one, _, other = self.lengths
+            return PARALLELOGRAM if abs(one - other) < min(abs(base - one), abs(base - other)) else KITE
+        return NAMES[self.code]
+
+    @property
+    def is_grashof(self) -> bool:
+        """Whether its shortest link turns fully against the others, change points included."""
+        return self.code[:1] in ("G", "S")
+
+    @property
+    def turns(self) -> tuple[str, ...]:
+        """The links that can turn fully against the base."""
+        letters = self.code[1:] if self.code[:1] in ("G", "S") and "X" not in self.code else ""
+        if self.code.endswith("X"):
+            letters = "".join("C" if self._may_turn(k) else "R" for k in (1, 2, 3))
+        return tuple(link for link, letter in zip(self.links[1:], letters, strict=False) if letter == "C")
+
+    def _may_turn(self, k: int) -> bool:
+        """Tell whether a link can be beside the base in both directions."""
+        base, own = self.lengths[0], self.lengths[k]
+        one, other = (length for i, length in enumerate(self.lengths) if i not in (0, k))
+        near = EQUAL * sum(self.lengths)
+        return base + own <= one + other + near and abs(base - own) >= abs(one - other) - near
+
+    @property
+    def shortest(self) -> str:
+        """The shortest link, the first of several."""
+        return self.links[int(np.argmin(self.lengths))]
+
+    @property
+    def margin(self) -> float:
+        """The other two lengths less the shortest and the longest. Negative: no link turns."""
+        short, second, third, long = sorted(self.lengths)
+        return second + third - short - long
+
+    def __repr__(self) -> str:
+        lengths = ", ".join(f"{n} {v:.6g}" for n, v in zip(self.links, self.lengths, strict=True))
+        return f"FourBar({self.name}, {self.code or 'no code'}: {lengths})"
+
+
+@checked
+def four_bar_code(base: Any, input: Any, coupler: Any, output: Any) -> Number:
+    """Return Barker's codes of four-bars by their lengths, numbers or arrays.
+
+    An empty code where no such lengths can be assembled.
+
+    >>> four_bar_code(2.0, 1.0, [2.5, 0.7, 6.0], 2.5).tolist()
+    ['GCRR', 'RRR4', '']
+    """
+    lengths = _lengths(base=base, input=input, coupler=coupler, output=output)
+    total = lengths.sum(axis=-1)
+    ranked = np.sort(lengths, axis=-1)
+    margin = ranked[..., 1] + ranked[..., 2] - ranked[..., 0] - ranked[..., 3]
+    near = EQUAL * total
+    grashof = np.asarray(_GRASHOF)[lengths.argmin(axis=-1)]
+    rockers = np.char.add(_ROCKERS, (lengths.argmax(axis=-1) + 1).astype(str))
+    change = np.asarray(_CHANGE)[lengths.argmin(axis=-1)]
+    pairs = ranked[..., 1] - ranked[..., 0] <= near
+    change = np.where(pairs, np.where(ranked[..., 3] - ranked[..., 0] <= near, "S3X", "S2X"), change)
+    closed = 2.0 * ranked[..., 3] - total <= near
+    return np.where(closed, np.where(np.abs(margin) <= near, change, np.where(margin > 0, grashof, rockers)), "")
+
+
+def _lengths(**given: Any) -> Number:
+    """Return the lengths of links in a last axis of four. Raises InvalidInput for what is no length."""
+    lengths = {name: real_numbers(name, value) for name, value in given.items()}
+    for name, value in lengths.items():
+        if not np.all((value > 0) & (value < LONGEST)):
+            raise InvalidInput(Problem(name, "links of a four-bar are longer than nothing", "give positive lengths"))
+    try:
+        return np.stack(np.broadcast_arrays(*lengths.values()), axis=-1)
+    except ValueError:
+        shapes = ", ".join(str(np.shape(value)) for value in lengths.values())
+        raise InvalidInput(
+            Problem("lengths", f"arrays of shapes {shapes} do not fit each other", "one shape")
+        ) from None
+
+
+@dataclass(frozen=True)
+class FourLinks:
+    """A loop of four links. Each joins the next by a pin's letter, or once at most by a slide's name.
+
+    The first is the frame, or where all move the one that is solved first; of its neighbours the second is solved
+    before the fourth. `driven` is the one of the other three that is solved first, "" where none is before the rest.
+    """
+
+    links: tuple[str, str, str, str]
+    joints: tuple[str, str, str, str]
+    slide: str
+    driven: str
+
+
+def loops_of_four(structure: Structure_of_kinematic_structure) -> tuple[FourLinks, ...]:
+    """Return all loops of four links, those with the frame first.
+
+    >>> import compoundkin as ck
+    >>> loops_of_four(ck.decompose(ck.catalog.load_named("slider-crank")))[0].links
+    ('frame', 'crank', 'rod', 'piston')
+    """
+    order = _solved_in(structure)
+    joined = _joined(structure.mechanism)
+    slides = {pair.name for pair in structure.mechanism.written_pairs}
+    place = {link: k for k, link in enumerate(joined)}
+    found = [_as_solved(loop, order, slides) for loop in _cycles(joined, place) if _has_pins(loop, slides)]
+    rank = {link: k for k, link in enumerate(structure.mechanism.links)}
+    return tuple(sorted(found, key=lambda loop: (loop.links[0] != FRAME, [order[name] for name in loop.links],
+                                                 [rank[name] for name in loop.links])))  # fmt: skip
+
+
+def _solved_in(structure: Structure_of_kinematic_structure) -> dict[str, int]:
+    """Tell when each link is solved: the frame and its driven links one by one, then the groups."""
+    order = {link: k for k, link in enumerate(structure.ground.links)}
+    for group in structure.groups:
+        after = len(order)
+        order.update(dict.fromkeys(group.links, after))
+    return {FRAME: 0, **dict.fromkeys(structure.mechanism.links, len(order)), **order}
+
+
+def _joined(mechanism: Mechanism) -> dict[str, list[tuple[str, str]]]:
+    """Return which links each link is joined to, and by what."""
+    joints = [(letter, links) for letter, links in mechanism.pins.items()]
+    joints += [(p.name, p.members) for p in mechanism.written_pairs if p.is_simple and not p.free_is_angle]
+    found: dict[str, list[tuple[str, str]]] = {link: [] for link in mechanism.links}
+    for name, links in joints:
+        for link in links:
+            found[link] += [(other, name) for other in links if other != link]
+    return found
+
+
+def _cycles(
+    joined: Mapping[str, list[tuple[str, str]]], place: Mapping[str, int]
+) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """Find every loop of four links once: from its first link on, to the earlier of that one's neighbours."""
+    for first in joined:
+        later = [(link, by) for link, by in joined[first] if place[link] > place[first]]
+        # two steps from the first link to the one opposite
+        across: dict[str, list[tuple[str, str, str]]] = {}
+        for link, by in later:
+            for other, next_by in joined[link]:
+                if place[other] > place[first]:
+                    across.setdefault(other, []).append((link, by, next_by))
+        for opposite, ways in across.items():
+            for k, (one, a, b) in enumerate(ways):
+                for other, d, c in ways[k + 1 :]:
+                    if one != other and len({a, b, c, d}) == 4:
+                        yield (first, one, opposite, other), (a, b, c, d)
+
+
+def _has_pins(loop: tuple[tuple[str, ...], tuple[str, ...]], slides: set[str]) -> bool:
+    return sum(name in slides for name in loop[1]) <= 1
+
+
+def _as_solved(loop: tuple[tuple[str, ...], tuple[str, ...]], order: Mapping[str, int], slides: set[str]) -> FourLinks:
+    """Turn a loop so that its base comes first and then the earlier of its neighbours."""
+    links, joints = loop
+    k = min(range(4), key=lambda i: (links[i] != FRAME, order[links[i]], i))
+    links, joints = links[k:] + links[:k], joints[k:] + joints[:k]
+    if order[links[3]] < order[links[1]]:
+        links, joints = (links[0], *links[:0:-1]), joints[::-1]
+    when = sorted((order[name], name) for name in links[1:])
+    driven = when[0][1] if when[0][0] < when[1][0] else ""
+    slide = next((name for name in joints if name in slides), "")
+    one, two, three, four = links
+    a, b, c, d = joints
+    return FourLinks((one, two, three, four), (a, b, c, d), slide, driven)

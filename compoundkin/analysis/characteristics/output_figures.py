@@ -1,4 +1,7 @@
-"""The figures of one output: stroke, dead points, time ratio, greatest rates, dwells, and the path of a point."""
+"""The figures of one output: stroke, dead points, time ratio, greatest rates, dwells, and the path of a point.
+
+The time ratio compares the forward and the return stroke in angles of the driver, or in time.
+"""
 
 from __future__ import annotations
 
@@ -8,31 +11,34 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.curve_features import PathFeatures, path_features
-from compoundkin.analysis.characteristics.figure import (
+from compoundkin.analysis.characteristics.dwells import Dwell, OutputCourse
+from compoundkin.analysis.characteristics.figures import (
     PlacedFigure,
     Range,
+    displayed_number,
     drivers_at,
     moving_drivers,
-    number,
-    scalar,
-    told,
+    quantity_number,
+    scalar_quantity,
 )
-from compoundkin.analysis.characteristics.output_dwells import Dwell, OutputCourse
-from compoundkin.analysis.characteristics.output_strokes import (
-    PieceStroke,
-    QuickReturn,
-    quick_return_between,
-    strokes_by_piece,
-)
-from compoundkin.analysis.characteristics.outputs_of_motion import Output
-from compoundkin.base.arrays import Number
+from compoundkin.analysis.characteristics.outputs import Output
+from compoundkin.analysis.characteristics.path_features import PathFeatures, path_features
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes import between, closed_cycles, dead_points
+from compoundkin.kinematics.extremes import between, closed_cycles, dead_points, extremes, pieces
 from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import STROKE, derivative_order, unit_of
+from compoundkin.model.attributes import (
+    GREATEST,
+    IMBALANCE,
+    LEAST,
+    RADIANS,
+    STROKE,
+    TIME_RATIO,
+    derivative_order,
+    unit_of,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +91,11 @@ class OutputFigures:
                 return None
             far, unit = self.greatest.number - self.least.number, self.least.value.unit
             far = 0.0 if self.is_constant else far  # but for rounding
-            return scalar(f"{self.name}.{STROKE}", far, unit)
+            return scalar_quantity(f"{self.name}.{STROKE}", far, unit)
         if self.path is not None and self.path.is_straight and not self.path.closed:
-            return scalar(f"{self.name}.{STROKE}", self.path.line.length, unit_of(self.motion.mechanism.unit, "length"))
+            return scalar_quantity(
+                f"{self.name}.{STROKE}", self.path.line.length, unit_of(self.motion.mechanism.unit, "length")
+            )
         return None
 
     @cached_property
@@ -137,7 +145,7 @@ class OutputFigures:
         assert self.stroke is not None
         course = quantity(self.motion, self.output.coordinate).values
         row = np.broadcast_to(course, self.motion.shape).reshape(self.motion.inputs.designs, -1)[self.design]
-        return bool(abs(row[-1] - row[0]) > SAME_PLACE * number(self.stroke))
+        return bool(abs(row[-1] - row[0]) > SAME_PLACE * quantity_number(self.stroke))
 
     @property
     def time_ratio(self) -> Quantity | None:
@@ -157,7 +165,7 @@ class OutputFigures:
     def _course(self) -> OutputCourse:
         assert self.stroke is not None
         return OutputCourse(self.motion, self.design, self.output.coordinate, self.cycle, self.stroke.unit,
-                      self.dwell * number(self.stroke), tuple(one.place for one in self.dead_points))  # fmt: skip
+                      self.dwell * quantity_number(self.stroke), tuple(one.place for one in self.dead_points))  # fmt: skip
 
     @cached_property
     def path(self) -> PathFeatures | None:
@@ -190,7 +198,7 @@ class OutputFigures:
         )
         at, values = drivers_at(self.motion, self.design, places.tolist()), np.ravel(found.values)
         return tuple(
-            PlacedFigure(scalar(found.name, values[k], found.unit), at[k], float(place))
+            PlacedFigure(scalar_quantity(found.name, values[k], found.unit), at[k], float(place))
             for k, place in enumerate(places.tolist())
         )
 
@@ -212,4 +220,87 @@ class OutputFigures:
 
     def __repr__(self) -> str:
         parts = [one for one in (self.stroke, self.time_ratio) if one is not None]
-        return f"OutputFigures({', '.join([self.name, *map(told, parts)])})"
+        return f"OutputFigures({', '.join([self.name, *map(displayed_number, parts)])})"
+
+
+# A driver goes round where it turns by a full turn but for this (radians): rounding of degrees.
+SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class QuickReturn:
+    """How long a stroke takes forth and back. The time ratio is that of the longer to the shorter, one at least.
+
+    `forth` from the least to the greatest value and `back` are angles of the driver, times where the motion is in time.
+    The imbalance is by how much the driver's way of either differs from half a turn; None in time.
+    """
+
+    forth: Quantity
+    back: Quantity
+    time_ratio: Quantity
+    imbalance: Quantity | None
+
+
+def quick_return_between(
+    motion: Motion, design: int, cycle: float, name: str, ends: tuple[PlacedFigure, PlacedFigure]
+) -> QuickReturn | None:
+    """Return how long a stroke takes forth and back.
+
+    It is between its least and its greatest value. None where neither one driver goes round once nor the motion is in
+    time. `cycle` is how many poses it has.
+    """
+    begin, end = drivers_at(motion, design, [0.0, cycle])
+    driver, first = next(iter(begin.items()))
+    whole = quantity_number(end[driver]) - quantity_number(first)
+    if motion.time is None and not _goes_round(begin, whole):
+        return None
+    a, b = (quantity_number(one.at[driver]) for one in ends)
+    forth = float(np.sign(whole) * (b - a) % abs(whole))
+    back = abs(whole) - forth
+    if not min(forth, back) > 0.0:
+        return None
+    ratio = Quantity(f"{name}.{TIME_RATIO}", "", max(forth, back) / min(forth, back))
+    imbalance = (
+        scalar_quantity(f"{name}.{IMBALANCE}", abs(forth - back) / 2.0, first.unit) if first.unit == RADIANS else None
+    )
+    there, back_again = (
+        scalar_quantity(f"{name}.forth", forth, first.unit),
+        scalar_quantity(f"{name}.back", back, first.unit),
+    )
+    return QuickReturn(there, back_again, ratio, imbalance)
+
+
+def _goes_round(begin: Mapping[str, Quantity], whole: float) -> bool:
+    """Tell whether one driver alone moves, by a full turn."""
+    return len(begin) == 1 and next(iter(begin.values())).unit == RADIANS and abs(abs(whole) - TURN) <= SAME
+
+
+@dataclass(frozen=True, eq=False)
+class PieceStroke:
+    """The stroke of an output over one assembled piece of a motion.
+
+    The piece goes from `begin` to `end` of the drivers.
+    """
+
+    begin: Mapping[str, Quantity]
+    end: Mapping[str, Quantity]
+    least: Quantity
+    greatest: Quantity
+
+    @property
+    def stroke(self) -> Quantity:
+        """The greatest less the least value."""
+        far = float(self.greatest.values) - float(self.least.values)
+        return scalar_quantity(self.greatest.name.replace(GREATEST, STROKE), far, self.greatest.unit)
+
+
+def strokes_by_piece(motion: Motion, design: int, coordinate: str) -> tuple[PieceStroke, ...]:
+    """Return the strokes of an output over the assembled pieces of a motion."""
+    whole, (found,) = pieces(motion), extremes(motion, coordinate, by_piece=True)
+    made = []
+    for k in np.flatnonzero(whole.begin.design == design).tolist():
+        begin, end = drivers_at(motion, design, [float(whole.begin.place[k]), float(whole.end.place[k])])
+        values = (scalar_quantity(f"{coordinate}.{word}", float(one.value[k]), found.unit)
+                  for word, one in ((LEAST, found.least), (GREATEST, found.greatest)))  # fmt: skip
+        made.append(PieceStroke(begin, end, *values))
+    return tuple(made)

@@ -1,28 +1,79 @@
-"""The path of a point over a stretch of a motion: solved again wherever it is asked for."""
+"""The longest part of a point's path that it passes once, solved again wherever a value is needed.
+
+A part lies on a stretch of assembled poses along which no driver turns back, up to the first cycle.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from math import factorial
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, cross, dot
+from compoundkin.base.arguments import check_design
+from compoundkin.base.arrays import TURN, Number, cross, dot
 from compoundkin.base.curves.samples import Samples
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
+from compoundkin.kinematics.extremes.places import same_pose
+
+# A point moves where its path is longer than this part of the mechanism: rounding of a group on a group.
+MOVES = 1e-9
+
+
+def longest_simple_path(motion: Motion, point: str, design: int = 0, whole: bool = False) -> tuple[TracedPath, bool]:
+    """Return the longest part of a point's path that it passes once.
+
+    With it, whether it turns back there. It is as far as no driver turns back, and unless `whole` as far as the point
+    does not.
+    """
+    check_design(design, motion.inputs.designs)
+    if point not in motion.mechanism.carriers:
+        letters = list(motion.mechanism.carriers)
+        raise UnknownName(Problem(point, "there is no such point", suggestion(point, letters)))
+    if not motion.inputs.is_rigid:
+        what = "dimensions change along the motion: its poses are of different mechanisms"
+        raise InvalidInput(Problem(point, what, "solve one design over its driver's values"))
+    found = [TracedPath(motion, design, point, a, b, closed) for a, b, closed in monotonic_stretches(motion, design)]
+    if not found:
+        raise InvalidInput(Problem(point, "no driver moves between two assembled poses", "solve(...) at several poses"))
+    longest = max(found, key=lambda path: path.samples.size)
+    if not longest.samples.size > MOVES * motion.size:
+        raise InvalidInput(Problem(point, "the point does not move", "name a point of a moving link"))
+    return (longest, False) if whole else _simple_part(longest)
+
+
+def _simple_part(path: TracedPath) -> tuple[TracedPath, bool]:
+    """Return the longest part between places where a point turns back on its path, and whether it does."""
+    s, still = path.rests
+    turns = s[~still]
+    if not len(turns):
+        return path, False
+    cuts = np.append(turns, turns[0] + path.period) if path.closed else np.array([path.first, *turns, path.last])
+    parts = [path.part(float(a), float(b)) for a, b in pairwise(cuts) if b - a > path.samples.step]
+    return max(parts, key=lambda part: part.samples.size), True
+
 
 # A path is shown by about so many samples: loops and stretches that are shorter are not seen.
 SAMPLES = 360
+
+
 # Two poses are one where they differ by less than this part of the size: rounding of a full turn of many groups.
 SAME = 1e-9
 
 
 # A point stands still where it is slower than this part of its fastest: books print dimensions of cusps to six digits.
 STANDS = 1e-6
+
+
 # Beside a place where it stands still the way from sample to sample is shorter than this part of the longest.
 SLOW = 0.3
+
+
 # Newton from the middle of the shortest way: its error is squared with every step.
 STEPS = 6
 
@@ -114,7 +165,7 @@ class TracedPath:
 
         At a cusp acceleration and jerk have different directions; where they have one, the point turns back as it came.
         """
-        step, chords = self.samples.step, np.abs(np.diff(around(self)))
+        step, chords = self.samples.step, np.abs(np.diff(closed_samples(self)))
         fastest = float(np.nanmax(chords)) / step
         if self.closed:
             before, after = np.roll(chords, 1), np.roll(chords, -1)
@@ -159,7 +210,56 @@ class TracedPath:
         return replace(self, first=first, last=last, closed=False, cycle=cycle)
 
 
-def around(path: TracedPath) -> Number:
+def closed_samples(path: TracedPath) -> Number:
     """Return the samples of a path; a closed one ends with its first."""
     points = path.samples.points
     return np.append(points, points[0]) if path.closed else points
+
+
+# A full turn may lack so many turns by rounding.
+LACKS = 1e-9
+
+
+def monotonic_stretches(motion: Motion, design: int) -> Iterator[tuple[int, int, bool]]:
+    """Find stretches of assembled poses along which no driver turns back.
+
+    Returned are first pose, last pose, and whether it is a cycle. Of drivers that turn on after a cycle, after which
+    all links are where they were, the first one.
+
+    >>> import compoundkin as ck
+    >>> list(monotonic_stretches(ck.solve(ck.catalog.load_named("crank-rocker")), 0))
+    [(0, 72, True)]
+    """
+    drives = _driven(motion, design)
+    way = np.sign(np.diff(drives, axis=1))
+    for begin, end in _runs(motion, design):
+        turns_back = 1 + np.flatnonzero(np.any(way[:, begin + 1 : end] != way[:, begin : end - 1], axis=0))
+        cuts = [begin, *(begin + turns_back).tolist(), end]
+        for first, last in pairwise(cuts):
+            if last > first and np.any(way[:, first]):
+                yield _first_cycle(motion, design, drives, first, last)
+
+
+def _runs(motion: Motion, design: int) -> Iterator[tuple[int, int]]:
+    """Return the first and the last of each run of assembled poses."""
+    good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))[design]
+    edge = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
+    yield from zip(edge[::2].tolist(), (edge[1::2] - 1).tolist(), strict=True)
+
+
+def _driven(motion: Motion, design: int) -> Number:
+    """Return the values of the drivers of a design, (drivers, poses)."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    return np.array([np.broadcast_to(v[0], shape)[design] for v in motion.inputs.drives.values()])
+
+
+def _first_cycle(motion: Motion, design: int, drives: Number, first: int, last: int) -> tuple[int, int, bool]:
+    """Return a stretch up to where all links are where they were, drivers of angles having turned fully."""
+    gone = np.abs(drives[:, first : last + 1] - drives[:, first : first + 1])
+    moving = gone[:, -1] > 0
+    if all(one.is_angle for one, moves in zip(motion.drives.values(), moving, strict=True) if moves):
+        turns = np.floor(gone[moving] / TURN + LACKS).min(axis=0)
+        for k in (first + 1 + np.flatnonzero(np.diff(turns) > 0)).tolist():
+            if same_pose(motion, first, k)[design]:
+                return first, k, True
+    return first, last, False

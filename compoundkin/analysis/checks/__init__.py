@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.analysis.checks.choice_check import choice_findings
-from compoundkin.analysis.checks.continuation_check import continuation_findings
+from compoundkin.analysis.checks.continuation_check import choice_findings, continuation_findings
 from compoundkin.analysis.checks.difference_check import difference_findings
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.base.arguments import checked

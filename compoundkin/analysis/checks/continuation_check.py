@@ -1,27 +1,48 @@
-"""Continuity of a motion: each pose as the continuation of the one before, gaps as places to which nothing leads."""
+"""Continuity and configuration of a motion, checked by continuation with the pairs' own equations alone.
+
+Each pose must be the continuation of the one before it, and no continuation may lead into a gap; the configuration must
+be the drawn one, in the written modes. No closed form is used, and no sign of a mode: every group is predicted by its
+series and corrected by Newton's method on the residuals of its pairs. A step counts only where the correction is small
+against the distance to any other configuration.
+
+Source: L. V. Kantorovich's condition for Newton's method, e.g. E. L. Allgower and K. Georg, Introduction to Numerical
+Continuation Methods, SIAM 2003, section 3.1.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.analysis.checks.group_walk import NEWTON, SINGULAR, GroupWalk, bases, own_equations
 from compoundkin.base.arrays import Number
-from compoundkin.base.poses import Pose
+from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
+from compoundkin.base.linear import inverted
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.block import poses_at
+from compoundkin.kinematics.block import Block, places, poses_at, rates
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
+from compoundkin.kinematics.first_pose import distance, letters_shown
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups.bars import Member
+from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.passed_ends import BEFORE
+from compoundkin.kinematics.solving_order import SolvingOrder
 
 # Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
 # leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.
 SAME = 1e-7
+
+
 # So many ways are gone at once.
-WAYS = 2048
+STEPS_AT_ONCE = 2048
 
 
-class Ways(NamedTuple):
+class PoseSteps(NamedTuple):
     """Ways between poses of a motion: designs, and indices of their ends."""
 
     designs: Number
@@ -35,7 +56,7 @@ def continuation_findings(motion: Motion) -> Iterator[Finding]:
         return
     usable = (motion.failed == 0) & (_sharpness(motion) < SINGULAR)
     parts = {link: np.zeros(motion.failed.shape) for link in motion.poses if link not in motion.structure.ground.links}
-    for ways in _between(motion, usable):
+    for ways in _steps_between_poses(motion, usable):
         walk = _walk(motion, ways)
         arrived = walk.follow()
         gaps = _apart(motion, walk.poses(), known_at(motion, ways.designs, ways.end))
@@ -44,10 +65,10 @@ def continuation_findings(motion: Motion) -> Iterator[Finding]:
     yield worst(motion, "continuity", SAME, rounded_by(motion, 0, parts, SAME), motion.failed == 0)
     if np.any(motion.failed):
         beyond = np.zeros(motion.failed.shape)
-        for ways in _into_gaps(motion, usable):
+        for ways in _steps_into_gaps(motion, usable):
             for number in np.unique(motion.failed[ways.designs, ways.end]):
                 there = motion.failed[ways.designs, ways.end] == number
-                some = Ways(ways.designs[there], ways.begin[there], ways.end[there])
+                some = PoseSteps(ways.designs[there], ways.begin[there], ways.end[there])
                 arrived = _walk(motion, some, _groups_before(motion, number).walked).follow()
                 np.maximum.at(beyond, (some.designs, some.end), arrived.astype(float))
         yield worst(motion, "gaps that can be closed", 0.0, _by_group(motion, beyond), motion.failed != 0)
@@ -77,7 +98,7 @@ def _before_gaps(motion: Motion) -> dict[str, Number]:
         before[motion.failed == number] = _groups_before(motion, number).before
     found: dict[str, Number] = {}
     designs, index = np.nonzero(before)
-    for part in _parts(Ways(designs, index, index)):
+    for part in _parts(PoseSteps(designs, index, index)):
         s, there = part.begin[:, None].astype(float), part.designs[:, None]
         block = motion.block(motion.inputs.pick(part.designs, s[:, 0]), 0, s, there)
         for solver in motion.solving_order.solvers:
@@ -96,20 +117,20 @@ def _sharpness(motion: Motion) -> Number:
     """Return how near to singular every pose is."""
     found = np.full(motion.failed.shape, np.inf)
     designs, index = np.nonzero(motion.failed == 0)
-    for part in _parts(Ways(designs, index, index)):
+    for part in _parts(PoseSteps(designs, index, index)):
         found[part.designs, part.begin] = _walk(motion, part).sharpest()
     return found
 
 
-def _between(motion: Motion, usable: Number) -> Iterator[Ways]:
+def _steps_between_poses(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
     """Yield the ways from each pose to the next from which anything follows, where no gap lies between."""
     broken = np.cumsum(motion.failed != 0, axis=1)
     designs, index = np.nonzero(usable)
     goes_on = (designs[1:] == designs[:-1]) & (broken[designs[1:], index[1:]] == broken[designs[:-1], index[:-1]])
-    yield from _parts(Ways(designs[:-1][goes_on], index[:-1][goes_on], index[1:][goes_on]))
+    yield from _parts(PoseSteps(designs[:-1][goes_on], index[:-1][goes_on], index[1:][goes_on]))
 
 
-def _into_gaps(motion: Motion, usable: Number) -> Iterator[Ways]:
+def _steps_into_gaps(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
     """Yield the ways from poses to neighbours that are said not to close."""
     for step in (1, -1):
         designs, index = np.nonzero(usable)
@@ -117,19 +138,19 @@ def _into_gaps(motion: Motion, usable: Number) -> Iterator[Ways]:
         inside = (other >= 0) & (other < motion.inputs.poses)
         designs, index, other = designs[inside], index[inside], other[inside]
         open_ = motion.failed[designs, other] != 0
-        yield from _parts(Ways(designs[open_], index[open_], other[open_]))
+        yield from _parts(PoseSteps(designs[open_], index[open_], other[open_]))
 
 
-def _parts(ways: Ways) -> Iterator[Ways]:
-    for first in range(0, len(ways.designs), WAYS):
-        part = slice(first, first + WAYS)
-        yield Ways(ways.designs[part], ways.begin[part], ways.end[part])
+def _parts(ways: PoseSteps) -> Iterator[PoseSteps]:
+    for first in range(0, len(ways.designs), STEPS_AT_ONCE):
+        part = slice(first, first + STEPS_AT_ONCE)
+        yield PoseSteps(ways.designs[part], ways.begin[part], ways.end[part])
 
 
-def _walk(motion: Motion, ways: Ways, groups: int | None = None) -> GroupWalk:
+def _walk(motion: Motion, ways: PoseSteps, groups: int | None = None) -> GroupContinuation:
     begin, end = (motion.inputs.pick(ways.designs, at.astype(float)) for at in (ways.begin, ways.end))
     poses = known_at(motion, ways.designs, ways.begin)
-    return GroupWalk(motion, begin, end, poses, len(ways.designs), groups)
+    return GroupContinuation(motion, begin, end, poses, len(ways.designs), groups)
 
 
 def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
@@ -153,3 +174,262 @@ def _by_group(motion: Motion, beyond: Number) -> dict[str, Number]:
     names = [group.links[0] for group in motion.structure.groups]
     names += [pair.name for pair in motion.solving_order.guide_ends.pairs]
     return {name: np.where(motion.failed == k, beyond, 0.0) for k, name in enumerate(names, start=1)}
+
+
+# A drawing chooses by what it shows: of two configurations whose distances from it (parts of the size) differ by less
+# it chooses none, and that of a group without signs it need not choose unless the other is this part as far.
+NEARER, CLEARLY = 1e-6, 0.5
+
+
+# The configurations of larger groups take seconds, and are not looked through.
+MOST_BODIES = 4
+
+
+def choice_findings(motion: Motion) -> Iterator[Finding]:
+    """Yield whether groups are as drawn or hinted, and in written modes."""
+    tracker = motion.tracker
+    drawn = [k for k, by in tracker.chosen_by.items() if by == tracker.shown.source and by != "default"]
+    if drawn and np.any(motion.failed == 0):
+        yield worst(motion, "nearest to the drawing", 0.0, _farther(motion, drawn), motion.failed == 0)
+    written = [k for k in tracker.fixed if motion.solving_order.solvers[k].modes == 2]
+    if written:
+        parts = rounded_by(motion, 0, _otherwise(motion, written), SAME)
+        yield worst(motion, "written modes", SAME, parts, motion.failed == 0)
+
+
+def _farther(motion: Motion, drawn: list[int]) -> dict[str, Number]:
+    """Return by how much groups are farther from what is drawn than they could be; at the pose from which one sees."""
+    closed = motion.failed == 0
+    designs = np.flatnonzero(closed.any(axis=1))
+    away = np.where(closed[designs], np.abs(np.arange(motion.inputs.poses) - motion.tracker.at), np.inf)
+    index = np.argmin(away, axis=1)
+    begin = motion.inputs.pick(designs, index.astype(float))
+    first = motion.tracker.approach_path.cut(slice(None), slice(0, 1))
+    walk = GroupContinuation(motion, begin, first.pick(designs, np.zeros(len(designs))),
+                     known_at(motion, designs, index), len(designs))  # fmt: skip
+    arrived, found = walk.follow(), dict[str, Number]()
+    for solver, block in walk.groups():
+        if solver.index in drawn and len(solver.group.bodies) <= MOST_BODIES:
+            part = np.zeros(motion.failed.shape)
+            part[designs, index] = np.where(arrived, np.ravel(_excess(motion, solver, block)), 0.0)
+            found[solver.group.links[0]] = part
+    return found
+
+
+def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
+    """Return by how much a group is farther from what is drawn than its nearest configuration, 0 for no clear case."""
+    shown = motion.tracker.shown
+    letters = letters_shown(motion.solving_order, solver, shown)
+    if not letters:
+        return np.zeros(block.shape)
+
+    def away(trial: Block) -> Number:
+        return np.sqrt(distance(motion.solving_order, letters, shown, trial)) / motion.size
+
+    own, nearest = away(block), np.full(block.shape, np.inf)
+    # those without a sign too, which a follower may have between its outer contacts
+    for every in (one.every(block) for one in (solver, solver.followed()) if one):
+        for j in range(every.real.shape[-1]):
+            trial = block.copy()
+            for k, body in enumerate(solver.group.bodies):
+                pose = every.bodies[k]
+                trial.publish(body, Pose(constant(pose.z.c[0][..., j]), constant(pose.u.c[0][..., j])))
+            nearest = np.fmin(nearest, np.where(every.real[..., j], away(trial), np.inf))
+    clear = nearest < (CLEARLY * own if solver.is_numbered else own - NEARER)
+    return np.where(clear & (own - nearest > NEARER), own - nearest, 0.0)
+
+
+def _otherwise(motion: Motion, written: list[int]) -> dict[str, Number]:
+    """Return how far groups are from the pose that they have in the written mode."""
+    s, designs = places(slice(0, motion.inputs.poses), slice(0, motion.inputs.designs))
+    block = motion.solving_order.start(motion.inputs.ends, motion.inputs.series(0), 0, motion.failed.shape)
+    block.world.update({name: pose.trimmed(0) for name, pose in motion.poses.items()})
+    found = {}
+    for k in written:
+        solver, trial = motion.solving_order.solvers[k], block.copy()
+        solver.close(trial, motion.tracker.sign(k, designs, s))
+        found[solver.group.links[0]] = _distance_of_poses(motion, solver, trial.world)
+    return found
+
+
+def _distance_of_poses(motion: Motion, solver: GroupSolver, world: Mapping[str, Pose]) -> Number:
+    """Return how far a group's bodies are from other poses of them, in parts of the size or radians."""
+    far: Number = np.zeros(motion.failed.shape)
+    for link in (body.links[0] for body in solver.group.bodies):
+        one, other = motion.poses[link], world[link]
+        far = np.fmax(far, np.abs(one.z.c[0] - other.z.c[0]) / motion.size)
+        far = np.fmax(far, np.abs(one.u.c[0] - other.u.c[0]))
+    return far
+
+
+# A correction times the norm of the inverse Jacobian below this: Newton's limit is the nearest configuration.
+SURE = 0.25
+
+
+# No correction is longer (radians, or parts of the size), however well conditioned a pose is.
+LONGEST = 0.1
+
+
+# Beyond this norm of the inverse Jacobian a pose is a limit position or change point, from which nothing follows.
+SINGULAR = 1e7
+
+
+ORDER = 3
+
+
+NEWTON = 6
+
+
+LENGTHS = StepLengths(first=1.0, longest=1.0, shortest=1e-8, easy=1, most=120)
+
+
+def own_equations(solver: GroupSolver, size: float) -> GroupEquations:
+    """Return the equations of any group, in all its bodies."""
+    group = solver.group
+    where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
+    pairs = (*group.inner, *group.outer)
+    members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in pairs)
+    return GroupEquations(len(group.bodies), pairs, members, size, bars=False)
+
+
+def sharpness(equations: GroupEquations, state: Number, block: Block) -> Number:
+    """Return the norm of the inverse Jacobian: one over the distance from singular.
+
+    Its rows are of unit length.
+    """
+    matrix = equations.matrix(state, block) / equations.weights
+    lengths = np.sqrt((matrix**2).sum(axis=-1, keepdims=True))
+    return np.abs(inverted(np.nan_to_num(matrix / np.where(lengths > 0.0, lengths, 1.0)))).sum(axis=-1).max(axis=-1)
+
+
+class GroupContinuation:
+    """Ways of a mechanism, from known poses at one end to what is found.
+
+    `begin` and `end` are inputs of columns (ways, 1), `poses` those of the links at the begin. Drivers and dimensions
+    go straight from one end to the other. All groups go along, or the first `groups` of them.
+    """
+
+    def __init__(
+        self,
+        motion: Motion,
+        begin: Inputs,
+        end: Inputs,
+        poses: Mapping[str, Pose],
+        count: int,
+        groups: int | None = None,
+    ) -> None:
+        self.order: SolvingOrder = motion.solving_order
+        self.solvers = self.order.solvers[:groups]
+        self.begin, self.end, self.count = begin, end, count
+        self.equations = [own_equations(solver, self.order.size) for solver in self.solvers]
+        self.states = [
+            np.array(np.broadcast_to(equations.state(bases(solver, poses)), (count, 1, equations.width)))
+            for solver, equations in zip(self.solvers, self.equations, strict=True)
+        ]
+        self.guide_ends = self.order.guide_ends
+        self.at = np.zeros(count)
+        self._series = [np.zeros((ORDER + 1, *state.shape)) for state in self.states]
+        self._stale = np.ones(count, dtype=bool)
+
+    def sharpest(self) -> Number:
+        """Return the largest norm of any group's inverse Jacobian where the ways begin."""
+        worst = np.zeros((self.count, 1))
+        for (solver, block), state in zip(self.groups(), self.states, strict=True):
+            worst = np.fmax(worst, sharpness(self.equations[solver.index], state, block))
+        return np.nan_to_num(worst[:, 0], nan=np.inf)
+
+    def follow(self) -> Number:
+        """Go all ways; return which arrived."""
+        return trace_paths(self._step, np.ones(self.count, dtype=bool), LENGTHS)
+
+    def groups(self) -> Iterator[tuple[GroupSolver, Block]]:
+        """Yield each group with all links up to it, where ways have come.
+
+        Poses are columns without derivatives.
+        """
+        block = self._block(np.arange(self.count), self.at, 0)
+        for solver, equations, state in zip(self.solvers, self.equations, self.states, strict=True):
+            self._publish(block, solver, equations, state)
+            yield solver, block
+
+    def poses(self) -> dict[str, Pose]:
+        """Return the links' poses where the ways have come to."""
+        *_, (_, block) = self.groups()
+        return block.world
+
+    def _step(self, i: Number, h: Number) -> StepResult:
+        """Try one step of some ways; keep the good ones."""
+        self._expand(i[self._stale[i]])
+        h = np.minimum(h, 1.0 - self.at[i])
+        block, good = self._block(i, self.at[i] + h, 0), np.ones((len(i), 1), dtype=bool)
+        self.guide_ends.mask(block, BEFORE)
+        powers = h[:, None, None] ** np.arange(ORDER + 1).reshape(-1, 1, 1, 1)
+        found = []
+        for solver, equations, series in zip(self.solvers, self.equations, self._series, strict=True):
+            result = equations.newton((series[:, i] * powers).sum(axis=0), block, NEWTON)
+            near = result.moved * sharpness(equations, result.state, block) <= SURE
+            good = good & result.closed & near & (result.moved <= LONGEST)
+            found.append(result.state)
+            self._publish(block, solver, equations, result.state)
+            self.guide_ends.mask(block, solver.index)
+        kept = (good & (block.failed == 0))[:, 0]
+        for state, new in zip(self.states, found, strict=True):
+            state[i[kept]] = new[kept]
+        self.at[i] = np.where(kept, self.at[i] + h, self.at[i])
+        self._stale[i[kept]] = True
+        return StepResult(h, kept, self.at[i] >= 1.0)
+
+    def _expand(self, i: Number) -> None:
+        """Find the series of all groups where some ways are."""
+        if not len(i):
+            return
+        block = self._block(i, self.at[i], ORDER)
+        for k, (solver, equations) in enumerate(zip(self.solvers, self.equations, strict=True)):
+            self._publish(block, solver, equations, self.states[k][i])
+            bodies = bases(solver, block.world)
+            for j in range(ORDER + 1):
+                parts = [v for b in bodies for v in (_at(b.z.c, j).real, _at(b.z.c, j).imag, _at(b.angle.c, j))]
+                self._series[k][j, i] = np.stack(np.broadcast_arrays(np.zeros((len(i), 1)), *parts)[1:], axis=-1)
+        self._stale[i] = False
+
+    def _publish(self, block: Block, solver: GroupSolver, equations: GroupEquations, state: Number) -> None:
+        for body, pose in zip(solver.group.bodies, equations.series(state, block, block.order), strict=True):
+            block.publish(body, pose)
+
+    def _block(self, i: Number, at: Number, order: int) -> Block:
+        """Return a block of some ways at their places, with derivatives by the place."""
+        part = _interpolated_inputs(self.begin, self.end, i, at[:, None], self.count)
+        drives = {name: rates(values, order) for name, values in part.drives.items()}
+        return self.order.start(part.ends, drives, order, (len(i), 1))
+
+
+def _at(coefficients: tuple[Number, ...], k: int) -> Number:
+    return np.asarray(coefficients[k] if k < len(coefficients) else 0.0)
+
+
+def bases(solver: GroupSolver, poses: Mapping[str, Pose]) -> list[Pose]:
+    """Return the poses of the base links of a group's bodies."""
+    return [poses[body.links[0]] for body in solver.group.bodies]
+
+
+def _interpolated_inputs(one: Inputs, two: Inputs, i: Number, at: Number, count: int) -> Inputs:
+    """Return the inputs of some ways at their places, drivers with their slopes."""
+
+    def some(value: Number) -> Number:
+        return value[i] if np.ndim(value) and len(value) == count else value
+
+    def mixed(a: Number, b: Number) -> Number:
+        # what does not change stays as it is: the open end of a guide is infinite
+        return some(a) if np.all(np.equal(a, b)) else some(a) + (some(b) - some(a)) * at
+
+    def side(a: End, b: End) -> End:
+        return End(*(None if v is None else mixed(v, w) for v, w in zip(a, b, strict=True)))
+
+    ends = {
+        name: tuple(side(a, b) for a, b in zip(sides, two.ends[name], strict=True)) for name, sides in one.ends.items()
+    }
+    drives = {}
+    for name, (value, *_) in one.drives.items():
+        way = two.drives[name][0] - value
+        drives[name] = (some(np.asarray(value)) + some(np.asarray(way)) * at, some(np.asarray(way)) + 0.0 * at)
+    return replace(one, ends=ends, drives=drives)

@@ -13,7 +13,7 @@ from math import factorial
 import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
-from compoundkin.analysis.centres.centre_velocities import SLOWEST
+from compoundkin.analysis.centres.instant_centres import SLOWEST
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import NotDetermined
 from compoundkin.base.series import Series

@@ -1,24 +1,28 @@
 """Relative motion of any two links as geometry. Pole, centrodes, inflection circle, curvature of paths."""
 
-from compoundkin.analysis.coupler.bresse_circles import (
+from compoundkin.analysis.coupler.centrodes import Centrodes, Pole, centrode_curvature, centrodes, pole, pole_velocity
+from compoundkin.analysis.coupler.displacement import (
+    Displacement,
+    LinkPosition,
+    PoleTriangle,
+    displacement,
+    link_position,
+    pole_triangle,
+)
+from compoundkin.analysis.coupler.path_curvature import (
     BresseCircle,
     CanonicalFrame,
-    acceleration_pole,
-    canonical_frame,
-    inflection_circle,
-    tangential_circle,
-)
-from compoundkin.analysis.coupler.centrodes import Centrodes, Pole, centrode_curvature, centrodes, pole, pole_velocity
-from compoundkin.analysis.coupler.displacement import Displacement, LinkPosition, displacement, link_position
-from compoundkin.analysis.coupler.path_curvature import (
     PathCurvature,
     StationaryCurvature,
+    acceleration_pole,
+    canonical_frame,
     curvature_rate,
     euler_savary,
+    inflection_circle,
     path_curvature,
     stationary_curvature,
+    tangential_circle,
 )
-from compoundkin.analysis.coupler.pole_triangle import PoleTriangle, pole_triangle
 from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
 
 __all__ = [

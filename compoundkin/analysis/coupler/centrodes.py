@@ -6,7 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.analysis.coupler.relative_motion import INFINITE, UNKNOWN, Relative, direction, rate, relative
+from compoundkin.analysis.coupler.relative_motion import (
+    INFINITE,
+    UNKNOWN,
+    RelativeMotion,
+    relative_motion,
+    series_rate,
+    unit_direction,
+)
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross
 from compoundkin.base.display import ShortRepr
@@ -21,8 +28,8 @@ class Pole(ShortRepr):
     """The pole (relative instant centre) of two links at every pose. Arrays of the motion's shape.
 
     `fixed`, `moving`, `world`: complex, in the frame of the observing link, of the moving link and of the mechanism.
-    Where the pole is at infinity (`infinite`) they are inf, and `direction` is the unit vector towards it, up to its
-    sign, in the observing link's frame; elsewhere `direction` is 0. Where `defined` is False all are NaN: the pose is
+    Where the pole is at infinity (`infinite`) they are inf, and `unit_direction` is the unit vector towards it, up to its
+    sign, in the observing link's frame; elsewhere `unit_direction` is 0. Where `defined` is False all are NaN: the pose is
     not assembled, its rates are infinite, or the links stand still relative to each other.
     """
 
@@ -85,7 +92,7 @@ def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
     >>> abs(pole(motion, "slider-a").direction.imag).round(9).tolist()     # at right angles to its guide
     [1.0, 1.0]
     """
-    return _pole(relative(motion, link, on, 1, "the pole"))
+    return _pole(relative_motion(motion, link, on, 1, "the pole"))
 
 
 @checked
@@ -104,7 +111,7 @@ def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
     >>> abs(pole_velocity(motion, "rod")).round(9).tolist()
     [3.0]
     """
-    seen = relative(motion, link, on, 2, "the pole's velocity")
+    seen = relative_motion(motion, link, on, 2, "the pole's velocity")
     return _change(seen, seen.pole)
 
 
@@ -123,7 +130,7 @@ def centrodes(motion: Motion, link: str, on: str = FRAME) -> Centrodes:
     >>> abs(trammel.fixed).round(9)[:2].tolist(), abs(trammel.moving - 1.5).round(9)[:2].tolist()     # Cardan's circles
     ([3.0, 3.0], [1.5, 1.5])
     """
-    seen = relative(motion, link, on, 2, "the centrodes")
+    seen = relative_motion(motion, link, on, 2, "the centrodes")
     return Centrodes(_pole(seen), _change(seen, seen.pole), _change(seen, _moving(seen)))
 
 
@@ -143,17 +150,17 @@ def centrode_curvature(motion: Motion, link: str, on: str = FRAME) -> tuple[Numb
     >>> (1 / fixed).round(9)[:2].tolist(), (1 / moving).round(9)[:2].tolist()     # the pole runs against the rod's turn
     ([-3.0, -3.0], [-1.5, -1.5])
     """
-    seen = relative(motion, link, on, 3, "the curvature of the centrodes")
+    seen = relative_motion(motion, link, on, 3, "the curvature of the centrodes")
     omega = Series(seen.omega.c[:-1])
-    return _bend(seen, seen.pole_by_angle, omega), _bend(seen, rate(_moving(seen)) / omega, omega)
+    return _bend(seen, seen.pole_by_angle, omega), _bend(seen, series_rate(_moving(seen)) / omega, omega)
 
 
-def pole_moves(seen: Relative) -> Number:
+def pole_moves(seen: RelativeMotion) -> Number:
     """Return where the pole changes its place. Where it does not, links are pinned, and what it does is rounding."""
     return seen.turning & (np.abs(seen.pole_by_angle.c[0]) > seen.noise)
 
 
-def _pole(seen: Relative) -> Pole:
+def _pole(seen: RelativeMotion) -> Pole:
     number, weight = _leading(seen)
     infinite = np.abs(weight) * seen.reach <= SMALL * np.abs(number)
     defined = seen.regular & np.isfinite(number) & ((weight != 0) | infinite & (number != 0))
@@ -163,13 +170,13 @@ def _pole(seen: Relative) -> Pole:
         fixed,
         np.where(infinite, INFINITE, np.conj(seen.u.c[0]) * (fixed - seen.z.c[0])),
         np.where(infinite, INFINITE, np.asarray(seen.motion.links[seen.on].at(fixed).position)),
-        seen.masked(np.where(infinite, direction(number), 0j), defined),
+        seen.masked(np.where(infinite, unit_direction(number), 0j), defined),
         infinite,
         defined,
     )
 
 
-def _leading(seen: Relative) -> tuple[Number, Number]:
+def _leading(seen: RelativeMotion) -> tuple[Number, Number]:
     """Return the pole as a fraction. Where the links stand still, l'Hopital's rule takes the next derivatives."""
     number, weight = seen.numerator.c, seen.omega.c
     if len(weight) == 1:
@@ -180,18 +187,18 @@ def _leading(seen: Relative) -> tuple[Number, Number]:
     return seen.masked(np.where(seen.resting, number[1], number[0]), ~still), np.where(seen.resting, second, weight[0])
 
 
-def _moving(seen: Relative) -> Series:
+def _moving(seen: RelativeMotion) -> Series:
     """Return the pole in the moving link's own frame."""
     order = len(seen.pole.c)
     return Series(seen.u.c[:order]).conj() * (seen.pole - Series(seen.z.c[:order]))
 
 
-def _change(seen: Relative, place: Series) -> Number:
+def _change(seen: RelativeMotion, place: Series) -> Number:
     infinite = seen.regular & ~seen.turning & ~seen.resting
     return np.where(infinite, INFINITE, np.where(seen.turning, place.derivative(1), UNKNOWN))
 
 
-def _bend(seen: Relative, by_angle: Series, omega: Series) -> Number:
+def _bend(seen: RelativeMotion, by_angle: Series, omega: Series) -> Number:
     """Return the curvature of a curve whose derivative by the relative angle is given."""
-    first, second = by_angle.c[0], rate(by_angle).c[0] / omega.c[0]
+    first, second = by_angle.c[0], series_rate(by_angle).c[0] / omega.c[0]
     return seen.masked(cross(first, second) / np.abs(first) ** 3, pole_moves(seen))

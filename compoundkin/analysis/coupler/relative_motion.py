@@ -58,10 +58,10 @@ def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> Po
     >>> relative_point(motion, "frame", "O", on="rod").speed.round(9).tolist()     # on a circle of radius 1.5
     [3.0]
     """
-    return relative_link(motion, link, on).at(place(motion, link, point))
+    return relative_link(motion, link, on).at(local_point(motion, link, point))
 
 
-def place(motion: Motion, link: str, point: Any) -> Number:
+def local_point(motion: Motion, link: str, point: Any) -> Number:
     """Return where a point is in its link's frame. A letter is looked up, coordinates are taken as they are."""
     if isinstance(point, str):
         known = motion.mechanism.geometry.points[link]
@@ -71,19 +71,19 @@ def place(motion: Motion, link: str, point: Any) -> Number:
     return vectors_of("point", point)
 
 
-def direction(vector: Number) -> Number:
+def unit_direction(vector: Number) -> Number:
     """Return the unit vector of a planar vector; 0 for the vector 0."""
     length = np.abs(vector)
     return np.where(length > 0, vector / np.where(length > 0, length, 1.0), 0j)
 
 
-def rate(series: Series) -> Series:
+def series_rate(series: Series) -> Series:
     """Return the time derivative of a series, one order lower."""
     return Series(tuple(k * c for k, c in enumerate(series.c[1:], 1)))
 
 
 @dataclass(frozen=True, eq=False)
-class Relative:
+class RelativeMotion:
     """A relative motion as series, and what is large and small in it.
 
     `z`, `u` are the pose of `link` in the frame of `on`. Everything is geometry if it is divided by powers of the
@@ -105,7 +105,7 @@ class Relative:
     @cached_property
     def numerator(self) -> Series:
         """The numerator of the pole. The pole is at ``(omega z + i z') / omega``."""
-        return self.omega * Series(self.z.c[:-1]) + 1j * rate(self.z)
+        return self.omega * Series(self.z.c[:-1]) + 1j * series_rate(self.z)
 
     @cached_property
     def pole(self) -> Series:
@@ -115,7 +115,7 @@ class Relative:
     @cached_property
     def pole_by_angle(self) -> Series:
         """The derivative of the pole by the relative angle, still a series in time."""
-        return rate(self.pole) / Series(self.omega.c[:-1])
+        return series_rate(self.pole) / Series(self.omega.c[:-1])
 
     @cached_property
     def turning(self) -> Number:
@@ -157,7 +157,7 @@ class Relative:
         return np.where(where, values, UNKNOWN if np.iscomplexobj(values) else np.nan)
 
 
-def relative(motion: Motion, link: str, on: str, order: int, what: str) -> Relative:
+def relative_motion(motion: Motion, link: str, on: str, order: int, what: str) -> RelativeMotion:
     """Return the relative motion of two links with derivatives up to `order`.
 
     Raises InvalidInput where the motion was not solved to that order, or where no driver moves at some pose.
@@ -166,11 +166,11 @@ def relative(motion: Motion, link: str, on: str, order: int, what: str) -> Relat
     if motion.order < order:
         text = f"it takes derivatives to order {order}; the motion was solved to order {motion.order}"
         raise InvalidInput(Problem(what, text, f"solve(..., order={order})"))
-    moving(motion, what)
-    return Relative(motion, link, on, _shaped(motion, pose.z.derivative), _shaped(motion, pose.u.derivative))
+    check_moving(motion, what)
+    return RelativeMotion(motion, link, on, _shaped(motion, pose.z.derivative), _shaped(motion, pose.u.derivative))
 
 
-def moving(motion: Motion, what: str) -> None:
+def check_moving(motion: Motion, what: str) -> None:
     """Raise InvalidInput if no driver moves at some pose. What is read off velocities is then not there."""
     speeds = [np.broadcast_to(np.abs(drive.rate), motion.shape) for drive in motion.drives.values()]
     still = np.asarray(motion.assembled & (np.max([*speeds, np.zeros(motion.shape)], axis=0) == 0))

@@ -8,10 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from compoundkin.analysis.equations.pair_terms import pair_terms, shortest_way
 from compoundkin.analysis.equations.rate_equations import RateEquations, rate_equations
-from compoundkin.analysis.equations.reduced_system import ReducedSystem, reduced
-from compoundkin.analysis.equations.vector_loops import DriverEquation, LoopWalk, VectorLoop
+from compoundkin.analysis.equations.reduced_system import ReducedSystem, reduced_system
+from compoundkin.analysis.equations.vector_loops import DriverEquation, LoopWalk, VectorLoop, pair_terms, shortest_path
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
@@ -120,7 +119,7 @@ def loop_equations(mechanism: Mechanism | Structure, order: int = 0) -> LoopEqua
     unknowns = [Unknown("angle", name) for name in structure.mechanism.links if name not in known]
     unknowns += [unknown for own in terms.values() for unknown in own.unknowns]
     auxiliary, drivers = (*crossed, *_beside(structure, pairs, walk)), tuple(_drivers(structure, terms))
-    system = reduced(loops, auxiliary, drivers, unknowns)
+    system = reduced_system(loops, auxiliary, drivers, unknowns)
     rates = tuple(rate_equations(structure, system, k) for k in range(1, order + 1))
     return LoopEquations(structure, loops, auxiliary, drivers, tuple(unknowns), walk.lengths, system, rates)
 
@@ -133,12 +132,12 @@ def _beside(structure: Structure, pairs: Sequence[Pair], walk: LoopWalk) -> Iter
     for pair, own in found:
         if isinstance(own, Implicit):
             start, *ends = ((at, f"{pair.name} on {name}") for at, name in zip(own.points, pair.members, strict=True))
-            ways = (shortest_way(pairs, pair.members[0], name) for name in pair.members[1:])
+            ways = (shortest_path(pairs, pair.members[0], name) for name in pair.members[1:])
             paths = (walk.along(*way, start, end) for way, end in zip(ways, ends, strict=True))
             yield replace(own, ways=tuple(map(tuple, paths)))
         elif own.along is not None:
             start, end = zip(walk.terms[pair.name].points, walk.terms[pair.name].labels, strict=True)
-            yield replace(own, path=tuple(walk.along(*shortest_way(pairs, *pair.members[:2]), start, end)))
+            yield replace(own, path=tuple(walk.along(*shortest_path(pairs, *pair.members[:2]), start, end)))
 
 
 def _drivers(structure: Structure, terms: Mapping[str, LoopTerms]) -> Iterator[DriverEquation]:

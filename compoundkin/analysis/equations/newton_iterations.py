@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.pose_values import pose_values, unknown_values
 from compoundkin.analysis.equations.rate_equations import rate_equations
-from compoundkin.analysis.equations.rate_solution import condition_of, least
+from compoundkin.analysis.equations.reduced_system import condition_number, least_squares, pose_values, unknown_values
 from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
@@ -131,7 +130,7 @@ def _iterated(equations: LoopEquations, x: Number, given: Mapping[str, Number]) 
         failure = _failure(len(corrections), pure)
         if failure:
             break
-        corrections.append(-scale.columns * least(pure, rest))
+        corrections.append(-scale.columns * least_squares(pure, rest))
         estimates.append(estimates[-1] + corrections[-1])
     names = tuple(row.name for row in system.rows)
     moves = np.array(corrections).reshape(len(corrections), len(x))
@@ -142,7 +141,7 @@ def _failure(steps: int, pure: Number) -> str:
     """Why there is no further step; "" where there is one."""
     if not np.isfinite(pure).all():
         return f"after {steps} steps the estimates are no numbers"
-    if condition_of(pure) > SINGULAR:
+    if condition_number(pure) > SINGULAR:
         return f"after {steps} steps the matrix is singular"
     return f"it has not converged in {steps} steps" if steps >= STEPS else ""
 

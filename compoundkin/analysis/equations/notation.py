@@ -1,4 +1,4 @@
-"""How the parts of equations are written: as text, where the name of a link stands for its angle, and as LaTeX."""
+"""Equations written out: as text, where the name of a link stands for its angle, and as LaTeX."""
 
 from __future__ import annotations
 
@@ -7,13 +7,71 @@ from typing import TypeAlias
 
 import numpy as np
 
+from compoundkin.analysis.equations.vector_loops import DriverEquation, Equation, VectorLoop
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import first_entry
-from compoundkin.model.pairs.loop_terms import LETTERS, Implicit, Sum, Unknown
+from compoundkin.model.pairs.loop_terms import LETTERS, Implicit, ProfileVector, Sum, Term, Unknown
+
+
+@checked
+def text(equation: Equation) -> str:
+    """Write an equation as a line of text.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.analysis.equations.loop_equations import loop_equations
+    >>> text(loop_equations(load_named("slider-crank")).loops[0])
+    'OA e^(i crank) + AB e^(i rod) - s(stroke) = 0'
+    """
+    return _equation(equation, TEXT)
+
+
+@checked
+def latex(equation: Equation) -> str:
+    """Write an equation as LaTeX, without the dollar signs."""
+    return _equation(equation, LATEX)
+
+
+def _equation(equation: Equation, how: Notation) -> str:
+    if isinstance(equation, VectorLoop):
+        return f"{_vectors(equation.terms, how)} = 0"
+    if isinstance(equation, DriverEquation):
+        constant = how.angle if equation.is_angle else six_digits
+        return f"{sum_written(equation.sum, how, constant)} = {how.value(equation.driver)}"
+    if isinstance(equation, Implicit):
+        result = "0" if equation.result is None else how.unknown(equation.result)
+        return f"{how.function(equation)} = {result}"
+    constant = (
+        how.angle if all(unknown.kind in ("angle", "direction") for _, unknown in equation.sum.parts) else six_digits
+    )
+    if equation.along is not None:
+        moved = how.part(_vectors(equation.path, how), sum_written(equation.along, how, how.angle))
+        rest = sum_written(equation.sum, how, six_digits)
+        return f"{moved} {'- ' + rest[1:] if rest.startswith('-') else '+ ' + rest} = 0"
+    return f"{sum_written(equation.sum, how, constant)} = 0"
+
+
+def _vectors(terms: Sequence[Term], how: Notation) -> str:
+    return joined_terms([(term.sign, _vector(term, how)) for term in terms])
+
+
+def _vector(term: Term, how: Notation) -> str:
+    angle = sum_written(term.angle, how, how.angle)
+    if isinstance(term, ProfileVector):
+        return how.turned(how.known(term.symbol), angle if angle != "0" else "")
+    length = how.known(term.symbol) if term.symbol else sum_written(term.length, how, six_digits)
+    return how.turned(length, angle if angle != "0" else "")
+
 
 # A constant below this is rounding; a factor nearer to one than this is one.
 ROUNDING = 1e-9
+
+
 _LETTERS = {**LETTERS, "direction": r"\varphi"}
+
+
 _DOTS = ("", r"\dot", r"\ddot")
+
+
 _PRIMES = ("", "'", "''")
 
 
@@ -99,12 +157,12 @@ class LatexNotation:
         """Write an unknown, or a rate of it."""
         letter = r"\theta" if of.kind == "angle" else _LETTERS[of.kind]
         dotted = f"{_DOTS[order]}{{{letter}}}" if order else letter
-        return rf"{dotted}_{{\text{{{escaped(of.owner)}}}}}"
+        return rf"{dotted}_{{\text{{{escaped_latex(of.owner)}}}}}"
 
     @staticmethod
     def known(symbol: str) -> str:
         """Write the symbol of a length that is known."""
-        return rf"\overline{{\text{{{escaped(symbol)}}}}}"
+        return rf"\overline{{\text{{{escaped_latex(symbol)}}}}}"
 
     @staticmethod
     def angle(value: float) -> str:
@@ -132,7 +190,7 @@ class LatexNotation:
     @staticmethod
     def value(driver: str) -> str:
         """Write the value that a driver gives."""
-        return rf"q_{{\text{{{escaped(driver)}}}}}"
+        return rf"q_{{\text{{{escaped_latex(driver)}}}}}"
 
     @staticmethod
     def turn(is_sine: bool, angle: str) -> str:
@@ -168,6 +226,8 @@ class LatexNotation:
 
 
 Notation: TypeAlias = type[TextNotation] | type[LatexNotation]
+
+
 TEXT, LATEX = TextNotation, LatexNotation
 
 
@@ -182,22 +242,22 @@ def sum_written(of: Sum, how: Notation, constant: Callable[[float], str], order:
     number = float(first_entry(of.constant))
     if abs(number) > ROUNDING or not parts:
         parts.append((1 if number >= 0 else -1, constant(abs(number)) if abs(number) > ROUNDING else "0"))
-    return joined(parts)
+    return joined_terms(parts)
 
 
-def joined(parts: Sequence[tuple[int, str]]) -> str:
+def joined_terms(parts: Sequence[tuple[int, str]]) -> str:
     """Join what is added or taken away, each with its sign."""
     first, *rest = parts or [(1, "0")]
     start = first[1] if first[0] > 0 else f"-{first[1]}"
     return start + "".join(f" {'+' if sign > 0 else '-'} {written}" for sign, written in rest)
 
 
-def plain(value: float) -> str:
+def six_digits(value: float) -> str:
     """Write a number with six significant digits."""
     return f"{value:.6g}"
 
 
-def escaped(name: str) -> str:
+def escaped_latex(name: str) -> str:
     """Write a name so that LaTeX takes nothing in it for markup."""
     for mark in "\\_#%&${}":
         name = name.replace(mark, " " if mark == "\\" else "\\" + mark)
@@ -205,4 +265,4 @@ def escaped(name: str) -> str:
 
 
 def _function(of: Implicit, letter: str = "F") -> str:
-    return rf"{letter}_{{{of.number},\text{{{escaped(of.pair)}}}}}"
+    return rf"{letter}_{{{of.number},\text{{{escaped_latex(of.pair)}}}}}"

@@ -1,30 +1,47 @@
 """The equations of velocities and accelerations: one matrix, two right-hand sides; in symbols and with numbers.
 
+A vector l e^(i a) has the derivative (l' + i l a') e^(i a), and at constant l' and a' the second one
+(2 i l' a' - l a'^2) e^(i a): the Coriolis part and the centripetal one.
+
 Sources: P. E. Nikravesh, Computer-Aided Analysis of Mechanical Systems, section 3.2; R. L. Norton, Design of Machinery,
 sections 6.7 and 7.3.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.analysis.equations.expressions import Expression, total
-from compoundkin.analysis.equations.factors import Rate
-from compoundkin.analysis.equations.pose_values import given_values, pose_values
-from compoundkin.analysis.equations.rate_solution import RateSolution, Scales, solution_of
-from compoundkin.analysis.equations.reduced_system import ReducedSystem
-from compoundkin.analysis.equations.row_derivatives import bend, slope
+from compoundkin.analysis.equations.expressions import (
+    Expression,
+    Length,
+    Partial,
+    Product,
+    ProfilePart,
+    Rate,
+    SecondRate,
+    total,
+    turn_product,
+)
+from compoundkin.analysis.equations.reduced_system import (
+    EquationRow,
+    EquationScales,
+    RateSolution,
+    ReducedSystem,
+    pose_values,
+    prescribed_values,
+    solution_of,
+)
 from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.moving_lines import shape_of
-from compoundkin.model.pairs.loop_terms import Sum, Unknown, Values
+from compoundkin.model.pairs.loop_terms import ProfileVector, Sum, Unknown, Values, Vector
 from compoundkin.structure import Structure
 
 
@@ -111,7 +128,7 @@ class RateEquations(ShortRepr):
         return len(self.system.rows) == len(self.unknowns)
 
     @property
-    def scales(self) -> Scales:
+    def scales(self) -> EquationScales:
         """What makes pure numbers of rows and columns."""
         return self.system.scales(self.structure.mechanism.geometry.size)
 
@@ -151,7 +168,7 @@ class RateEquations(ShortRepr):
         where.grid.require(self.order)
         values = pose_values(where)
         for order in range(1, self.order + 1):
-            values.update(given_values(where, self.system, order))
+            values.update(prescribed_values(where, self.system, order))
         return self._solved(where.shape, values)
 
     def _checked(self, values: Mapping[str, Any]) -> dict[str, Number]:
@@ -182,14 +199,99 @@ def rate_equations(structure: Structure, system: ReducedSystem, order: int) -> R
     What is known goes to the right: the rates of given unknowns, and for accelerations the second derivative that is
     left where all rates are constant.
     """
-    matrix = tuple(tuple(slope(row, unknown) for unknown in system.unknowns) for row in system.rows)
+    matrix = tuple(tuple(row_derivative(row, unknown) for unknown in system.unknowns) for row in system.rows)
     right = []
     for row in system.rows:
-        known = [slope(row, own).times(-1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own in system.given]
-        right.append((total(*known, *([bend(row).times(-1.0)] if order == 2 else [])),))
+        known = [row_derivative(row, own).times(-1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own in system.given]
+        right.append((total(*known, *([second_row_derivative(row).times(-1.0)] if order == 2 else [])),))
     return RateEquations(structure, system, order, SymbolArray(matrix), SymbolArray(tuple(right)))
 
 
 def _row(unknowns: Sequence[Unknown], row: Sequence[Expression], order: int) -> Expression:
     pairs = zip(unknowns, row, strict=True)
     return total(*(entry.times(1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own, entry in pairs))
+
+
+# A number and a rate that it multiplies.
+Rated: TypeAlias = tuple[Number, Rate]
+
+
+def row_derivative(row: EquationRow, unknown: Unknown) -> Expression:
+    """Return the derivative of a row by an unknown."""
+    if unknown not in row.unknowns:
+        return Expression()
+    if row.function is not None:
+        function, sums = row.function, row.sums
+        return total(*(Product(own.slope(unknown), (Partial(function, by, sums),)) for by, own in sums.items()))
+    parts = [part for term in row.terms for part in _slope(term, unknown, row.is_imaginary)]
+    return total(Product(row.sum.slope(unknown)), *parts)
+
+
+def second_row_derivative(row: EquationRow) -> Expression:
+    """Return the second derivative of a row by time. All unknowns have constant rates."""
+    if row.function is not None:
+        return total(Product(1.0, (SecondRate(row.function, row.sums),)))
+    return total(*(part for term in row.terms for part in _bend(term, row.is_imaginary)))
+
+
+def _slope(term: Vector | ProfileVector, unknown: Unknown, is_imaginary: bool) -> Iterator[Product]:
+    turning = term.angle.slope(unknown)
+    if isinstance(term, ProfileVector):
+        yield _profile(term, 1, is_imaginary, 0, term.argument.slope(unknown))
+        yield _profile(term, 0, is_imaginary, 1, turning)
+        return
+    yield turn_product(term.sign * term.length.slope(unknown), (), term.angle, is_imaginary)
+    yield _across(term, term.sign * turning, is_imaginary, (Length(term.symbol, term.length),))
+
+
+def _bend(term: Vector | ProfileVector, is_imaginary: bool) -> Iterator[Product]:
+    sign, turning = term.sign, _rate(term.angle)
+    if isinstance(term, ProfileVector):
+        passing = _rate(term.argument)
+        if passing:
+            yield _profile(term, 2, is_imaginary, 0, *_squared(passing))
+        if passing and turning:
+            factor, rates = _times(2.0, passing, turning)
+            yield _profile(term, 1, is_imaginary, 1, factor, *rates)
+        if turning:
+            yield _profile(term, 0, is_imaginary, 2, *_squared(turning))
+    elif turning:
+        factor, square = _squared(turning)
+        yield turn_product(-sign * factor, (Length(term.symbol, term.length), square), term.angle, is_imaginary)
+        sliding = _rate(term.length)
+        if sliding:
+            yield _across(term, 2.0 * sign * sliding[0] * turning[0], is_imaginary, (sliding[1], turning[1]))
+
+
+def _rate(of: Sum) -> Rated | None:
+    """The rate of a sum, as a number and what it multiplies; nothing for a constant."""
+    if len(of.parts) == 1:
+        return of.parts[0][0], Rate(Sum(0.0, ((1.0, of.parts[0][1]),)))
+    return (1.0, Rate(Sum(0.0, of.parts))) if of.parts else None
+
+
+def _times(number: float, one: Rated, other: Rated) -> tuple[Number, tuple[Rate, ...]]:
+    """A number times two rates, which are a square if they are of one unknown."""
+    factor = number * one[0] * other[0]
+    if len(one[1].sum.parts) == 1 and one[1].sum.parts == other[1].sum.parts:
+        return factor, (replace(one[1], is_squared=True),)
+    return factor, (one[1], other[1])
+
+
+def _squared(of: Rated) -> Rated:
+    return of[0] ** 2, replace(of[1], is_squared=True)
+
+
+def _across(term: Vector, number: float, is_imaginary: bool, factors: tuple[Length | Rate, ...]) -> Product:
+    """A part of i e^(i a): minus the sine, or the cosine."""
+    return turn_product(number if is_imaginary else -number, factors, term.angle, not is_imaginary)
+
+
+def _profile(
+    term: ProfileVector, order: int, is_imaginary: bool, quarters: int, number: float, *rates: Rate
+) -> Product:
+    """A part of a profile's derivative turned by quarters: of i z the real part is minus the imaginary one of z."""
+    for _ in range(quarters):
+        number = number if is_imaginary else -number
+        is_imaginary = not is_imaginary
+    return Product(np.multiply(term.sign, number)[()], (*rates, ProfilePart(term, order, is_imaginary)))

@@ -1,8 +1,12 @@
-"""Equations of positions: closed loops of vectors, the walk around them, and the equations of drivers."""
+"""Closed loops of vectors and the equations of drivers: the walk around a loop, and what each pair adds to it.
+
+A pair adds vectors as its kind says, by the lower pairs that stand for it, or from its closure.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -10,8 +14,23 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.display import ShortRepr
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Series
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms, Sum, Term, Values, Vector, angle_of
+from compoundkin.model.pairs.contract import Ends, Equivalent, lower_equivalent
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    Implicit,
+    LoopTerms,
+    Sum,
+    Term,
+    Unknown,
+    Values,
+    Vector,
+    angle_of,
+    difference,
+    end_angle,
+)
 from compoundkin.structure import Loop
 
 
@@ -46,6 +65,8 @@ Equation: TypeAlias = VectorLoop | Auxiliary | Implicit | DriverEquation
 
 # A point of a pair on a link, and what it is called.
 Side: TypeAlias = tuple[Number, str]
+
+
 # An angle nearer than this to 0 or a half turn is one.
 STRAIGHT = 1e-9
 
@@ -113,3 +134,115 @@ class LoopWalk:
 def _symbol(first: str, last: str) -> str:
     short = len(first.rstrip("'")) == len(last.rstrip("'")) == 1
     return f"{first}{last}" if short else f"{first}-{last}"
+
+
+def pair_terms(pair: Pair, ends: Ends) -> LoopTerms:
+    """Return what a pair adds to vector loops.
+
+    A kind that does not say it has it from its lower equivalent. Where there is none, a loop crosses the pair by an
+    unknown vector, and what the pair holds are equations of which only the value is known.
+    """
+    said = pair.loop_terms(ends)
+    if said is not None:
+        return said
+    lower = lower_equivalent(pair, ends)
+    return _by_closure(pair, ends) if lower is None else _by_lower_pairs(pair, lower)
+
+
+def _by_lower_pairs(pair: Pair, lower: Equivalent) -> LoopTerms:
+    """A pin in a slot, a disc: a block that slides has its guide's angle, a bar one of its own.
+
+    Where both lower pairs slide, the block has the angle of the first guide, which ties that of the second.
+    """
+    slides = [own for own in lower.pairs if not own.free_is_angle]
+    bar = Unknown("direction", pair.name)
+    angles = [_block_angle(own, lower) for own in slides] or [Sum(0.0, ((1.0, bar),))]
+    free = {own.name: Unknown("displacement", pair.name if len(slides) == 1 else own.name) for own in slides}
+    sliding = [_sliding(own, lower, angles[0], free) for own in lower.pairs]
+    arms = *sliding[0], *_across(pair, lower, angles[0]), *sliding[1]
+    tied = tuple(Auxiliary(pair.name, difference(angles[0], angle)) for angle in angles[1:])
+    unknowns = tuple(free.values()) or (bar,)
+    points, labels = zip(*(_outside(own, lower) for own in lower.pairs), strict=True)
+    return LoopTerms(points, labels, arms, unknowns, tied)
+
+
+def _block_angle(slide: Pair, lower: Equivalent) -> Sum:
+    """The angle of the link between, by that of the link on which it slides."""
+    k, ends = slide.members.index(lower.link), lower.ends[slide.name]
+    return angle_of(slide.members[1 - k]).plus(end_angle(ends[1 - k]) - end_angle(ends[k]))
+
+
+def _sliding(own: Pair, lower: Equivalent, block: Sum, free: Mapping[str, Unknown]) -> Iterator[Vector]:
+    """The displacement in a lower pair that slides, backward where the guide is on the farther link."""
+    if own.name in free:
+        inside = own.members[0] == lower.link
+        guide = block if inside else angle_of(own.members[0])
+        sign = 1 if inside == (own is lower.pairs[1]) else -1
+        yield Vector("", Sum(0.0, ((1.0, free[own.name]),)), guide.plus(end_angle(lower.ends[own.name][0])), sign)
+
+
+def _across(pair: Pair, lower: Equivalent, block: Sum) -> Iterator[Vector]:
+    """The vector on the link between, from its first pair to its second."""
+    start, stop = (_place(lower.ends[own.name][own.members.index(lower.link)]) for own in lower.pairs)
+    if np.any(stop != start):
+        yield Vector(f"r({pair.name})", Sum(np.abs(stop - start)), block.plus(np.angle(stop - start)))
+
+
+def _outside(own: Pair, lower: Equivalent) -> tuple[Number, str]:
+    """The point of a lower pair on the member that it joins, and its label."""
+    k = 1 - own.members.index(lower.link)
+    is_guide = k == 0 and not own.free_is_angle
+    return _place(lower.ends[own.name][k]), f"{own.letters[1]}'" if is_guide else own.letters[0]
+
+
+def _place(end: End) -> Number:
+    """Return the point of a pair's side, as a number."""
+    return end.point.c[0] if isinstance(end.point, Series) else end.point
+
+
+def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
+    """By the components of the vector across, unknown; with a carrier by the ways through other pairs."""
+    x, y = Unknown("x", pair.name), Unknown("y", pair.name)
+    first = angle_of(pair.members[0])
+    across = Vector("", Sum(0.0, ((1.0, x),)), first), Vector("", Sum(0.0, ((1.0, y),)), first.plus(np.pi / 2.0))
+    is_crossed = len(pair.members) == 2
+    driven = (Unknown("direction" if pair.free_is_angle else "displacement", pair.name),) if pair.held == 2 else ()
+    points = tuple(_place(end) for end in ends)
+    equations = tuple(
+        Implicit(pair.name, k, pair.members, points, function, (across,) if is_crossed else (), result, is_angle)
+        for k, (function, result, is_angle) in enumerate(_functions(pair, ends, driven), 1)
+    )
+    arms, unknowns = (across, (*driven, x, y)) if is_crossed else ((), driven)
+    return LoopTerms(points[:2], (f"{pair.name}'", pair.name), arms, unknowns, equations, is_crossed)
+
+
+def _functions(
+    pair: Pair, ends: Ends, driven: tuple[Unknown, ...]
+) -> Iterator[tuple[Callable[[tuple[Pose, ...]], Series], Unknown | None, bool]]:
+    """What the pair holds, as functions of poses, and whether it is an angle; the coordinate where it may be driven."""
+
+    def residual(k: int) -> Callable[[tuple[Pose, ...]], Series]:
+        return lambda poses: pair.closure(ends, poses)[k]
+
+    yield from ((residual(k), None, k in pair.held_angles) for k in range(pair.held))
+    yield from ((lambda poses: pair.coordinate(ends, poses), unknown, pair.free_is_angle) for unknown in driven)
+
+
+def shortest_path(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:
+    """Return the links and pairs of a shortest way from a link to another."""
+    came: dict[str, tuple[str, Pair]] = {}
+    queue = deque([start])
+    while queue and end not in came:
+        link = queue.popleft()
+        for pair in pairs:
+            if link in pair.members[:2]:
+                other = pair.members[1] if link == pair.members[0] else pair.members[0]
+                if other != start and other not in came:
+                    came[other] = link, pair
+                    queue.append(other)
+    links, way = [end], []
+    while links[-1] != start and links[-1] in came:
+        link, pair = came[links[-1]]
+        links.append(link)
+        way.append(pair)
+    return links[::-1], way[::-1]

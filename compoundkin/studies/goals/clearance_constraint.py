@@ -7,9 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.analysis.interference.compared_bodies import ComparedBodies, comparison_of
-from compoundkin.analysis.interference.outline_places import geometries, nearest_places
-from compoundkin.analysis.interference.shapely_library import shapely
+from compoundkin.analysis.clearances import ComparedBodies, compared_outlines, geometries, nearest_places, shapely
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
@@ -87,7 +85,7 @@ def _all(motion: Motion) -> tuple[ComparedBodies, ...]:
     """Return all bodies that are compared in the mechanism as it stands."""
     points = _points(motion)
     shapes = outline_shapes(motion.mechanism, points, motion.shape)
-    return comparison_of(motion.mechanism, shapes, points).compared
+    return compared_outlines(motion.mechanism, shapes, points).compared
 
 
 def _points(motion: Motion) -> Points:

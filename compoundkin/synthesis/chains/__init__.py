@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.chain_atlas import (
     AssurGroup,
@@ -16,12 +15,11 @@ from compoundkin.synthesis.chains.chain_atlas import (
     trusses,
 )
 from compoundkin.synthesis.chains.chain_names import chain_name
-from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured
+from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, canonical
 from compoundkin.synthesis.chains.generation import chains_of
 from compoundkin.synthesis.chains.joints import Joint, Joints
-from compoundkin.synthesis.chains.mechanism_names import ChainName, named
+from compoundkin.synthesis.chains.mechanism_names import ChainName, group_truss, name_of, named, structure_name
 from compoundkin.synthesis.chains.skeletons import mechanism_from, symmetric_drivers
-from compoundkin.synthesis.chains.structure_names import group_truss, name_of, structure_name
 
 __all__ = [
     "AssurGroup",

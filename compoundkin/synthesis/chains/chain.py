@@ -12,12 +12,12 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from compoundkin.base.arguments import checked
-from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.coloured_graphs import (
     Canonical,
     Coloured,
     Permutation,
     assorted,
+    canonical,
     graph6_text,
     is_connected,
     orbits,

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, suggestion
-from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
-from compoundkin.synthesis.chains.coloured_graphs import Coloured
+from compoundkin.synthesis.chains.coloured_graphs import Coloured, canonical
 from compoundkin.synthesis.chains.generation import chains_of
 
 if TYPE_CHECKING:
@@ -103,7 +102,7 @@ def chains(links: int, mobility: int = 1, patient: bool = False) -> tuple[Chain,
     >>> len(chains(9, mobility=2)), len(chains(10, mobility=3))
     (40, 98)
     """
-    return _listed().get((links, mobility)) or _made(links, mobility, patient)
+    return _listed().get((links, mobility)) or _generated(links, mobility, patient)
 
 
 @checked
@@ -186,10 +185,10 @@ def number_of(chain: Chain) -> int | None:
     return _numbers().get((chain.mobility, chain.code)) if chain.links <= MOST_LINKS else None
 
 
-def read(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]:
+def read_lists(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]:
     """Return the chains of a list by links and mobility. A line "links mobility code" each, other lines are comments.
 
-    >>> [chain.links for chain in read(["# a comment", "3 0 Bw"])[3, 0]]
+    >>> [chain.links for chain in read_lists(["# a comment", "3 0 Bw"])[3, 0]]
     [3]
     """
     found: dict[tuple[int, int], list[Chain]] = {}
@@ -202,11 +201,11 @@ def read(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]:
 
 @cache
 def _listed() -> dict[tuple[int, int], tuple[Chain, ...]]:
-    return read(FILE.read_text(encoding="ascii").splitlines())
+    return read_lists(FILE.read_text(encoding="ascii").splitlines())
 
 
 @cache
-def _made(links: int, mobility: int, patient: bool) -> tuple[Chain, ...]:
+def _generated(links: int, mobility: int, patient: bool) -> tuple[Chain, ...]:
     return chains_of(links, mobility, bridged=True, patient=patient)
 
 

@@ -25,9 +25,8 @@ import numpy.typing as npt
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
-from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Permutation, is_connected
+from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Permutation, canonical, is_connected
 
 MOST_MADE = {0: 11, 1: 11, 2: 11, 3: 10}  # links, by mobility: what is made within some ten seconds
 
@@ -135,7 +134,7 @@ def contracted_chains(degrees: Sequence[int], looped: bool = True) -> tuple[Cont
 
 def _filled(contracted: Contracted, links: int, mobility: int) -> list[Chain]:
     """Return the chains with so many links that contract to this one, each once."""
-    ways = _ways(links - contracted.links, len(contracted.strings))
+    ways = _placements(links - contracted.links, len(contracted.strings))
     ways = ways[_moves(contracted, ways, mobility)]
     if not len(ways):
         return []
@@ -165,7 +164,7 @@ def _is_least(ways: Integers, permutations: Integers) -> npt.NDArray[np.bool_]:
     return least
 
 
-def _ways(number: int, places: int) -> Integers:
+def _placements(number: int, places: int) -> Integers:
     """Return all ways of putting binary links on strings, a row each."""
     chosen = np.array([*combinations(range(number + places - 1), places - 1)], dtype=np.int64)
     chosen = chosen.reshape(-1, places - 1)

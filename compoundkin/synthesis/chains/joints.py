@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 from compoundkin.model.pairs import KINDS
 from compoundkin.structure.cycles import find
-from compoundkin.synthesis.chains.canonical_code import canonical
-from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured
+from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, canonical
 
 if TYPE_CHECKING:
     pass

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import ClassVar, TypeAlias
 
-from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
+from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.suffixes import Kind, suffix_for
 from compoundkin.base.version import VERSION

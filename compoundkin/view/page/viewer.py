@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
+from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY, motion_figure

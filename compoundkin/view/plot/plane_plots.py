@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.analysis.coupler.centrodes import pole
-from compoundkin.analysis.coupler.relative_motion import place as place_on
+from compoundkin.analysis.coupler.relative_motion import local_point as place_on
 from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, degrees, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.configurations.reached_region import Workspace
+from compoundkin.configurations.workspace import Workspace
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import unit_of
 from compoundkin.model.geometry import FRAME
@@ -42,7 +42,7 @@ def workspace(
     False. With ``colour="condition"`` the region is coloured by the condition number of the Jacobian. Raises
     InvalidInput for another colour.
 
-    >>> from compoundkin.configurations.reached_region import workspace as region_of
+    >>> from compoundkin.configurations.workspace import workspace as region_of
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> picture = workspace(region_of(load_named("five-bar"), "P", cells=40))
     >>> [line.get_label() for line in picture.figure.axes[0].get_lines()[-1:]]

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.centres import Centre, Centres, DerivationStep, instant_centres
-from compoundkin.analysis.centres.centre_velocities import POOR
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
+from compoundkin.analysis.centres.instant_centres import LEAST_CONDITIONING
 from compoundkin.base.arrays import degrees
 from compoundkin.model.attributes import unit_of
 from compoundkin.structure import Structure
@@ -174,7 +174,7 @@ def _direction(shown: CentresSample, centre: Centre) -> float | None:
 
 def _low_conditioning(shown: CentresSample, centre: Centre) -> float | None:
     value = float(shown.of(centre.conditioning))
-    return value if shown.of(centre.found) and value < POOR else None
+    return value if shown.of(centre.found) and value < LEAST_CONDITIONING else None
 
 
 def _at_pose(how: str) -> str:

@@ -9,15 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.equations.freudenstein import constants_of
-from compoundkin.analysis.equations.loop_constants import FourBarConstants
+from compoundkin.analysis.equations.freudenstein import FourBarConstants, constants_of
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations
-from compoundkin.analysis.equations.notation import LATEX, TEXT, plain, sum_written
-from compoundkin.analysis.equations.pose_values import given_values, pose_values
+from compoundkin.analysis.equations.notation import LATEX, TEXT, latex, six_digits, sum_written, text
 from compoundkin.analysis.equations.rate_equations import RateEquations
-from compoundkin.analysis.equations.rate_solution import RateSolution
-from compoundkin.analysis.equations.written_equations import latex, text
+from compoundkin.analysis.equations.reduced_system import RateSolution, pose_values, prescribed_values
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
@@ -156,7 +153,7 @@ def _rate_blocks(found: LoopEquations) -> Iterator[Block]:
 
 
 def _constant_writer(own: Unknown) -> Any:
-    return plain if own.is_length else TEXT.angle
+    return six_digits if own.is_length else TEXT.angle
 
 
 def _matrix_text(rates: RateEquations) -> str:
@@ -263,7 +260,7 @@ def _values_table(pose: PoseNumbers) -> TableBlock:
     system, unit = pose.found.system, pose.found.structure.mechanism.unit
     values = pose_values(pose.motion)
     for order in range(len(pose.solutions) + 1):
-        values.update(given_values(pose.motion, system, order))
+        values.update(prescribed_values(pose.motion, system, order))
     rows = []
     for own in (*system.unknowns, *system.given):
         shown = float(pose.at(values[own.key]))

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import degrees
 
-from compoundkin.analysis.interference.interference_findings import Interference, LinkClearance, LinkTouch
-from compoundkin.analysis.interference.interference_of_motion import interference
+from compoundkin.analysis.interference import Interference, LinkClearance, LinkTouch, interference
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
-from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
+from compoundkin.analysis.characteristics.characteristics import characteristics
+from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
 from compoundkin.base.arguments import check_design
 from compoundkin.base.arrays import degrees

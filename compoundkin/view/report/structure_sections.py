@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.equations.pair_terms import pair_terms
+from compoundkin.analysis.equations.vector_loops import pair_terms
 from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics import Motion

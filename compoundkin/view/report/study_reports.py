@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.comparison.common_pose import scale_of_units
-from compoundkin.analysis.comparison.comparison_findings import ROUNDING, MechanismComparison
+from compoundkin.analysis.common_pose import scale_of_units
+from compoundkin.analysis.comparison_result import ROUNDING, MechanismComparison
 from compoundkin.base.arrays import Number, degrees
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS

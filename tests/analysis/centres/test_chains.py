@@ -11,10 +11,9 @@ import pytest
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.derivation_steps import Trial
-from compoundkin.analysis.centres.evaluation import Evaluation
+from compoundkin.analysis.centres.evaluation import Evaluation, recompute
 from compoundkin.analysis.centres.homogeneous import sine_between
-from compoundkin.analysis.centres.recomputation import recompute
-from compoundkin.analysis.centres.twist_loops import null_twists
+from compoundkin.analysis.centres.known_centres import null_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, chains, diagram, random_mechanism, solved
 from tests.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from tests.support import REFERENCE

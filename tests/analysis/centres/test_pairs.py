@@ -9,7 +9,7 @@ from compoundkin.analysis.centres.circle_diagram import Diagram, DrivenCentre, P
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import dot, sine_between
-from compoundkin.analysis.centres.twist_loops import null_twists
+from compoundkin.analysis.centres.known_centres import null_twists
 from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.model.pairs.contract import Line, Point
 from tests.support import random_pose, sample

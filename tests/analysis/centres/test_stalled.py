@@ -10,12 +10,11 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.centres import Status, derivation, instant_centres
-from compoundkin.analysis.centres.derivation import derive
+from compoundkin.analysis.centres.derivation import RateSets, derive
 from compoundkin.analysis.centres.derivation_steps import Trial
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import sine_between
-from compoundkin.analysis.centres.rate_sets import RateSets
-from compoundkin.analysis.centres.twist_loops import null_twists
+from compoundkin.analysis.centres.known_centres import null_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, diagram, random_mechanism, solved
 from tests.support import drawn_values
 

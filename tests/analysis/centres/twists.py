@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from compoundkin.analysis.centres import Centres
-from compoundkin.analysis.centres.centres_of_motion import solved_twists
 from compoundkin.analysis.centres.circle_diagram import couple
 from compoundkin.analysis.centres.homogeneous import cross, norm
-from compoundkin.analysis.centres.twist_loops import null_twists
+from compoundkin.analysis.centres.instant_centres import solved_twists
+from compoundkin.analysis.centres.known_centres import null_twists
 from compoundkin.base.arrays import Number
 from compoundkin.model.geometry import FRAME
 

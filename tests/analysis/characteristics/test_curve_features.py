@@ -7,10 +7,9 @@ import pytest
 from scipy.optimize import linprog
 
 import compoundkin as ck
-from compoundkin.analysis.characteristics.curve_features import path_features
-from compoundkin.analysis.characteristics.dwell_intervals import Sampled, dwells
+from compoundkin.analysis.characteristics.dwells import Sampled, dwells
+from compoundkin.analysis.characteristics.path_features import path_features, straightness
 from compoundkin.analysis.characteristics.path_fits import fitted_circles, fitted_lines
-from compoundkin.analysis.characteristics.path_stretches import straightness
 from tests import catalog
 
 CRANK = ck.deg(np.arange(0, 361, 5))

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.characteristics.four_bar_types import FourBar, four_bar_code
-from compoundkin.analysis.characteristics.linkage_types import SliderCrank, linkage_types
+from compoundkin.analysis.characteristics.linkage_types import FourBar, SliderCrank, four_bar_code, linkage_types
 from tests import catalog
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 721)

@@ -9,8 +9,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.pair_terms import pair_terms
-from compoundkin.analysis.equations.written_equations import latex, text
+from compoundkin.analysis.equations.notation import latex, text
+from compoundkin.analysis.equations.vector_loops import pair_terms
 from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.model.pairs.loop_terms import Vector
 from compoundkin.view.report.structure_sections import equation_count

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations.loop_constants import FourBarConstants, SliderCrankConstants
-from compoundkin.analysis.equations.pose_values import pose_values
+from compoundkin.analysis.equations.freudenstein import FourBarConstants, SliderCrankConstants
+from compoundkin.analysis.equations.reduced_system import pose_values
 from compoundkin.files.shipped_mechanisms import load_named, names
 from tests import catalog
 

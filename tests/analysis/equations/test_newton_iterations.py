@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations.pose_values import pose_values
+from compoundkin.analysis.equations.reduced_system import pose_values
 from compoundkin.files.shipped_mechanisms import load_named
 from tests import catalog
 

@@ -13,7 +13,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.written_equations import latex, text
+from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.structure import assur_groups
 from compoundkin.view.page.mathml import mathml
 from compoundkin.view.report.equations_sections import IMPLICIT_FUNCTIONS, equations_section

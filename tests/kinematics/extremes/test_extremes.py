@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
+from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes import between, extremes, zeros
 from compoundkin.kinematics.quantities import quantity

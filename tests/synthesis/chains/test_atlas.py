@@ -6,7 +6,7 @@ import networkx as nx
 import pytest
 
 from compoundkin.synthesis.chains import Chain, assur_groups, chains, inversions, number_of, trusses
-from compoundkin.synthesis.chains.chain_atlas import FILE, MOST_LINKS, read
+from compoundkin.synthesis.chains.chain_atlas import FILE, MOST_LINKS, read_lists
 from compoundkin.synthesis.chains.shipped_lists import MOBILITIES, lines, make
 from tests.synthesis.chains.counts import COUNTS
 
@@ -18,7 +18,7 @@ def test_the_shipped_list_is_what_is_made(tmp_path):
 
 
 def test_its_lines_are_what_they_say():
-    for (links, mobility), listed in read(FILE.read_text(encoding="ascii").splitlines()).items():
+    for (links, mobility), listed in read_lists(FILE.read_text(encoding="ascii").splitlines()).items():
         assert all((chain.links, chain.mobility, chain.is_connected) == (links, mobility, True) for chain in listed)
         assert mobility in MOBILITIES
         assert links <= MOST_LINKS

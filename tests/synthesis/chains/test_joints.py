@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from compoundkin.files.shipped_mechanisms import names
 from compoundkin.synthesis.chains import Joint, Joints
 from compoundkin.synthesis.chains.chain_names import derived_chains, number_of_derived_chains, trees
-from compoundkin.synthesis.chains.structure_names import joints_of
+from compoundkin.synthesis.chains.mechanism_names import joints_of
 from tests import catalog
 
 

@@ -23,7 +23,7 @@ from compoundkin.synthesis.chains import (
     name_of,
     trusses,
 )
-from compoundkin.synthesis.chains.slide_names import loop_letters, slider_name
+from compoundkin.synthesis.chains.mechanism_names import loop_letters, slider_name
 from tests import catalog
 
 TITLES = {

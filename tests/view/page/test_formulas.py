@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equations.loop_equations import loop_equations
-from compoundkin.analysis.equations.written_equations import latex, text
+from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.files import shipped_mechanisms
 from compoundkin.view.page.mathml import UnknownLatex, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.group_figures import coriolis_names, index_names
-from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
+from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
+from compoundkin.analysis.characteristics.transmission import coriolis_names, index_names
 from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.kinematics import Motion as Motion_of_kinematics

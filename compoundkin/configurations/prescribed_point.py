@@ -1,4 +1,4 @@
-"""The mechanism led by one of its points: its drivers let go, the point carried about instead.
+"""The mechanism driven by one of its points: its drivers are released, the point's motion is prescribed instead.
 
 Driven so, serial and parallel robots come apart into dyads: their inverse kinematics in closed form.
 """
@@ -29,11 +29,13 @@ from compoundkin.model.prescribed_motion import PrescribedMotion
 # What leads the point, and the drivers of it: its coordinates, and the angle of the first link that carries it. No link
 # or point is called so.
 LEADER, TURN_OF = "(led)", "(angle)"
+
+
 ALONG, ACROSS = (f"{LEADER}.{part}" for part in PARTS)
 
 
 @dataclass(frozen=True)
-class LedPoint:
+class PrescribedPoint:
     """A point, the drivers let go for it, and the mechanism led by it.
 
     Where three drivers are let go the angle of the first link that carries the point is prescribed as well. `given` are
@@ -48,11 +50,11 @@ class LedPoint:
     led_given: Inputs
 
     @classmethod
-    def of(cls, mechanism: Mechanism, point: str, free: tuple[str, ...], still: dict[str, float]) -> LedPoint:
+    def of(cls, mechanism: Mechanism, point: str, free: tuple[str, ...], still: dict[str, float]) -> PrescribedPoint:
         """Return the point as what leads the mechanism. Raises InvalidInput where that leaves it undetermined."""
         driven = solving_order_of(mechanism)
         try:
-            led = solving_order_of(_led(mechanism, point, free))
+            led = solving_order_of(_driven_by_point(mechanism, point, free))
         except (NotDetermined, InvalidMechanism) as error:
             what = f"the drivers {', '.join(free)} do not follow from where {point} is: {error}"
             raise InvalidInput(Problem("workspace", what, "take another point, or fewer drivers")) from None
@@ -102,7 +104,7 @@ class LedPoint:
         return pose.at(local).c[0], np.angle(pose.u.c[0])
 
 
-def _led(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
+def _driven_by_point(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
     """Return the mechanism with some drivers let go and a point carried about in their place."""
     parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation | LoadElement | LinkOutline)]
     kept = [item for item in parts if not (isinstance(item, Drive) and item.name in free)]
@@ -114,7 +116,7 @@ def _led(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
 
 
 @dataclass(frozen=True)
-class LiveSigns:
+class ModeSigns:
     """The choice of some configurations of the led mechanism, an axis before all others."""
 
     signs: Mapping[int, Number]

@@ -1,38 +1,43 @@
-"""`characteristics`: the figures that engineers ask of a motion, put together."""
+"""`characteristics`: the figures of a motion that engineers use, with the dead points of its driver."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.advantage_figures import AdvantageFigures, advantages, ratio_names
-from compoundkin.analysis.characteristics.figure import Range, moving_drivers, ranges_of
-from compoundkin.analysis.characteristics.four_bar_types import FourBar
-from compoundkin.analysis.characteristics.group_figures import (
+from compoundkin.analysis.characteristics.figures import Range, drivers_at, moving_drivers, ranges_of, scalar_quantity
+from compoundkin.analysis.characteristics.linkage_types import FourBar, SliderCrank, linkage_types
+from compoundkin.analysis.characteristics.output_figures import OutputFigures
+from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
+from compoundkin.analysis.characteristics.transmission import (
+    AdvantageFigures,
     GroupFigures,
+    advantages,
     coriolis_names,
     group_figures,
-    groups_on_the_way,
+    groups_of_outputs,
     index_names,
     pressure_names,
+    ratio_names,
 )
-from compoundkin.analysis.characteristics.limit_positions import DriverDeadPoint, limits_of
-from compoundkin.analysis.characteristics.linkage_types import SliderCrank, linkage_types
-from compoundkin.analysis.characteristics.output_figures import OutputFigures
-from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.display import count_phrase, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes import Measure, closed_cycles
+from compoundkin.kinematics.extremes import Measure, between, closed_cycles, driver_dead_points
+from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.one_design import motion_of_design
+from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.model.attributes import derivative_order
 from compoundkin.model.geometry import FRAME
 
 # A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
 DWELL, STRAIGHT = 0.01, 0.001
+
+
 # A transmission angle below this (radians) is none: where it passes zero its place is known to about so much.
 NOTHING = 1e-8
 
@@ -146,7 +151,7 @@ def characteristics(
     measures = {one.name if isinstance(one, Measure) else one: one for one in found}
     besides = dict.fromkeys((*groups, *pressures, *guides, *ratios.values()))
     ranges = ranges_of(own, 0, [*measures.values(), *(name for name in besides if name not in measures)])
-    way = groups_on_the_way(own.structure, asked)
+    way = groups_of_outputs(own.structure, asked)
     figures = tuple(OutputFigures(own, 0, one, ranges, dwell, straight) for one in asked)
     return Characteristics(
         motion,
@@ -156,7 +161,7 @@ def characteristics(
         {name: ranges[name] for name in pressures if name in ranges},
         {name: ranges[name] for name in guides if name in ranges},
         advantages(own, 0, asked, ratios, ranges),
-        limits_of(own, 0, figures),
+        dead_points_of_driver(own, 0, figures),
         tuple(_notes(own, 0, moving)),
     )
 
@@ -188,3 +193,49 @@ def _notes(motion: Motion, design: int, moving: tuple[str, ...]) -> list[str]:
         told.append(f"Several drivers move ({', '.join(moving)}): time ratios by a driver's angle, velocity ratios and"
                     " mechanical advantage are not defined.")  # fmt: skip
     return told
+
+
+@dataclass(frozen=True, eq=False)
+class DriverDeadPoint:
+    """A limit position, beyond which the driver cannot go.
+
+    It has the drivers' values, what outputs are there, and why. `place` counts the poses of the motion from 0. `reason`
+    is empty where the motion ends just there.
+    """
+
+    at: Mapping[str, Quantity]
+    values: Mapping[str, Quantity]
+    reason: str
+    place: float
+
+
+def dead_points_of_driver(motion: Motion, design: int, outputs: Iterable[OutputFigures]) -> tuple[DriverDeadPoint, ...]:
+    """Return the dead points of the driver along a motion, in its order."""
+    if motion.inputs.poses < 2:
+        return ()
+    found = driver_dead_points(motion)
+    places = np.unique(found.place[found.design == design])
+    if not len(places):
+        return ()
+    there = between(motion, design, places, 0)
+    # what takes rates, such as a force, has no limit there
+    named = [one.output.coordinate for one in outputs if one.least is not None]
+    known = [quantity(there, name) for name in named if derivative_order(name) == 0]
+    at = drivers_at(motion, design, places.tolist())
+    return tuple(
+        DriverDeadPoint(
+            at[k],
+            {one.name: scalar_quantity(one.name, float(np.ravel(one.values)[k]), one.unit) for one in known},
+            _reason(motion, design, float(place)),
+            float(place),
+        )
+        for k, place in enumerate(places)
+    )
+
+
+def _reason(motion: Motion, design: int, place: float) -> str:
+    """Return why poses beside a place cannot be assembled."""
+    axes = motion.shape[:-1]
+    index = tuple(int(i) for i in np.unravel_index(design, axes)) if axes else ()
+    mine = (gap for gap in gaps(motion) if gap.design == index)
+    return next((gap.reason for gap in mine if gap.first - 1 <= place <= gap.last + 1), "")

@@ -1,4 +1,4 @@
-"""Figures of a motion: single values, and where along the motion they are taken; ranges of quantities."""
+"""Figures of a motion: single values with their places along the motion, and ranges of quantities."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class PlacedFigure:
         return float(self.value.values)
 
     def __repr__(self) -> str:
-        return f"PlacedFigure({told(self.value)} at {', '.join(map(told, self.at.values()))})"
+        return f"PlacedFigure({displayed_number(self.value)} at {', '.join(map(displayed_number, self.at.values()))})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,25 +53,25 @@ class Range:
         return self.greatest if abs(self.greatest.number) >= abs(self.least.number) else self.least
 
 
-def told(one: Quantity) -> str:
+def displayed_number(one: Quantity) -> str:
     """Return a quantity of one value as it is told, angles in degrees.
 
-    >>> told(Quantity("crank", "rad", np.pi))
+    >>> displayed_number(Quantity("crank", "rad", np.pi))
     'crank 180 deg'
     """
     found = one.shown
     return f"{found.name} {float(found.values) + 0.0:.6g} {found.unit}".rstrip()
 
 
-def number(one: Quantity) -> float:
+def quantity_number(one: Quantity) -> float:
     """Return the number of a quantity of one value."""
     return float(one.values)
 
 
-def scalar(name: str, value: float, unit: str) -> Quantity:
+def scalar_quantity(name: str, value: float, unit: str) -> Quantity:
     """Return a quantity of one value.
 
-    >>> scalar("ram.stroke", 52.0, "mm")
+    >>> scalar_quantity("ram.stroke", 52.0, "mm")
     Quantity('ram.stroke', 1 values in mm)
     """
     return Quantity(name, unit, float(value))
@@ -89,7 +89,9 @@ def drivers_at(motion: Motion, design: int, places: Sequence[float]) -> list[dic
     for name in moving_drivers(motion, design) or tuple(motion.drives):
         dimension = coordinate_dimension(motion.drives[name].is_angle)
         columns[name] = found.drives[name], unit_of(motion.mechanism.unit, dimension)
-    return [{name: scalar(name, v[k], unit) for name, (v, unit) in columns.items()} for k in range(len(places))]
+    return [
+        {name: scalar_quantity(name, v[k], unit) for name, (v, unit) in columns.items()} for k in range(len(places))
+    ]
 
 
 def moving_drivers(motion: Motion, design: int) -> tuple[str, ...]:
@@ -113,7 +115,7 @@ def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> di
     known = [row for row in known if not np.isnan(row[3])]
     at = drivers_at(motion, design, [place for *_, place in known])
     figures = {
-        (name, word): PlacedFigure(scalar(f"{name}.{word}", value, unit), where, place)
+        (name, word): PlacedFigure(scalar_quantity(f"{name}.{word}", value, unit), where, place)
         for (name, word, unit, value, place), where in zip(known, at, strict=True)
     }
     return {
@@ -144,6 +146,6 @@ def _at_pose(motion: Motion, design: int, names: Sequence[str]) -> dict[str, Ran
         one = whole.part(part) if part else whole
         value = np.broadcast_to(one.values, motion.shape).reshape(-1)[design]
         if np.isfinite(value):
-            figure = PlacedFigure(scalar(name, float(value), one.unit), where, 0.0)
+            figure = PlacedFigure(scalar_quantity(name, float(value), one.unit), where, 0.0)
             found[name] = Range(figure, figure, True)
     return found

@@ -1,4 +1,4 @@
-"""Outputs of a motion as what moves: the coordinate of each, and its rates, by the names of quantities."""
+"""Outputs of a motion: the coordinate of each, and its rates, by the names of quantities."""
 
 from __future__ import annotations
 

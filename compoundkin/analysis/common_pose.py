@@ -1,4 +1,4 @@
-"""A pose that two mechanisms have in common: from there their drivers are moved alike."""
+"""A pose that two mechanisms have in common: by the places of their points, else by the names of the points."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.analysis.comparison.compared_side import ComparedSide
-from compoundkin.analysis.comparison.like_stance import values_of_like_stance
-from compoundkin.analysis.comparison.point_partners import partners_by_name, partners_by_place, shares_places
+from compoundkin.analysis.correspondence import ComparedMechanism, partners_by_name, partners_by_place, shares_places
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import LENGTHS
 
 # So many steps of Newton are taken to a pose, from so many poses of a motion; steps below this are rounding.
 _STEPS, _STARTS, _STILL = 10, 2, 1e-13
+
+
 # Steps go on while they leave less than this part of the squares: near a pose that is found they leave far less.
 _LESS = 0.9
+
+
 # Of mechanisms whose sizes differ by more than this factor neither is the other, or a part of it.
 _LIKE = 4.0
 
@@ -30,8 +33,8 @@ class CommonPose:
     `values` and `other_values` are their drivers'. `matched_by` is "place" or "name".
     """
 
-    one: ComparedSide
-    other: ComparedSide
+    one: ComparedMechanism
+    other: ComparedMechanism
     values: Mapping[str, float]
     other_values: Mapping[str, float]
     points: Mapping[str, str]
@@ -44,7 +47,7 @@ class CommonPose:
         return CommonPose(self.other, self.one, self.other_values, self.values, points, self.matched_by)
 
 
-def common_pose(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
+def common_pose(one: ComparedMechanism, other: ComparedMechanism) -> CommonPose | None:
     """Return a pose that both have. None where no place and too few names tell one."""
     for scale in _scales(one, other):
         found = _by_place(one, other.scaled(scale))
@@ -53,7 +56,7 @@ def common_pose(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
     return _by_name(one, other.scaled(_scales(one, other)[0]))
 
 
-def _scales(one: ComparedSide, other: ComparedSide) -> list[float]:
+def _scales(one: ComparedMechanism, other: ComparedMechanism) -> list[float]:
     """Return what lengths of the second may have to be multiplied by.
 
     Units tell it where both have some; else they are as written, or the power of ten that makes the two as large.
@@ -71,27 +74,27 @@ def scale_of_units(one: Mechanism, other: Mechanism) -> float | None:
     return units[1] / units[0] if units[0] and units[1] else None
 
 
-def _by_place(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
+def _by_place(one: ComparedMechanism, other: ComparedMechanism) -> CommonPose | None:
     """Find the pose in which one is shown in the motion of the other."""
     if not 1.0 / _LIKE <= one.size / other.size <= _LIKE:
         return None
     at_one, at_other = (side.places(side.there)[0] for side in (one, other))
-    values = _found(one, other, at_other)
+    values = _values_at_places(one, other, at_other)
     if values is not None:
         return _matched(one, other, values, other.shown)
-    values = _found(other, one, at_one)
+    values = _values_at_places(other, one, at_one)
     return None if values is None else _matched(one, other, one.shown, values)
 
 
 def _matched(
-    one: ComparedSide, other: ComparedSide, values: Mapping[str, float], other_values: Mapping[str, float]
+    one: ComparedMechanism, other: ComparedMechanism, values: Mapping[str, float], other_values: Mapping[str, float]
 ) -> CommonPose:
     places = one.places(one.at(values)), other.places(other.at(other_values))
     points = partners_by_place(one, places[0], other, places[1])
     return CommonPose(one, other, values, other_values, points, "place")
 
 
-def _found(moving: ComparedSide, shown: ComparedSide, places: Number) -> dict[str, float] | None:
+def _values_at_places(moving: ComparedMechanism, shown: ComparedMechanism, places: Number) -> dict[str, float] | None:
     """Return the driver values at which a mechanism is where another is shown. None where it never comes there."""
     for start in _starts(moving, shown, places):
         try:
@@ -104,7 +107,7 @@ def _found(moving: ComparedSide, shown: ComparedSide, places: Number) -> dict[st
     return None
 
 
-def _starts(moving: ComparedSide, shown: ComparedSide, places: Number) -> Iterator[dict[str, float]]:
+def _starts(moving: ComparedMechanism, shown: ComparedMechanism, places: Number) -> Iterator[dict[str, float]]:
     """Yield the values of the pose that is shown, then of those nearest to the places."""
     yield moving.shown
     course = moving.places(moving.motion)
@@ -114,7 +117,7 @@ def _starts(moving: ComparedSide, shown: ComparedSide, places: Number) -> Iterat
             yield moving.values(int(pose))
 
 
-def _offsets(moving: ComparedSide, shown: ComparedSide, at: Number, places: Number) -> tuple[Number, Number]:
+def _offsets(moving: ComparedMechanism, shown: ComparedMechanism, at: Number, places: Number) -> tuple[Number, Number]:
     """Return which points are led to places, and how far off they are. It is the marks of the one that has fewer."""
     if len(moving.marks) <= len(shown.marks):
         which = np.array([moving.letters.index(k) for k in moving.marks], dtype=int)
@@ -127,7 +130,7 @@ def _offsets(moving: ComparedSide, shown: ComparedSide, at: Number, places: Numb
 
 
 def _approached(
-    moving: ComparedSide, shown: ComparedSide, places: Number, start: Mapping[str, float]
+    moving: ComparedMechanism, shown: ComparedMechanism, places: Number, start: Mapping[str, float]
 ) -> dict[str, float]:
     """Return the driver values at which the points are nearest to the places, by the method of Gauss and Newton."""
     values, before = dict(start), np.inf
@@ -147,10 +150,70 @@ def _approached(
     return values
 
 
-def _by_name(one: ComparedSide, other: ComparedSide) -> CommonPose | None:
+def _by_name(one: ComparedMechanism, other: ComparedMechanism) -> CommonPose | None:
     """Return a pose by the names of points. None where no more than half of the marks have names in common."""
     points = partners_by_name(one, other)
     known = sum(k in points for k in one.marks)
     if 2 * known <= min(len(one.marks), len(other.marks)):
         return None
-    return CommonPose(one, other, one.shown, values_of_like_stance(one, other, points), points, "name")
+    return CommonPose(one, other, one.shown, values_of_matching_pose(one, other, points), points, "name")
+
+
+# Points nearer to each other than this part of the size tell no direction.
+_DISTINCT = 1e-9
+
+
+def values_of_matching_pose(
+    one: ComparedMechanism, other: ComparedMechanism, points: Mapping[str, str]
+) -> dict[str, float]:
+    """Return the second's driver values at which it stands as the first is shown.
+
+    Drivers are those of the same name, else of the same rank. Where no points tell how a link stands, and along
+    slides, the values are equal.
+    """
+    names = list(one.motion.drives)
+    values = dict(other.shown)
+    for rank, name in enumerate(other.motion.drives):
+        like = name if name in names else names[min(rank, len(names) - 1)]
+        is_angle = other.structure.driven_angles[name]
+        if is_angle != one.structure.driven_angles[like]:
+            continue
+        turn = _turn(one, like, other, name, points) if is_angle else None
+        here = one.shown[like] if is_angle else one.shown[like] / other.scale
+        values[name] = here if turn is None else other.shown[name] + turn
+    return values
+
+
+def _turn(
+    one: ComparedMechanism, driver: str, other: ComparedMechanism, name: str, points: Mapping[str, str]
+) -> float | None:
+    """Return by how much the second's driven link has to turn to stand as the first's. None where no points tell."""
+    total = 1 + 0j
+    drive, like = other.structure.driven[name].drive, one.structure.driven[driver].drive
+    for link, own, part in ((like.link, drive.link, 1), (like.on, drive.on, -1)):
+        if (link, own) == (FRAME, FRAME):
+            continue
+        off = _between(one, link, other, own, points)
+        if off is None:
+            return None
+        total *= off if part > 0 else np.conj(off)
+    return float(np.angle(total))
+
+
+def _between(
+    one: ComparedMechanism, link: str, other: ComparedMechanism, own: str, points: Mapping[str, str]
+) -> complex | None:
+    """Return the turn from a link of the second to one of the first, of size one. None where no two points tell it."""
+    on, of = one.mechanism.carriers, other.mechanism.carriers
+    shared = [(k, p) for k, p in points.items() if k in on and link in on[k] and own in of[p]]
+    if len(shared) < 2:
+        return None
+    at_one = dict(zip(one.letters, one.places(one.there)[0], strict=True))
+    at_other = dict(zip(other.letters, other.places(other.there)[0], strict=True))
+    (first, partner), *rest = shared
+    for letter, like in rest:
+        ways = at_one[letter] - at_one[first], at_other[like] - at_other[partner]
+        if min(map(abs, ways)) > _DISTINCT * one.size:
+            off = complex(ways[0] / ways[1])
+            return off / abs(off)
+    return None

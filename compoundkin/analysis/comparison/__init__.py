@@ -1,1 +1,0 @@
-"""Comparison: two mechanisms side by side, their structure, their dimensions, and how far apart they move."""

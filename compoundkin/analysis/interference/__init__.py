@@ -1,1 +1,0 @@
-"""Interference: which outlines of links touch along a motion, and how near the others come."""

@@ -1,0 +1,408 @@
+"""The workspace of a point of a mechanism with two or three drivers: the region it reaches, and its boundary.
+
+Where the point is prescribed the rates of the drivers are the inverse of the Jacobian; where its determinant is zero
+the mechanism moves though its drivers rest.
+
+Sources: J. J. Craig, Introduction to Robotics, section 4.2 (reachable workspace); J.-P. Merlet, Parallel Robots,
+chapter 7; C. Gosselin and J. Angeles (1990), the second kind, for its singular curves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import TURN, Number, first_entry
+from compoundkin.base.copies import CopiesFields
+from compoundkin.base.display import display_function
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, suggestion
+from compoundkin.configurations.driver_range import starting_values
+from compoundkin.configurations.enumeration import AllModes
+from compoundkin.configurations.prescribed_point import ACROSS, ALONG, TURN_OF, ModeSigns, PrescribedPoint
+from compoundkin.configurations.reach import ROUNDING, GroupModes, Reach, reference_pose, signs_of_pose, value_in_range
+from compoundkin.configurations.region_boundary import Lattice, boundaries, lattice_of, signed_area
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.block import BLOCK
+from compoundkin.kinematics.solution import solving_order_of
+from compoundkin.kinematics.solving_order import run
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs.travel_limits import as_travel_limited
+from compoundkin.structure.kinematic_structure import Structure
+
+# Cells along the longer side, beside the boundary: with two drivers each takes a microsecond, with three the angle of
+# the point's link is looked for at each, and groups without a closed form take milliseconds.
+CELLS, CELLS_OF_THREE, CELLS_OF_NUMBERED = 320, 128, 48
+
+
+FEWEST, MOST = 8, 4096
+
+
+# The region is looked for within the places that driving reaches, and this part of their extent around.
+AROUND = 0.06
+
+
+EVERY_MODE = "all"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Workspace(CopiesFields):
+    """The region of the plane that a point reaches, to the mechanism's length unit.
+
+    `outer` and `inner` are the closed curves (complex, the last point the first) around it and around its holes. Their
+    points are on the boundary to rounding, the straight lines between them within `step`. `ranges` are those of the
+    drivers (absent: a full turn), `orientation` is the angle of the point's link where it is fixed, `modes` says which
+    assembly modes count, `pose` is one pose of the mechanism.
+    """
+
+    point: str
+    drivers: tuple[str, ...]
+    ranges: Mapping[str, tuple[float, float]]
+    orientation: float | None
+    modes: str
+    outer: tuple[Number, ...]
+    inner: tuple[Number, ...]
+    lattice: Lattice
+    reach: Reach
+    pose: Motion
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism whose point it is."""
+        return self.pose.mechanism
+
+    @property
+    def link(self) -> str:
+        """The link whose angle counts, the first that carries the point."""
+        return self.reach.led.carrier
+
+    @property
+    def step(self) -> float:
+        """The width of the cells beside the boundary. Details below it, and holes below four of it, are not seen."""
+        return self.lattice.step
+
+    @property
+    def area(self) -> float:
+        """The area of the region, less its holes. It is that of the polygons."""
+        return sum(signed_area(curve) for curve in (*self.outer, *self.inner))
+
+    @property
+    def places(self) -> Number:
+        """A square lattice of places (rows, columns), complex."""
+        return self.lattice.places
+
+    @property
+    def inside(self) -> Number:
+        """Which of the `places` are reached."""
+        return self.lattice.inside
+
+    @cached_property
+    def condition(self) -> Number:
+        """The condition number of the Jacobian to the point, at the `places`.
+
+        Lengths are parts of the size. The least of the configurations that lead there, by a dozen angles where the
+        orientation is free; NaN outside, where none of these leads, and where groups have no closed form.
+        """
+        found = np.full(self.inside.shape, np.nan)
+        if self.reach.live is not None:
+            found[self.inside] = least_condition_numbers(self.reach, self.lattice)
+        return found
+
+    @cached_property
+    def determinants(self) -> Number:
+        """The determinants of the inverse Jacobian over the `places`, (configurations, rows, columns).
+
+        Zero where the drivers lose their hold (singular of the second kind, parallel). Of every configuration that
+        leads there, NaN elsewhere; none with three drivers where the orientation is free.
+        """
+        return rate_determinants(self.reach, self.lattice)
+
+    def contains(self, points: Any) -> Number:
+        """Tell which places the point reaches, complex or an array of them. Asked of the mechanism, not of the curves.
+
+        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> workspace(load_named("five-bar"), "P").contains([59 + 158j, 300 + 0j]).tolist()
+        [True, False]
+        """
+        z = np.asarray(points)
+        if z.dtype.kind not in "iufc":
+            raise InvalidInput(Problem("points", f"{points!r} are no places", "give complex numbers x + 1j * y"))
+        return (self.reach.at(z.astype(complex).ravel()).margin >= -ROUNDING).reshape(z.shape)
+
+    def plot(self, **options: Any) -> Any:
+        """Draw the region with its boundary, and the mechanism in one pose. `compoundkin.plots.workspace` of it."""
+        return display_function("workspace")(self, **options)
+
+    def __repr__(self) -> str:
+        holes = f", {len(self.inner)} of them holes" if self.inner else ""
+        parts = len(self.outer) + len(self.inner)
+        unit = f" {self.mechanism.unit}^2" if self.mechanism.unit else ""
+        told = f"{self.area:.6g}{unit}, {parts} boundary curve{'s' if parts > 1 else ''}{holes}"
+        return f"Workspace({self.point} by {', '.join(self.drivers)}: {told}; {self.modes})"
+
+
+@checked
+def workspace(
+    mechanism: Mechanism | Structure,
+    point: str,
+    ranges: Mapping[str, Any] | None = None,
+    *,
+    orientation: float | None = None,
+    modes: Mapping[str, int] | str | None = None,
+    cells: int | None = None,
+) -> Workspace:
+    """Return the region that a point reaches by two or three drivers.
+
+    `ranges` of the drivers (low, high) are radians or lengths; a driver of a pin turns fully without one, a cylinder
+    goes through its stroke, a slide needs one. With three drivers the point's link may have any angle, or that of
+    `orientation`. The region is that of the assembly modes that `solve` takes, or those `modes` by link, whatever the
+    solution of the inverse problem; of groups without signs, and with ``modes="all"`` of all, any mode counts. `cells`
+    go along the longer side of the region. Dimensions are those of the first design.
+
+    Each place is asked of the mechanism led there: reached where all its groups close within the ranges. So the
+    boundary is exact; only what is finer than a cell may be missed.
+
+    Raises UnknownName for a point that is not there; InvalidInput for one driver, four, ranges that lack, and where the
+    drivers do not follow from the place; NotAssembled where nothing is reached.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> arm = Mechanism("Arm", link("frame", A=0), link("upper", A=0, B=2), link("fore", B=0, P=1), drive("upper"),
+    ...                 drive("fore", on="upper"))
+    >>> found = workspace(arm, "P")
+    >>> round(found.area / np.pi, 2), len(found.outer), len(found.inner)
+    (8.0, 1, 1)
+    """
+    if orientation is not None and not np.isfinite(orientation):
+        raise InvalidInput(Problem("orientation", f"{orientation} is no angle", "give radians"))
+    structure = solving_order_of(mechanism).structure
+    known = driver_ranges(structure, ranges)
+    free = free_drivers(structure, point, orientation)
+    started = starting_values(solving_order_of(structure), {}, "")
+    values = {name: value_in_range(value, known.get(name)) for name, value in started.items()}
+    led = PrescribedPoint.of(
+        structure.mechanism, point, free, {name: v for name, v in values.items() if name not in free}
+    )
+    pose = reference_pose(structure, values, None if modes == EVERY_MODE else modes)
+    own = GroupModes({} if modes == EVERY_MODE else signs_of_pose(pose))
+    reach = Reach(led, {name: known[name] for name in free if name in known}, own, None, orientation)
+    z, angle = reached_by_driving(led, known)
+    met = reach.meets(z, angle) if len(z) else np.zeros(0, dtype=bool)
+    if not met.any():
+        raise _nothing(reach)
+    lattice = _lattice(reach := reach.occurring(z[met], angle[met]), z[met], cells)
+    curves = boundaries(reach, lattice)
+    outer, inner = (tuple(c for c in curves if (signed_area(c) > 0.0) == is_outer) for is_outer in (True, False))
+    told = "the assembly modes of solve" if own.signs else "every assembly mode"
+    return Workspace(point, free, dict(known), orientation, told, outer, inner, lattice, reach, pose)
+
+
+def _lattice(reach: Reach, z: Number, cells: int | None) -> Lattice:
+    """Return the lattice over the region. Raises NotAssembled where it is empty."""
+    usual = CELLS_OF_NUMBERED if reach.live is None else CELLS_OF_THREE if reach.seeks_angle else CELLS
+    wide = usual if cells is None else cells
+    if not FEWEST <= wide <= MOST:
+        raise InvalidInput(Problem("cells", f"{wide} cells are no lattice", f"give {FEWEST} to {MOST}"))
+    size = reach.led.driven.size
+    if reach.angle is not None:
+        # of all angles the drivers reach more: the region is looked for first
+        first = lattice_of(reach, _box(z, size), CELLS_OF_THREE)
+        z = first.places[first.inside]
+        if not len(z):
+            raise _nothing(reach)
+    return lattice_of(reach, _box(z, size), wide)
+
+
+def _nothing(reach: Reach) -> NotAssembled:
+    what = f"{reach.led.point} reaches no region: the mechanism cannot be assembled in it within the ranges"
+    return NotAssembled(Problem("workspace", what, 'widen the ranges, leave orientation out, or try modes="all"'))
+
+
+def _box(z: Number, size: float) -> tuple[complex, complex]:
+    low, high = complex(np.min(z.real), np.min(z.imag)), complex(np.max(z.real), np.max(z.imag))
+    wide = AROUND * max((high - low).real, (high - low).imag) or size
+    return low - complex(wide, wide), high + complex(wide, wide)
+
+
+# So many values of each driver are tried to see about where the point gets, with two drivers and with three.
+TRIED = {2: 40, 3: 12}
+
+
+# A full turn is not tried at round angles, where poses are special.
+SEAM = 0.123
+
+
+# So many of the places that they reach are enough to tell configurations and extent.
+ENOUGH = 3000
+
+
+def driver_ranges(structure: Structure, ranges: Mapping[str, Any] | None) -> dict[str, tuple[float, float]]:
+    """Return the ranges of the drivers that have one. By a call, or by the ends of guides."""
+    problems = [
+        Problem(f"ranges.{name}", f"there is no driver {name!r}", suggestion(name, list(structure.driven)))
+        for name in ranges or {}
+        if name not in structure.driven
+    ]
+    if problems:
+        raise InvalidInput(problems)
+    found = {}
+    for name, step in structure.driven.items():
+        own = as_travel_limited(step.pair)
+        if ranges and name in ranges:
+            found[name] = _range(name, ranges[name])
+        elif own is not None and np.all(
+            np.isfinite([first_entry(b) for b in own.bounds(structure.mechanism.geometry)])
+        ):
+            low, high = own.bounds(structure.mechanism.geometry)
+            found[name] = float(first_entry(low)), float(first_entry(high))
+        elif not step.pair.free_is_angle:
+            problems.append(Problem(f"ranges.{name}", "a slide has no end of its own", _example(structure, name)))
+    if problems:
+        raise InvalidInput(problems)
+    # a full turn and more is no limit
+    return {name: v for name, v in found.items() if not structure.driven_angles[name] or v[1] - v[0] < TURN}
+
+
+def _range(name: str, value: Any) -> tuple[float, float]:
+    try:
+        low, high = (float(one) for one in value)
+    except (TypeError, ValueError):
+        raise InvalidInput(Problem(f"ranges.{name}", f"{value!r} is not a range", "give (low, high)")) from None
+    if not (np.isfinite([low, high]).all() and low < high):
+        raise InvalidInput(Problem(f"ranges.{name}", f"{low:g} to {high:g} is not a range", "give (low, high)"))
+    return low, high
+
+
+def _example(structure: Structure, name: str) -> str:
+    values = next(drive.values for drive in structure.mechanism.drives if drive.name == name)
+    low, high = (float(np.min(values)), float(np.max(values))) if values is not None else (0.0, 0.0)
+    if low == high:
+        low, high = 0.0, structure.mechanism.geometry.size
+    return f"say from where to where: ranges={{{name!r}: ({low:g}, {high:g})}}"
+
+
+def free_drivers(structure: Structure, point: str, orientation: float | None) -> tuple[str, ...]:
+    """Return the drivers that move a point, two or three. Raises UnknownName, and InvalidInput for another number."""
+    carriers = structure.mechanism.carriers
+    if point not in carriers:
+        raise UnknownName(Problem(point, "there is no such point", suggestion(point, list(carriers))))
+    moving = set(_drivers_of(structure, carriers[point][0]))
+    free = tuple(name for name in structure.driven if name in moving)
+    if len(free) in TRIED:
+        if orientation is not None and len(free) == 2:
+            link = carriers[point][0]
+            what = f"two drivers leave {link} no choice of its angle where {point} is"
+            raise InvalidInput(Problem("orientation", what, "leave it out"))
+        return free
+    if len(free) < 2:
+        told = f"one driver ({free[0]}) moves {point}, on a curve" if free else f"no driver moves {point}"
+        how = f'a curve is drawn by compoundkin.plots.paths(motion, "{point}"); name a point that more drivers move'
+        raise InvalidInput(Problem("workspace", f"{told}: that is no region", how))
+    what = f"{len(free)} drivers ({', '.join(free)}) move {point}, and a place and an angle are led by three at most"
+    raise InvalidInput(Problem("workspace", what, "hold some: replace their drives by links of one piece"))
+
+
+def _drivers_of(structure: Structure, link: str) -> Iterator[str]:
+    """Yield the drivers that may move a link, some of them again."""
+    group = next((group for group in structure.groups if link in group.links), None)
+    if group is not None:
+        yield from (step.drive.name for body in group.bodies for step in body.driven if not step.is_passive)
+        for used in group.uses:
+            yield from _drivers_of(structure, used)
+        return
+    for step in structure.ground.driven:
+        if step.link == link:
+            if not step.is_passive:
+                yield step.drive.name
+            yield from _drivers_of(structure, step.parent)
+
+
+def reached_by_driving(led: PrescribedPoint, ranges: Mapping[str, tuple[float, float]]) -> tuple[Number, Number]:
+    """Return places (n,) that the point is driven to in any mode. The angles of its link too."""
+    count = TRIED[len(led.free)]
+    axes = [
+        np.linspace(*ranges[name], count) if name in ranges else SEAM + TURN * np.arange(count) / count
+        for name in led.free
+    ]
+    grid = [axis.ravel() for axis in np.meshgrid(*axes)]
+    drives = {**led.given.drives, **{name: (values[None],) for name, values in zip(led.free, grid, strict=True)}}
+    given = led.given.of_poses(grid[0].size).driven(drives)
+    with np.errstate(all="ignore"):
+        found = AllModes.of(led.driven, given)
+        closed = np.asarray(found.block.failed) == 0
+        z, angle, real = (found.full(array).ravel() for array in (*led.placed(found.block), closed))
+    z, angle = z[real], angle[real]
+    thin = slice(None, None, max(1, z.size // ENOUGH))
+    return z[thin], angle[thin]
+
+
+# So many angles of the point's link are tried where any will do.
+ANGLES = 12
+
+
+def inverse_rates(reach: Reach, z: Number, angle: Number, number: Number) -> Number:
+    """Return the rates (n, drivers, coordinates) of drivers as the point is led.
+
+    They are free of units. Its coordinates are x, y and, where it is led, the angle of its link; `number` is the
+    configuration of each place.
+    """
+    cuts = [slice(k, k + BLOCK) for k in range(0, max(len(z), 1), BLOCK)]
+    return np.concatenate([_rates(reach, z[k], angle[k], number[k]) for k in cuts])
+
+
+def _rates(reach: Reach, z: Number, angle: Number, number: Number) -> Number:
+    led, size = reach.led, reach.led.driven.size
+    signs = ModeSigns({k: v[number][None] for k, v in (reach.live or {}).items()})
+    columns = []
+    for moved, unit in ((ALONG, size), (ACROSS, size), *([(TURN_OF, 1.0)] if led.turns else [])):
+        block, _ = led.block(z, angle, 1, moved)
+        with np.errstate(all="ignore"):
+            run(led.led, block, signs)
+            rates = {name: one.derivative(1) for name, one in led.coordinates(block).items()}
+        units = {name: 1.0 if led.driven.structure.driven_angles[name] else size for name in rates}
+        columns.append([np.broadcast_to(one, (1, len(z)))[0] * unit / units[name] for name, one in rates.items()])
+    return np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
+
+
+def least_condition_numbers(reach: Reach, lattice: Lattice) -> Number:
+    """Return the least condition numbers (n,) at the inner places of a lattice.
+
+    They are of the Jacobian to the point alone, over the configurations that lead there; where the point's link may
+    have any angle, over some angles too.
+    """
+    z = lattice.places[lattice.inside]
+    least = np.full(len(z), np.nan)
+    for turned in TURN * np.arange(ANGLES) / ANGLES if reach.seeks_angle else [reach.angle or 0.0]:
+        angle = np.full(len(z), turned)
+        for number, on in enumerate(reach.margins(z, angle) >= 0.0):
+            count = np.full(np.count_nonzero(on), number)
+            least[on] = np.fmin(least[on], _condition(inverse_rates(reach, z[on], angle[on], count)))
+    return least
+
+
+def _condition(rates: Number) -> Number:
+    """Return the condition numbers of the place by the drivers, from the drivers' rates."""
+    unit = np.eye(rates.shape[1])
+    safe = np.where(np.isfinite(rates).all(axis=(1, 2))[:, None, None], rates, 0.0 * unit)
+    held = np.abs(np.linalg.det(safe)) > 0.0
+    values = np.linalg.svd(np.linalg.inv(np.where(held[:, None, None], safe, unit))[:, :2], compute_uv=False)
+    return np.where(held, values[:, 0] / values[:, -1], np.inf)
+
+
+def rate_determinants(reach: Reach, lattice: Lattice) -> Number:
+    """Return the determinants of the drivers' rates over a lattice, (configurations, rows, columns).
+
+    Of the configurations that occur, NaN where each is none; none where the point's link may have any angle.
+    """
+    if reach.live is None or reach.seeks_angle:
+        return np.empty((0, *lattice.places.shape))
+    z, angle = lattice.places.ravel(), lattice.angle.ravel()
+    margins = reach.margins(z, angle, own=False)
+    found = np.full(margins.shape, np.nan)
+    for number, on in enumerate(margins >= 0.0):
+        count = np.full(np.count_nonzero(on), number)
+        found[number, on] = np.linalg.det(inverse_rates(reach, z[on], angle[on], count))
+    return found.reshape(-1, *lattice.places.shape)
