@@ -60,10 +60,10 @@ if TYPE_CHECKING:
     from compoundkin.programs.compiled_path import compile
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
-    from compoundkin.studies.optimisation.better_dimensions import optimise
+    from compoundkin.studies.optimisation.design_optimisation import optimise
+    from compoundkin.studies.samples.value_ranges import around
     from compoundkin.studies.study import study
     from compoundkin.studies.tolerances.tolerance import tolerance
-    from compoundkin.studies.variations.around import around
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
@@ -143,7 +143,7 @@ globals().pop("configurations", None)
 _LATE = {
     "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
-    "around": "studies.variations.around",
+    "around": "studies.samples.value_ranges",
     "characteristics": "analysis.characteristics.characteristics",
     "circuits": "configurations.circuit_search",
     "compile": "programs.compiled_path",
@@ -157,7 +157,7 @@ _LATE = {
     "load": "files",
     "loop_equations": "analysis.equations.loop_equations",
     "mobility_analysis": "structure.redundancy.mobility_analysis",
-    "optimise": "studies.optimisation.better_dimensions",
+    "optimise": "studies.optimisation.design_optimisation",
     "page": "view.report",
     "plot": "view.plot",
     "quantity": "kinematics.quantities",

@@ -8,18 +8,12 @@
 
 from __future__ import annotations
 
-from compoundkin.studies.goals.assembly_constraint import assembles, full_turn
-from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmits
 from compoundkin.studies.goals.clearance_constraint import clearance
-from compoundkin.studies.goals.distance_constraint import distance
-from compoundkin.studies.goals.dwell_goal import dwell, even
+from compoundkin.studies.goals.constraints import assembles, at_least, at_most, box, distance, full_turn, transmits
 from compoundkin.studies.goals.function_goal import function
-from compoundkin.studies.goals.least_goal import greatest, least
-from compoundkin.studies.goals.path_goal import path
-from compoundkin.studies.goals.pose_goal import poses
-from compoundkin.studies.goals.straight_line_goal import straight_line
-from compoundkin.studies.goals.target_goal import target
-from compoundkin.studies.goals.trace_goal import trace
+from compoundkin.studies.goals.path_goals import path, poses, trace
+from compoundkin.studies.goals.range_goals import dwell, even, straight_line
+from compoundkin.studies.goals.value_goals import greatest, least, target
 
 __all__ = [
     "assembles", "at_least", "at_most", "box", "clearance", "distance", "dwell", "even", "full_turn", "function",

@@ -9,16 +9,12 @@ array([12.])
 
 from __future__ import annotations
 
-from compoundkin.dynamics.balance.balance_figures import BalanceFigure
-from compoundkin.dynamics.balance.counterweight_masses import Counterweight
-from compoundkin.dynamics.balance.counterweights import ForceBalance, counterweights
-from compoundkin.dynamics.drives.drive_figures import DriveFigures, drive_figures
-from compoundkin.dynamics.drives.equilibria import EquilibriumPositions, equilibria
-from compoundkin.dynamics.drives.equilibrium_kind import EquilibriumPosition
-from compoundkin.dynamics.drives.flywheel import Flywheel, flywheel
-from compoundkin.dynamics.drives.force_ratio import force_ratio
-from compoundkin.dynamics.drives.harmonics import Harmonics, harmonics
-from compoundkin.dynamics.work.equivalent_inertia import EquivalentInertia, equivalent_inertia
+from compoundkin.dynamics.counterweights import BalanceFigure, Counterweight, ForceBalance, counterweights
+from compoundkin.dynamics.driver_course import DriveFigures, drive_figures, force_ratio
+from compoundkin.dynamics.equilibria import EquilibriumPosition, EquilibriumPositions, equilibria
+from compoundkin.dynamics.flywheel import Flywheel, flywheel
+from compoundkin.dynamics.harmonics import Harmonics, harmonics
+from compoundkin.dynamics.mass_motion import EquivalentInertia, equivalent_inertia
 
 __all__ = [
     "BalanceFigure",

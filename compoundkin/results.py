@@ -24,22 +24,17 @@ from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.efficiency import Efficiency
-from compoundkin.dynamics.friction.friction_forces import FrictionForces, PairFriction, Wedged
-from compoundkin.dynamics.friction.pose_stretches import PoseStretch
-from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
-from compoundkin.dynamics.named_forces.frame_forces import ShakingForce
-from compoundkin.dynamics.named_forces.lift_off import LiftOff, LiftOffSpeed
-from compoundkin.dynamics.named_forces.link_forces import LinkForces
-from compoundkin.dynamics.named_forces.link_wrench import LinkWrench
-from compoundkin.dynamics.named_forces.pair_forces import PairForce
-from compoundkin.dynamics.named_forces.pin_forces import PinForces
-from compoundkin.dynamics.reactions.held_pair import HoldingEffort
+from compoundkin.dynamics.friction.friction_forces import FrictionForces, PairFriction, PoseStretch, Wedged
+from compoundkin.dynamics.reactions.driver_efforts import DriverEffort, Powers
+from compoundkin.dynamics.reactions.link_forces import LinkForces, PinForces, ShakingForce
+from compoundkin.dynamics.reactions.link_wrench import LinkWrench
+from compoundkin.dynamics.reactions.pair_forces import LiftOff, LiftOffSpeed, PairForce
 from compoundkin.dynamics.reactions.singular_poses import SingularPose
 from compoundkin.dynamics.reactions.undetermined import Undetermined
+from compoundkin.dynamics.reactions.virtual_work import HoldingEffort
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
-from compoundkin.dynamics.work.power import Powers
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.files.exchange.known_formats import KnownFormat
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
@@ -58,12 +53,11 @@ from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
 from compoundkin.studies.optimisation.optimum import ChangedDimension, HeldConstraint, LocalMinimum, Optimum
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.samples.value_ranges import AroundCentre
 from compoundkin.studies.study import Study
-from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
-from compoundkin.studies.tolerances.sampled_output import SampledOutput
+from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.tolerances.output_tolerance import OutputTolerance, SampledOutput
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
-from compoundkin.studies.variations.around import AroundCentre
 from compoundkin.view.animation import Animation
 from compoundkin.view.page import Page
 from compoundkin.view.plot import Plot

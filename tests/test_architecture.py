@@ -69,9 +69,9 @@ COMMON |= {"force", "moment", "effort", "power"}
 # Problems name places in files and calls, and remedies parts, that are called like attributes.
 KEYS_OF_PROBLEMS = {
     "analysis/mechanical_advantage.py: .angle",
-    "dynamics/drives/driver_course.py: .effort",
-    "dynamics/drives/driver_course.py: .power",
-    "dynamics/work/power.py: .power",
+    "dynamics/driver_course.py: .effort",
+    "dynamics/driver_course.py: .power",
+    "dynamics/reactions/driver_efforts.py: .power",
     "model/loads/force.py: .force",
     "model/loads/pretension.py: .force",
     "model/pairs/cylinder.py: .stroke",

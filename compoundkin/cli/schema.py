@@ -22,7 +22,7 @@ def command(kind: str) -> int:
     import json
 
     from compoundkin.files import schema
-    from compoundkin.studies.study_files.study_schema import study_schema
+    from compoundkin.studies.study_document import study_schema
 
     made = {"mechanism": schema, "study": study_schema}[kind]()
     put(json.dumps(made, indent=2, ensure_ascii=False) + "\n")

@@ -12,8 +12,8 @@ from compoundkin.cli.file_options import FORMATS, put_report
 from compoundkin.cli.shell import NOT_ASSEMBLED, say
 
 if TYPE_CHECKING:
-    from compoundkin.studies.runs.study_result import StudyResult
     from compoundkin.studies.study import Study
+    from compoundkin.studies.study_result import StudyResult
 
 
 @click.command(
@@ -50,7 +50,7 @@ def command(
     Ctrl-C stops it: with -o what is written stays, and the same command goes on from there.
     Exit code 3: no design assembles.
     """
-    from compoundkin.studies.loaded_study import load_study
+    from compoundkin.studies.study import load_study
     from compoundkin.view.report.study_reports import study_report
 
     studied = load_study(file)

@@ -127,7 +127,7 @@ def read_errors(structure: Structure, option: str, given: Sequence[str]) -> Iter
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.cli.drive_options import split_names
     from compoundkin.cli.typed_values import read_number
-    from compoundkin.studies.study_files.dimension_units import is_angle_dimension
+    from compoundkin.studies.study_document import is_angle_dimension
 
     told = set()
     for text in split_names(given):

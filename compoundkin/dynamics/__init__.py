@@ -4,5 +4,5 @@ from compoundkin.base import display
 
 display.register(
     forces="compoundkin.dynamics.force_analysis:force_analysis",
-    force_figure="compoundkin.dynamics.named_forces.force_figures:force_figure",
+    force_figure="compoundkin.dynamics.reactions.force_figures:force_figure",
 )

@@ -1,25 +1,44 @@
-"""Kinetostatics: the forces in all pairs of a motion, and the efforts of its drivers."""
+"""Kinetostatics: the forces in all pairs of a motion, and the efforts of its drivers, with friction where pairs have some.
+
+A link that turns freely, such as a roller, must have its mass centre at its pin, for its angle is not known.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, WedgedPoses, warn
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.friction.rubbed_motion import with_friction
+from compoundkin.dynamics.friction.coulomb_friction import (
+    NONE,
+    SEVERAL,
+    BlockWithFriction,
+    Frictions,
+    block_with_friction,
+)
+from compoundkin.dynamics.friction.friction_contacts import (
+    LoadedContact,
+    friction_contacts_of,
+    in_one_row,
+    poses_at_rest,
+    senses,
+)
+from compoundkin.dynamics.friction.friction_forces import FrictionForces
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
-from compoundkin.dynamics.named_forces.link_wrench import LinkWrench
-from compoundkin.dynamics.reactions.free_links import refuse_off_pin
-from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort
-from compoundkin.dynamics.reactions.joined_wrenches import ON_FRAME, joined_reactions
-from compoundkin.dynamics.reactions.reverse_pass import Reactions, found_reactions
+from compoundkin.dynamics.reactions.link_wrench import FRICTION, LinkWrench
+from compoundkin.dynamics.reactions.reverse_pass import ON_FRAME, Reactions, all_reactions, joined_reactions
 from compoundkin.dynamics.reactions.singular_poses import at_singular_poses
+from compoundkin.dynamics.reactions.virtual_work import holding_effort, holding_wrenches
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.unit_rates import moved_alone
+from compoundkin.model.mechanism import Mechanism
 
 
 @checked
@@ -33,13 +52,13 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
     velocities where loads ask for them, for a mass centre off the pin of a roller that turns freely, and for what
     cannot hold; UnknownName for what there is not.
     """
-    _hold(motion, inertia)
+    _check_analysable(motion, inertia)
     refuse_off_pin(motion)
     found = _wrenches(motion, inertia, holding)
     singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia, holding))
     on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia, "holding": holding})
     held = holding_effort(told, inertia, holding) if holding else None
-    more = () if held is None else tuple(held_wrenches(told, held))
+    more = () if held is None else tuple(holding_wrenches(told, held))
     forces = Forces(told, inertia, found, on_frame, singular=singular, more=more, held=held)
     if motion.mechanism.frictions:
         forces = with_friction(forces)
@@ -50,20 +69,20 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
 
 def _wrenches(motion: Motion, inertia: bool, holding: str) -> dict[str, Wrench]:
     """Return the wrenches in all pairs by their names, and that on the frame."""
-    more = tuple(held_wrenches(motion, holding_effort(motion, inertia, holding))) if holding else ()
+    more = tuple(holding_wrenches(motion, holding_effort(motion, inertia, holding))) if holding else ()
     with np.errstate(all="ignore"):
-        return joined_reactions(motion, ((at, _found(at, inertia, more)) for at in loaded_blocks(motion)))
+        return joined_reactions(motion, ((at, _block_reactions(at, inertia, more)) for at in loaded_blocks(motion)))
 
 
-def _found(at: LoadedBlock, inertia: bool, more: Iterable[LinkWrench]) -> Reactions:
+def _block_reactions(at: LoadedBlock, inertia: bool, more: Iterable[LinkWrench]) -> Reactions:
     """Return the reactions of a block under all that is known to act, and more on links."""
     known = at.known(inertia)
     for one in more:
         known[one.on] = known.get(one.on, Wrench()) + one.whole.part(at.designs, at.poses)
-    return found_reactions(at, known)
+    return all_reactions(at, known)
 
 
-def _hold(motion: Motion, inertia: bool) -> None:
+def _check_analysable(motion: Motion, inertia: bool) -> None:
     """Raise InvalidInput for a mechanism and a motion of which no forces can be told."""
     mechanism = motion.mechanism
     _ = mechanism.stated_units
@@ -75,3 +94,140 @@ def _hold(motion: Motion, inertia: bool) -> None:
     if asking and not motion.order:
         what = f"the motion was solved to order 0, and its velocities are asked for by {', '.join(asking)}"
         raise InvalidInput(Problem("motion", what, "solve(..., order=1), or 2"))
+
+
+def has_loads(mechanism: Mechanism) -> bool:
+    """Tell whether there are forces to be told: units, and masses or loads."""
+    return mechanism.units is not None and bool(mechanism.masses or mechanism.loads)
+
+
+def loaded_forces(motion: Motion) -> Forces | None:
+    """Return the forces of a motion; None without masses and loads.
+
+    Without accelerations there is no inertia to tell: they are those of statics.
+    """
+    if not has_loads(motion.mechanism) or not motion.assembled.any():
+        return None
+    return force_analysis(motion, inertia=motion.order >= 2)
+
+
+class MotionWithFriction:
+    """Frictions of a motion. Blocks are solved one after another; it is complete when all have been."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+        self.rubs = friction_contacts_of(motion)
+        shape = motion.failed.shape
+        self.resting = poses_at_rest(motion)
+        self.state, self.worst = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
+        self.sizes = {rub.name: np.zeros(shape) for rub in self.rubs}
+        self.units = {rub.name: Wrench(np.zeros(shape, dtype=complex), np.zeros(shape)) for rub in self.rubs}
+        drivers = tuple(motion.inputs.drives)
+        self.backward = {name: np.zeros(shape) for name in drivers}
+        self.intervals = {name: (np.full(shape, np.nan), np.full(shape, np.nan)) for name in drivers}
+
+    def blocks(self, inertia: bool) -> Iterator[tuple[LoadedBlock, Reactions]]:
+        """Yield each block with its reactions."""
+        rest = self.resting.any()
+        alone = {name: moved_alone(self.motion, name) for name in self.motion.inputs.drives} if rest else {}
+        for at, *units in zip(loaded_blocks(self.motion), *map(loaded_blocks, alone.values()), strict=True):
+            block = block_with_friction(at, self.rubs, at.known(inertia))
+            signs = senses(self.rubs, at)
+            found = block.frictions(signs)
+            self._take(block, found, _worst(block, signs, found), block.frictions(-signs))
+            rests = in_one_row(self.resting[at.designs, at.poses], at)
+            for name, unit in zip(alone, units, strict=True):
+                self._hold(block, name, unit, rests)
+            yield at, block.with_friction(found.sizes)
+
+    def _take(self, block: BlockWithFriction, found: Frictions, worst: Number, back: Frictions) -> None:
+        """Add what was found of a block."""
+        at = block.at
+        here = at.designs, at.poses
+        self.state[here] = found.state.reshape(at.block.shape)
+        self.worst[here] = worst.reshape(at.block.shape)
+        for k, (rub, unit) in enumerate(zip(self.rubs, block.units, strict=True)):
+            self.sizes[rub.name][here] = found.sizes[k].reshape(at.block.shape)
+            self.units[rub.name].force[here] = unit.force
+            self.units[rub.name].moment[here] = unit.moment
+        for name, efforts in self.backward.items():
+            efforts[here] = block.effort(name, back.sizes).reshape(at.block.shape)
+
+    def _hold(self, block: BlockWithFriction, name: str, moved: LoadedBlock, rests: Number) -> None:
+        """Add what holds a driver where it rests."""
+        here = block.at.designs, block.at.poses
+        for whole, part in zip(self.intervals[name], block.interval(name, moved, rests), strict=True):
+            whole[here] = part.reshape(block.at.block.shape)
+
+    def found(self) -> FrictionForces:
+        """Return the frictions over all blocks."""
+        return FrictionForces(
+            self.motion, self.rubs, self.sizes, self.units, self.state, self.worst,
+            self.resting, self.backward, self.intervals,
+        )  # fmt: skip
+
+
+def with_friction(dry: Forces) -> Forces:
+    """Return the forces of a motion with the frictions that its mechanism has."""
+    motion = dry.motion
+    rubbed = MotionWithFriction(motion)
+    with np.errstate(all="ignore"):
+        wrenches = joined_reactions(motion, rubbed.blocks(dry.inertia))
+        all_frictions = replace(rubbed.found(), **_left_open(dry, rubbed.rubs))
+    for wedged in all_frictions.wedged:
+        warn(f"{wedged}; forces are NaN there", WedgedPoses)
+    on_frame, more = wrenches.pop(ON_FRAME), (*dry.more, *_acting(all_frictions))
+    return replace(dry, wrenches=wrenches, on_frame=on_frame, more=more, rubbed=all_frictions, dry=dry)
+
+
+def _left_open(dry: Forces, rubs: tuple[LoadedContact, ...]) -> dict[str, Any]:
+    """Return which frictions are open, as equilibrium leaves open what presses there; and at which poses."""
+    names, poses = list[str](), np.zeros(dry.motion.failed.shape, dtype=bool)
+    for rub in rubs if dry.relaxed else ():
+        place = dry.motion.poses[rub.pair.members[1]].at(dry.motion.inputs.ends[rub.name][1].point).c[0]
+        found = dry.self_stress.open([(rub.name, 1.0)], place)
+        here = found.force | found.moment if rub.friction.length is not None else found.force
+        if np.any(here) and np.any(np.asarray(rub.friction.coefficient) > 0.0):
+            names.append(rub.name)
+            poses = poses | here
+    return {"undetermined": tuple(names), "left_open": poses}
+
+
+def _acting(found: FrictionForces) -> Iterator[LinkWrench]:
+    """Yield the frictions as what acts on links."""
+    motion = found.motion
+    for one in found.pairs.values():
+        pair = one.rub.pair
+        poses, ends = tuple(motion.poses[name] for name in pair.members), motion.inputs.ends[one.name]
+        attack = pair.acting_place(ends, poses)
+        for link, by, wrench in zip(pair.members[1::-1], pair.members[:2], (one.wrench, -one.wrench), strict=True):
+            yield LinkWrench(motion, FRICTION, one.name, link, by, pair.acts_at, wrench, attack)
+
+
+def _worst(block: BlockWithFriction, signs: Number, found: Frictions) -> Number:
+    """Return the friction at each pose that is wedged first, where one is."""
+    worst = np.zeros(len(found.state), dtype=int)
+    stuck = np.flatnonzero(np.isin(found.state, (NONE, SEVERAL)))
+    if len(stuck):
+        worst[stuck] = np.argmax(block.influence.of(stuck).feeding(signs[:, stuck]), axis=-1)
+    return worst
+
+
+# A mass centre is at the pin to this part of the mechanism's size.
+AT_PIN = 1e-9
+
+
+def refuse_off_pin(motion: Motion) -> None:
+    """Raise InvalidInput for mass centres off the pins of links that turn freely."""
+    problems = tuple(_problems(motion))
+    if problems:
+        raise InvalidInput(problems)
+
+
+def _problems(motion: Motion) -> Iterator[Problem]:
+    mechanism = motion.mechanism
+    for spin in motion.structure.passive:
+        mass, middle = mechanism.masses.get(spin.link), mechanism.geometry.points[spin.link][spin.at]
+        if mass is not None and np.any(np.abs(mechanism.mass_centre(mass) - middle) > AT_PIN * motion.size):
+            what = f"{spin.link} turns freely about {spin.at}: where a mass centre off it goes is not known"
+            yield Problem(f"masses.{spin.link}.at", what, f'put it at the pin: at="{spin.at}"')

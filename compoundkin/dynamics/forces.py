@@ -9,15 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.display import DisplaysHtml
 from compoundkin.base.errors import Problem, UnknownName, suggestion
-from compoundkin.dynamics.found_forces import FoundForces
+from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.friction.efficiency import Efficiency
-from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
-from compoundkin.dynamics.named_forces.frame_forces import ShakingForce
-from compoundkin.dynamics.named_forces.link_forces import LinkForces, link_forces
-from compoundkin.dynamics.named_forces.pair_forces import PairForce
-from compoundkin.dynamics.named_forces.pin_forces import PinForces
-from compoundkin.dynamics.reactions.undetermined import Undetermined, undetermined
-from compoundkin.dynamics.work.power import Powers, powers_of
+from compoundkin.dynamics.reactions.driver_efforts import DriverEffort, Powers, powers_of
+from compoundkin.dynamics.reactions.link_forces import LinkForces, PinForces, ShakingForce, link_forces
+from compoundkin.dynamics.reactions.pair_forces import PairForce
+from compoundkin.dynamics.reactions.undetermined import Undetermined, undetermined_forces
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import Named
 from compoundkin.kinematics.table import Table, table_of
@@ -28,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Forces(DisplaysHtml, FoundForces):
+class Forces(DisplaysHtml, ForceResult):
     """The forces of a motion, in the mechanism's units.
 
     Arrays have the motion's shape, and are NaN where poses are not assembled.
@@ -93,7 +90,7 @@ class Forces(DisplaysHtml, FoundForces):
         >>> print(forces.undetermined[0])
         A: the force along A B of crank, balanced by forces in D, F, B, C, E
         """
-        return undetermined(self)
+        return undetermined_forces(self)
 
     @property
     def assuming_freed(self) -> Forces:
@@ -110,9 +107,9 @@ class Forces(DisplaysHtml, FoundForces):
 
     def check(self) -> Check:
         """Return the findings of an independent verification, which is `verify(forces)`."""
-        from compoundkin.dynamics.verification.force_check import check_of
+        from compoundkin.dynamics.reactions.force_check import check_forces
 
-        return check_of(self)
+        return check_forces(self)
 
     @cached_property
     def shaking(self) -> ShakingForce:
@@ -156,6 +153,6 @@ class Forces(DisplaysHtml, FoundForces):
         return f"Forces({self.mechanism.title!r} {told})"
 
 
-def moved(what: Motion | Forces) -> Motion:
+def motion_of(what: Motion | Forces) -> Motion:
     """Return the motion of forces, a motion itself. Both have quantities of forces by name."""
     return what.motion if isinstance(what, Forces) else what

@@ -138,7 +138,7 @@ class LoadedBlock:
 
     def freed(self, link: str, wrench: Wrench) -> Wrench:
         """Return a wrench on a link. What would turn a link that turns freely, such as a roller, is left aside."""
-        return freed(self.motion.structure, self.block, link, wrench)
+        return without_free_turning(self.motion.structure, self.block, link, wrench)
 
     def weight(self, mass: Mass) -> Wrench:
         """Return the weight of a link."""
@@ -160,7 +160,7 @@ class LoadedBlock:
         return Wrench.at(centre.c[0], pull, spin)
 
 
-def freed(structure: Structure, block: Block, link: str, wrench: Wrench) -> Wrench:
+def without_free_turning(structure: Structure, block: Block, link: str, wrench: Wrench) -> Wrench:
     """Return a wrench on a link. What would turn a link that turns freely is left aside."""
     if not any(spin.link == link for spin in structure.passive):
         return wrench

@@ -1,4 +1,4 @@
-"""`study`: what some dimensions do to what is asked of a mechanism, in thousands of designs or millions."""
+"""`study`: the effect of dimensions on chosen outputs of a mechanism, for many designs; `load_study`: studies of files."""
 
 from __future__ import annotations
 
@@ -6,24 +6,25 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import Any, ClassVar
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, suppress_pose_warnings
+from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, suppress_pose_warnings
 from compoundkin.base.suffixes import Kind
+from compoundkin.files.parsed_document import Syntax, heading, known_syntax, parsed, text_of, too_deep
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.studies.runs.folder_head import prepared
-from compoundkin.studies.runs.folder_store import FolderStore
-from compoundkin.studies.runs.memory_store import MemoryStore
-from compoundkin.studies.runs.study_plan import StudyPlan
-from compoundkin.studies.runs.study_result import StudyResult
-from compoundkin.studies.runs.study_run import run
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.samples.contract import DesignSample
-from compoundkin.studies.samples.listed_rows import TableSample
-from compoundkin.studies.study_files.study_writer import study_text
-from compoundkin.studies.variations import variations_of
+from compoundkin.studies.samples.design_sample import DesignSample
+from compoundkin.studies.samples.grid_sample import TableSample
+from compoundkin.studies.samples.variations import variations_of
+from compoundkin.studies.study_document import study_arguments, study_text
+from compoundkin.studies.study_folder import FolderStore, prepare_folder
+from compoundkin.studies.study_plan import StudyPlan
+from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.study_rows import MemoryStore
+from compoundkin.studies.study_run import run_study
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -62,8 +63,8 @@ class Study(StudyPlan):
         for name, value in {"chunk": chunk, "threads": threads}.items():
             if value is not None and value < 1:
                 raise InvalidInput(Problem(name, f"{value} is too few", "at least 1"))
-        store = MemoryStore(self) if folder is None else FolderStore(self, *prepared(folder, self))
-        return StudyResult(self, run(store, on, chunk, threads, progress))
+        store = MemoryStore(self) if folder is None else FolderStore(self, *prepare_folder(folder, self))
+        return StudyResult(self, run_study(store, on, chunk, threads, progress))
 
 
 @checked
@@ -112,3 +113,34 @@ def study(
     with suppress_pose_warnings():
         made.hold()
     return made
+
+
+@checked
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Return the study of a TOML or JSON file, distinguished by the suffix.
+
+    Raises InvalidInput for a file that cannot be read, or listing all problems of its content; and what `study` raises.
+
+    >>> load_study("no/such.toml")
+    Traceback (most recent call last):
+    compoundkin.base.errors.InvalidInput: no/such.toml: there is no such file
+    """
+    return loads_study(*text_of(path, "study"), where=str(path), folder=Path(path).parent)
+
+
+def loads_study(text: str, syntax: Syntax = "toml", *, where: str = "study file", folder: Path = Path()) -> Study:
+    """Return the study that a text in TOML or JSON says.
+
+    Its paths are seen from a folder; `where` names the text in errors.
+    """
+    try:
+        arguments = study_arguments(parsed(text, known_syntax(syntax), where, "study"), folder, where)
+    except RecursionError:
+        error = too_deep(where)
+        raise InvalidInput(error.problems, error.heading) from None
+    except InvalidMechanism as error:
+        raise InvalidInput(error.problems, error.heading) from None
+    try:
+        return study(**arguments)
+    except CompoundkinError as error:
+        raise type(error)(error.problems, heading([*error.problems], where)) from None

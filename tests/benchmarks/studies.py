@@ -19,9 +19,9 @@ import numpy as np
 import compoundkin as ck
 from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.studies.responses import studied_path
-from compoundkin.studies.runs.study_program import StudyProgram
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.variations import variations_of
+from compoundkin.studies.samples.variations import variations_of
+from compoundkin.studies.study_program import StudyProgram
 from tests.benchmarks.__main__ import heading, row
 from tests.benchmarks.measure import Times, interleaved
 

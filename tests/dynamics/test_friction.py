@@ -15,8 +15,7 @@ from scipy.optimize import root
 from scipy.optimize._numdiff import approx_derivative
 
 import compoundkin as ck
-from compoundkin.dynamics.friction.coulomb_equations import NONE, ONE, SEVERAL, frictions
-from compoundkin.dynamics.friction.press_influence import PressInfluence
+from compoundkin.dynamics.friction.coulomb_friction import NONE, ONE, SEVERAL, FrictionInfluence, solve_coulomb
 from tests.support import drawn_values, random_sketch, reference, well_conditioned
 
 SI = {"length": "m", "mass": "kg", "force": "N"}
@@ -438,11 +437,11 @@ def test_multiple_pins_and_sides() -> None:
     assert np.max(np.abs(forces.power.sum)) < 1e-13 * np.max(np.abs(forces.power.drives["crank"]))
 
 
-def counted(influence: PressInfluence, signs: Any, solutions: Any) -> None:
+def counted(influence: FrictionInfluence, signs: Any, solutions: Any) -> None:
     """As many solutions are told as there are."""
     expected = np.select([solutions == 0, solutions == 1], [NONE, ONE], SEVERAL)
     assert {NONE, ONE, SEVERAL} == set(expected)
-    assert np.array_equal(frictions(influence, signs).state, expected)
+    assert np.array_equal(solve_coulomb(influence, signs).state, expected)
 
 
 def test_how_many_solutions_a_pin_has() -> None:
@@ -453,7 +452,7 @@ def test_how_many_solutions_a_pin_has() -> None:
     with np.errstate(invalid="ignore"):
         root_of = np.sqrt(linear**2 - 4.0 * square * constant)
     roots = [(-linear + sign * root_of) / (2.0 * square) for sign in (1.0, -1.0)]
-    influence = PressInfluence(a[None], b[None, None], np.array([0]))
+    influence = FrictionInfluence(a[None], b[None, None], np.array([0]))
     counted(influence, np.ones((1, 2000)), np.sum(np.array(roots) >= 0.0, axis=0))
 
 
@@ -466,7 +465,7 @@ def test_how_many_solutions_contacts_have() -> None:
         matrix = np.eye(3) + by.transpose(2, 1, 0) * (senses.T * np.array(signs))[:, None]
         forces = np.linalg.solve(matrix, own.T[..., None])[..., 0]
         count += np.all(forces * np.array(signs) >= 0.0, axis=1)
-    counted(PressInfluence(own + 0j, by + 0j, np.arange(3)), senses, count)
+    counted(FrictionInfluence(own + 0j, by + 0j, np.arange(3)), senses, count)
 
 
 @pytest.mark.parametrize("torque", [12.0, -12.0])

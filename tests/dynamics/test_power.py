@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.dynamics.work.virtual_work import virtual_efforts
+from compoundkin.dynamics.reactions.virtual_work import virtual_efforts
 from tests.dynamics.cases import CASES, SI, engine, six_bar
 from tests.support import reference
 

@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.reactions.reverse_pass import accompanying, found_reactions, reverse_pass
+from compoundkin.dynamics.reactions.reverse_pass import accompanying, all_reactions, reverse_pass
 from compoundkin.model.pairs.contract import as_transmitting_pair
 from compoundkin.results import Forces
 from tests.support import reference
@@ -241,7 +241,7 @@ def test_the_reverse_pass_alone_is_linear() -> None:
     back = reverse_pass(at.motion.solving_order, at.block, {"sun": Wrench(0j, -2.0)})
     for name, wrench in one.pairs.items():
         assert np.allclose(back.pairs[name].force, -2.0 * wrench.force, rtol=1e-12)
-    whole = found_reactions(at, loads)
+    whole = all_reactions(at, loads)
     again = accompanying(at, whole)
     for name, beside in accompanying(at, one).items():
         assert np.allclose(again[name].force, beside.force, rtol=1e-12)

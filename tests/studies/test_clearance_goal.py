@@ -10,8 +10,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.arrays import Number
 from compoundkin.studies.goals.clearance_constraint import clearance
-from compoundkin.studies.goals.contract import DesignConstraint
 from compoundkin.studies.goals.design_trial import DesignTrial
+from compoundkin.studies.goals.goal import DesignConstraint
 from compoundkin.studies.responses import studied_path
 
 BARE = ck.Mechanism(

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.studies.goals.contract import DesignConstraint
-from compoundkin.studies.optimisation.stated_problem import stated_problem
+from compoundkin.studies.goals.goal import DesignConstraint
+from compoundkin.studies.optimisation.design_optimisation import stated_problem
 
 LINKAGE = ck.Mechanism(
     "Four-bar",

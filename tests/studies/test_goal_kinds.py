@@ -10,18 +10,14 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import suppress_pose_warnings
-from compoundkin.studies.goals.assembly_constraint import assembles, full_turn
-from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmits
-from compoundkin.studies.goals.contract import DesignConstraint, Goal
+from compoundkin.studies.goals.constraints import assembles, at_least, at_most, box, distance, full_turn, transmits
 from compoundkin.studies.goals.design_trial import DesignTrial
-from compoundkin.studies.goals.distance_constraint import distance
 from compoundkin.studies.goals.driver_schedule import DriverSchedule
-from compoundkin.studies.goals.dwell_goal import dwell, even
 from compoundkin.studies.goals.function_goal import function
-from compoundkin.studies.goals.pose_goal import poses
-from compoundkin.studies.goals.straight_line_goal import straight_line
-from compoundkin.studies.goals.target_goal import target
-from compoundkin.studies.goals.trace_goal import trace
+from compoundkin.studies.goals.goal import DesignConstraint, Goal
+from compoundkin.studies.goals.path_goals import poses, trace
+from compoundkin.studies.goals.range_goals import dwell, even, straight_line
+from compoundkin.studies.goals.value_goals import target
 from compoundkin.studies.responses import studied_path
 from tests.studies.test_goals import FREE, TURN, hold_slopes, numbers, trial_of
 

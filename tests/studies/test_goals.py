@@ -10,10 +10,10 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.motion import Motion
-from compoundkin.studies.goals.contract import DesignConstraint, Goal
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
-from compoundkin.studies.goals.least_goal import greatest, least
-from compoundkin.studies.goals.path_goal import path
+from compoundkin.studies.goals.goal import DesignConstraint, Goal
+from compoundkin.studies.goals.path_goals import path
+from compoundkin.studies.goals.value_goals import greatest, least
 from compoundkin.studies.responses import studied_path
 
 TURN = np.linspace(0, 2 * np.pi, 13)[:-1]

@@ -9,9 +9,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.arrays import Number
-from compoundkin.studies.goals.bound_constraint import at_least
-from compoundkin.studies.goals.trace_goal import trace
-from compoundkin.studies.optimisation.stated_problem import stated_problem
+from compoundkin.studies.goals.constraints import at_least
+from compoundkin.studies.goals.path_goals import trace
+from compoundkin.studies.optimisation.design_optimisation import stated_problem
 
 NAMES = ["crank.B.x", "coupler.C.x", "rocker.C.x", "coupler.P.x", "coupler.P.y", "frame.D.x", "frame.D.y"]
 OWN = np.array([2.0, 5.0, 4.0, 2.5, 1.5, 5.0, 0.0])

@@ -13,7 +13,7 @@ from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.studies.responses import Designs, Response, studied_path
 from compoundkin.studies.responses.solved_response import SolvedResponse
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.variations import variation_of
+from compoundkin.studies.samples.variations import variation_of
 
 RANGES = {"crank.D.x": variation_of("crank.D.x", (13.0, 14.0)), "plate.C": ck.around((12.3, 8.6), 0.5)}
 COARSE, FINE = ck.deg(np.arange(0, 361, 10.0)), ck.deg(np.arange(0, 361, 1.0))

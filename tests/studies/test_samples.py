@@ -10,12 +10,10 @@ from scipy import stats
 
 import compoundkin as ck
 from compoundkin.studies.samples import SAMPLES, sample_from, sample_of
-from compoundkin.studies.samples.latin_hypercube import LatinHypercubeSample
-from compoundkin.studies.samples.permutation import permuted
-from compoundkin.studies.samples.random_rows import RandomSample
+from compoundkin.studies.samples.random_sample import LatinHypercubeSample, RandomSample, permuted
 from compoundkin.studies.samples.sobol import SobolSample
-from compoundkin.studies.variations import variations_of
-from compoundkin.studies.variations.contract import Variation
+from compoundkin.studies.samples.variation import Variation
+from compoundkin.studies.samples.variations import variations_of
 
 LISTED = variations_of({"a": [1.0, 2.0, 3.0, 4.0] * 16, "b": [(k, -k) for k in range(64)], "c": range(64)})
 VARIED = variations_of(

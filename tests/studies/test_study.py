@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.studies.runs.study_data import differences, digest
+from compoundkin.studies.study_plan import differences, digest
 
 
 @cache

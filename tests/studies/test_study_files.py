@@ -21,13 +21,15 @@ import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files import dumps
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.study_files.dimension_units import is_angle_dimension
-from compoundkin.studies.study_files.study_reader import study_arguments
-from compoundkin.studies.study_files.study_schema import study_schema
-from compoundkin.studies.study_files.study_writer import study_text
-from compoundkin.studies.study_files.variation_entries import variation_entry
-from compoundkin.studies.variations import VARIATIONS, variation_from, variation_of
-from compoundkin.studies.variations.around import around
+from compoundkin.studies.samples.value_ranges import around
+from compoundkin.studies.samples.variations import VARIATIONS, variation_from, variation_of
+from compoundkin.studies.study_document import (
+    is_angle_dimension,
+    study_arguments,
+    study_schema,
+    study_text,
+    variation_entry,
+)
 
 VALIDATOR = Draft202012Validator(study_schema())
 TEXT = """

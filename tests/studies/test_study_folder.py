@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.studies.runs.folder_store import is_seen
+from compoundkin.studies.study_folder import is_reachable
 from tests.source import ROOT
 from tests.studies.test_study import assert_same, six_bar
 
@@ -168,13 +168,13 @@ def test_a_killed_client_loses_nothing(whole: ck.results.StudyResult, tmp_path: 
 def test_a_worker_that_does_not_see_the_folder_sends_its_parts(
     whole: ck.results.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert not is_seen(tmp_path, "word")
-    monkeypatch.setattr("compoundkin.studies.runs.folder_store.is_seen", lambda place, token: False)
+    assert not is_reachable(tmp_path, "word")
+    monkeypatch.setattr("compoundkin.studies.study_folder.is_reachable", lambda place, token: False)
     assert_same(six_bar(COUNT).run(tmp_path, threads=2), whole)
 
 
 def test_other_versions_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     six_bar(4).run(tmp_path)
-    monkeypatch.setattr("compoundkin.studies.runs.study_versions.VERSION", "99.0")
+    monkeypatch.setattr("compoundkin.studies.study_program.VERSION", "99.0")
     with pytest.warns(ck.errors.LikelySlip, match="now compoundkin 99.0, not"):
         six_bar(4).run(tmp_path)

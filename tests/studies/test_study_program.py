@@ -7,9 +7,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.studies.responses import studied_path
-from compoundkin.studies.runs.study_program import StudyProgram
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.variations import variation_of
+from compoundkin.studies.samples.variations import variation_of
+from compoundkin.studies.study_program import StudyProgram
 
 RANGES = {"crank.D.x": variation_of("crank.D.x", (13.0, 14.0)), "plate.C.x": variation_of("plate.C.x", (12.0, 12.5))}
 TURN = ck.deg(np.arange(0.0, 360.0, 10.0))

@@ -11,8 +11,8 @@ import pytest
 from scipy import stats
 
 import compoundkin as ck
-from compoundkin.studies.samples.random_rows import RandomSample
-from compoundkin.studies.tolerances.sampled_output import SampledOutput
+from compoundkin.studies.samples.random_sample import RandomSample
+from compoundkin.studies.tolerances.output_tolerance import SampledOutput
 
 TURN = ck.deg(np.arange(0, 360, 15))
 STEP = 1e-4

@@ -15,9 +15,9 @@ import compoundkin as ck
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table
 from compoundkin.programs.dimensions import FreeDimension
-from compoundkin.studies.samples.random_rows import RandomSample
-from compoundkin.studies.variations import hold_kinds, variation_from, variation_of, variations_of
-from compoundkin.studies.variations.levels import Levels
+from compoundkin.studies.samples.random_sample import RandomSample
+from compoundkin.studies.samples.value_ranges import Levels
+from compoundkin.studies.samples.variations import check_kinds, variation_from, variation_of, variations_of
 
 UNITS = RandomSample(4096, 2).units(2, range(4096))
 GIVEN: Sequence[tuple[Any, Any]] = [
@@ -213,9 +213,9 @@ def test_what_files_say_wrong_is_told(data: dict[str, Any], told: str) -> None:
 
 def test_points_and_numbers_are_not_mixed_up() -> None:
     dimensions = [FreeDimension("p.B", "p", "B", is_of_link=True), FreeDimension("p.C.x", "p", "C", "x", True)]
-    hold_kinds(variations_of({"p.B": ((1, 2), (3, 4)), "p.C.x": (1, 2)}), dimensions)
+    check_kinds(variations_of({"p.B": ((1, 2), (3, 4)), "p.C.x": (1, 2)}), dimensions)
     with pytest.raises(ck.errors.InvalidInput) as error:
-        hold_kinds(variations_of({"p.B": (1, 2), "p.C.x": [(1, 2)]}), dimensions)
+        check_kinds(variations_of({"p.B": (1, 2), "p.C.x": [(1, 2)]}), dimensions)
     first, second = map(str, error.value.problems)
     assert first.startswith("dimensions.p.B: it is a point, and numbers are given; give points, as in ((x, y), (x, y))")
     assert second.startswith("dimensions.p.C.x: it is a number, and points are given")

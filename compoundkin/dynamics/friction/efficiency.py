@@ -11,13 +11,13 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.dynamics.friction.pose_stretches import PoseStretch, stretches_where
+from compoundkin.dynamics.friction.friction_forces import PoseStretch, stretches_where
 
 if TYPE_CHECKING:
     from compoundkin.dynamics.forces import Forces
 
 # Powers below this part of the greatest one at any pose of the motion are rounding.
-NOTHING = 1e-12
+NO_POWER = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -96,7 +96,7 @@ class Efficiency(ShortRepr):
     @cached_property
     def _least(self) -> float:
         """What is no power but rounding."""
-        return NOTHING * max((float(np.nanmax(np.abs(one), initial=0.0)) for one in self._all), default=0.0)
+        return NO_POWER * max((float(np.nanmax(np.abs(one), initial=0.0)) for one in self._all), default=0.0)
 
     @property
     def _loads_backward(self) -> Number:

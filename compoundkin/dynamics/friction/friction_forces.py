@@ -1,4 +1,4 @@
-"""Frictions by name: their sizes and powers; where pairs are wedged; what drivers hold at rest, and driven backward."""
+"""Friction forces by name: their sizes and powers, the poses at which pairs wedge, and efforts at rest and in reverse."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.wrenches import Wrench
-from compoundkin.dynamics.friction.coulomb_equations import NONE, SEVERAL
-from compoundkin.dynamics.friction.pose_stretches import PoseStretch, stretches_where
-from compoundkin.dynamics.friction.rubs import Rub
+from compoundkin.dynamics.friction.coulomb_friction import NONE, SEVERAL
+from compoundkin.dynamics.friction.friction_contacts import LoadedContact
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import Named
+from compoundkin.model.attributes import unit_suffix
 
 REASONS = {NONE: "no forces satisfy Coulomb's law", SEVERAL: "more than one set of forces satisfies Coulomb's law"}
 
@@ -47,7 +47,7 @@ class FrictionForces(CopiesFields):
     """
 
     motion: Motion
-    rubs: tuple[Rub, ...]
+    rubs: tuple[LoadedContact, ...]
     sizes: Mapping[str, Number]
     units: Mapping[str, Wrench]
     state: Number
@@ -115,7 +115,7 @@ class PairFriction:
     """The friction in a pair, on its second link from its first."""
 
     forces: FrictionForces
-    rub: Rub
+    rub: LoadedContact
 
     @property
     def name(self) -> str:
@@ -154,3 +154,42 @@ def no_friction(motion: Motion) -> FrictionForces:
     """Return the frictions of a motion that has none."""
     nothing = np.zeros(motion.failed.shape, dtype=int)
     return FrictionForces(motion, (), {}, {}, nothing, nothing, nothing > 0, {}, {})
+
+
+@dataclass(frozen=True)
+class PoseStretch:
+    """Neighbouring poses of a design, from index `first` to index `last`.
+
+    `values` are those of the first driver at both ends, radians or lengths.
+    """
+
+    design: int
+    first: int
+    last: int
+    driver: str
+    values: tuple[float, float]
+    where: str
+
+    def __str__(self) -> str:
+        return self.where
+
+
+def stretches_where(motion: Motion, labels: Number) -> Iterator[tuple[int, PoseStretch]]:
+    """Yield the stretches of poses of one label, (designs, poses), with their labels. Negative labels are none."""
+    driver = next(iter(motion.inputs.drives))
+    values = np.broadcast_to(motion.inputs.drives[driver][0], labels.shape)
+    for design in np.flatnonzero((labels >= 0).any(axis=1)).tolist():
+        row = labels[design]
+        starts = np.flatnonzero(np.diff(row, prepend=-1)).tolist()
+        for start, stop in zip(starts, [*starts[1:], len(row)], strict=True):
+            if row[start] >= 0:
+                ends = float(values[design, start]), float(values[design, stop - 1])
+                where = _driver_range(motion, driver, ends, stop - start)
+                yield int(row[start]), PoseStretch(design, start, stop - 1, driver, ends, where)
+
+
+def _driver_range(motion: Motion, driver: str, ends: tuple[float, float], poses: int) -> str:
+    is_angle = motion.structure.driven_angles[driver]
+    unit = unit_suffix(is_angle, motion.mechanism.unit)
+    low, high = (f"{np.rad2deg(end) if is_angle else end:.6g}" for end in ends)
+    return f"{driver} at {low}{unit}" if poses == 1 else f"{driver} from {low} to {high}{unit}"

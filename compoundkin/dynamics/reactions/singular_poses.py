@@ -21,13 +21,13 @@ from compoundkin.kinematics.motion import Motion
 # polynomial through them leaves some 1e-12 of forces that change over a radian, and rounding no more.
 PLACES, STEP = 8, 0.01
 # All of them are nearer than the next pose.
-NEAR = 0.9
+NEAR_STEP = 0.9
 # Limits from both sides, or by one place less, are one where they agree to this part of the greatest force there.
-AGREE = 1e-6
+AGREEMENT = 1e-6
 FINITE, LEFT_OPEN, INFINITE = "finite", "undetermined", "infinite"
 CHANGE_POINT, LIMIT_POSITION = "change point", "limit position"
 
-Found = Callable[[Motion], Mapping[str, Wrench]]
+WrenchesOf = Callable[[Motion], Mapping[str, Wrench]]
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class SingularPose:
         return f"pose {where}: {self.kind} of {', '.join(self.links)}, forces {self.forces}"
 
 
-def at_singular_poses(motion: Motion, wrenches: Mapping[str, Wrench], found: Found) -> tuple[SingularPose, ...]:
+def at_singular_poses(motion: Motion, wrenches: Mapping[str, Wrench], found: WrenchesOf) -> tuple[SingularPose, ...]:
     """Put limits in the place of wrenches at singular poses. Return these poses.
 
     What has no limit there becomes NaN. `found` gives the wrenches of another motion.
@@ -116,7 +116,7 @@ class _Beside:
     powers: Number
 
     @classmethod
-    def of(cls, motion: Motion, at: tuple[Number, Number], found: Found) -> _Beside:
+    def of(cls, motion: Motion, at: tuple[Number, Number], found: WrenchesOf) -> _Beside:
         """Find the wrenches. Beside limit positions all goes by the root of the distance."""
         powers, last = np.arange(1.0, PLACES + 1.0), motion.inputs.poses - 1
         is_limit = ~motion.regular[at] if motion.order else np.zeros(len(at[0]), dtype=bool)
@@ -138,7 +138,7 @@ class _Beside:
             return np.ones(len(self.there), dtype=int), np.full((len(self.there), 3), np.nan)
         there = self.there[..., None]
         values = np.where(there[..., None], self.values[name], 0.0)
-        bound = AGREE * np.max(np.abs(values), axis=(1, 2, 3))
+        bound = AGREEMENT * np.max(np.abs(values), axis=(1, 2, 3))
         poles = np.max(np.abs(_extrapolated(values * self.powers[:, None])), axis=(1, 2))
         limits, fewer = _extrapolated(values), _extrapolated(values[:, :, :-1])
         both = self.there.all(axis=1)
@@ -158,7 +158,7 @@ def _apart(motion: Motion, at: tuple[Number, Number], side: int, steps: Number) 
         values = np.broadcast_to(motion.inputs.drives[name][0], motion.failed.shape)
         way = np.abs(values[at[0], other] - values[at]) / (1.0 if drive.is_angle else motion.size)
         pace = np.maximum(pace, way)
-    return np.minimum(STEP / np.maximum(pace, STEP), NEAR / steps)
+    return np.minimum(STEP / np.maximum(pace, STEP), NEAR_STEP / steps)
 
 
 def _parts(wrench: Wrench, size: float, shape: tuple[int, ...]) -> Number:

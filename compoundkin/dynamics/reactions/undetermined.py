@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from compoundkin.base.arrays import Number, cross
-from compoundkin.dynamics.found_forces import FoundForces
-from compoundkin.dynamics.named_forces.link_wrench import NOTHING
-from compoundkin.dynamics.named_forces.pair_forces import PairForce
-from compoundkin.dynamics.reactions.self_stresses import Open
+from compoundkin.dynamics.force_result import ForceResult
+from compoundkin.dynamics.reactions.link_wrench import UNKNOWN_VECTOR
+from compoundkin.dynamics.reactions.pair_forces import PairForce
+from compoundkin.dynamics.reactions.reverse_pass import UndeterminedPart
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.parts import Dropped
 
@@ -39,7 +39,7 @@ class Undetermined:
         return f"{self.pair}: {self.part}, balanced by forces in {', '.join(self.others)}"
 
 
-def undetermined(forces: FoundForces) -> tuple[Undetermined, ...]:
+def undetermined_forces(forces: ForceResult) -> tuple[Undetermined, ...]:
     """Return what equilibrium leaves open of the forces in all pairs."""
     if not forces.relaxed:
         return ()
@@ -48,7 +48,7 @@ def undetermined(forces: FoundForces) -> tuple[Undetermined, ...]:
     return tuple(found for name, one in left.items() if one is not None for found in _parts(forces, held[name], one))
 
 
-def _parts(forces: FoundForces, held: PairForce, left: Open) -> Iterator[Undetermined]:
+def _parts(forces: ForceResult, held: PairForce, left: UndeterminedPart) -> Iterator[Undetermined]:
     others, freed = forces.self_stress.sharing(held.name)
     shown, line = forces.motion.grid.shaped, forces.motion.grid.known(left.line)
     if np.any(left.force):
@@ -57,10 +57,10 @@ def _parts(forces: FoundForces, held: PairForce, left: Open) -> Iterator[Undeter
     # that of a single force goes with it
     if np.any(left.moment) and held.pair.held_angles:
         part = f"the moment about {held.at}"
-        yield Undetermined(held.name, part, others, freed, NOTHING + 0.0 * line, shown(left.moment))
+        yield Undetermined(held.name, part, others, freed, UNKNOWN_VECTOR + 0.0 * line, shown(left.moment))
 
 
-def _direction(forces: FoundForces, pair: Pair, left: Open) -> str:
+def _direction(forces: ForceResult, pair: Pair, left: UndeterminedPart) -> str:
     """Say which part of a force is open."""
     if pair.held == 1 or pair.held_angles:
         return "the normal force"

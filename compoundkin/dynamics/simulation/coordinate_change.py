@@ -16,7 +16,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, FewDigits, InvalidInput, Problem
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState
-from compoundkin.dynamics.simulation.rubbed_chart import RubbedChart
+from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -130,4 +130,4 @@ def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> D
     if geared or not only:
         what = f"friction ({', '.join(frictions)}) is followed in mechanisms of one driver and without gears"
         raise InvalidInput(Problem("frictions", what, "leave it out, or write dampers"))
-    return RubbedChart(start, free, laws)
+    return FrictionTable(start, free, laws)

@@ -11,9 +11,9 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
+from compoundkin.dynamics.mass_motion import moving_masses
 from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.work.moving_masses import moving_masses
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -158,11 +158,11 @@ class DriverChart:
         drives = {name: (values[k : k + 1, None], table[:, k]) for k, name in enumerate(self.names)}
         part = self.start.inputs.driven(drives)
         block = self.order.start(self.ends, part.series(2), 2, (count + 1, 1))
-        return run(self.order, block, _Held(self, values))
+        return run(self.order, block, _ConfigurationChoice(self, values))
 
 
 @dataclass(frozen=True)
-class _Held:
+class _ConfigurationChoice:
     """The choice of the configuration that is kept."""
 
     chart: DriverChart

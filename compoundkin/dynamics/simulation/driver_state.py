@@ -1,18 +1,23 @@
-"""A state of a mechanism by its drivers: the terms of its equation of motion, and its accelerations."""
+"""A state of a mechanism by its drivers: the terms of its equation of motion, its accelerations, its loads and quantities."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.dynamics.simulation.loaded_state import LoadedState, loaded_state
-from compoundkin.dynamics.work.moving_masses import InertiaTerms, MovingMass, inertia_terms
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series
+from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, inertia_terms
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
@@ -145,3 +150,155 @@ class DriverState:
     def kinetic(self) -> float:
         """The kinetic energy."""
         return float(self.speeds @ self.terms.matrix @ self.speeds) / 2.0
+
+
+ONLY = slice(0, 1)
+
+
+class TrueRates(dict[str, Pose]):
+    """Poses as plain numbers, made when asked for. Their rates are the true ones, the last of each column."""
+
+    def __init__(self, world: dict[str, Pose]) -> None:
+        super().__init__()
+        self.columns = world
+
+    def __missing__(self, link: str) -> Pose:
+        pose = self.columns[link]
+        found = self[link] = pose if pose is FIXED else Pose(_true(pose.z), _true(pose.u))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedState(LoadedBlock):
+    """A single pose. It answers what loads ask for, and what they do along each of `count` coordinates.
+
+    Each pose of `columns` has in its rates those at unit rate of every coordinate, and last the true ones; the block
+    has these alone. `turns` gives an angle of a pair the full turns that it has made.
+    """
+
+    columns: dict[str, Pose] | None = None
+    seconds: float = 0.0
+    count: int = 0
+    turns: Callable[[str, float], float] | None = None
+
+    @property
+    def time(self) -> Number | None:
+        """The time in seconds."""
+        return np.array([[self.seconds]])
+
+    def fitted(self, value: Any, where: str = "load") -> Number:
+        """Return a single number. Raises InvalidInput for an array along a motion."""
+        if isinstance(value, float | complex | int):
+            return value
+        if np.size(value) != 1:
+            what = "it is given pose by pose, and the poses of a simulation are not known before"
+            raise InvalidInput(Problem(where, what, "give a number, a function of time or a table"))
+        return np.ravel(value)[0].item()
+
+    def along(self, loads: Iterable[Load]) -> Number:
+        """Return the forces of loads along each coordinate."""
+        total = np.zeros(self.count)
+        for load in loads:
+            for link, wrench in load.wrenches(self):
+                total += np.ravel(self.freed(link, wrench).power(self._unit(link)))
+        return total
+
+    def _unit(self, link: str) -> Pose:
+        """Return the pose of a link with its rates at unit rate of each coordinate."""
+        assert self.columns is not None
+        pose = self.columns[link]
+        return pose if pose is FIXED else Pose(self._rows(pose.z), self._rows(pose.u))
+
+    def _rows(self, series: Series) -> Series:
+        rates = [np.ravel(c)[: self.count] for c in series.c[1:2]]
+        return Series((_number(series.c[0]), *rates))
+
+    def _counted(self, pair: Pair) -> Number:
+        """Return an angle with its turns."""
+        assert self.turns is not None
+        found = pair.coordinate(self._ends(pair), self._poses(pair))
+        return self.turns(pair.name, float(np.ravel(found.c[0])[0]))
+
+
+def loaded_state(
+    motion: Motion, block: Block, seconds: float, count: int, turns: Callable[[str, float], float]
+) -> LoadedState:
+    """Return what loads ask for at a state of a block of columns."""
+    true = Block((1, 1), block.ends, TrueRates(block.world), {}, 1)
+    return LoadedState(motion, true, ONLY, ONLY, columns=block.world, seconds=seconds, count=count, turns=turns)
+
+
+def _true(series: Series) -> Series:
+    return Series((_number(series.c[0]), *[_number(c, -1) for c in series.c[1:2]]))
+
+
+def _number(value: Number, at: int = 0) -> Number:
+    return value.item(at) if isinstance(value, np.ndarray) else value
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatedState:
+    """A state of a simulation. Its quantities are read by name, as of a motion: ``state["B.y"]``."""
+
+    state: DriverState
+
+    @property
+    def time(self) -> float:
+        """The time, seconds."""
+        return self.state.time
+
+    @property
+    def order(self) -> SolvingOrder:
+        """What solved it."""
+        return self.state.chart.order
+
+    @property
+    def block(self) -> Block:
+        """The pose, solved."""
+        return self.state.block
+
+    def __getitem__(self, name: str) -> Any:
+        return np.ravel(quantity(self.motion, name).values)[0]
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The state as a motion of one pose, with velocities and accelerations."""
+        return motion_at(self.state, self.state.chart.start)
+
+
+def motion_at(state: DriverState, start: Motion) -> Motion:
+    """Return a state as a motion of one pose. Its free drivers are accelerated."""
+    second = np.concatenate([state.accelerations, state.prescribed])
+    return accelerated_motion(state, start, state.speeds, second[:, None])
+
+
+def accelerated_motion(state: DriverState, start: Motion, speeds: Number, second: Number) -> Motion:
+    """Return a state as a motion whose poses differ in their accelerations (drivers, poses). Speeds are given anew."""
+    count = second.shape[1]
+    told = zip(state.chart.names, state.values, speeds, second, strict=True)
+    drives: dict[str, tuple[Number, ...]] = {
+        name: (np.array([[value]]), np.array([[speed]]), row[None]) for name, value, speed, row in told
+    }
+    # the bias goes with the squares and products of speeds, as they are in the state
+    is_own = speeds is state.speeds
+
+    def true(series: Series) -> Series:
+        if len(series.c) < 3:
+            return Series((_entry(series.c[0]), *[0.0 * _entry(series.c[0])] * 2))
+        rows = by_drivers(series.c[1], state.chart.names)
+        bias = _entry(series.c[2]) if is_own else 0.0
+        return Series((_entry(series.c[0]), np.reshape(rows @ speeds, (1, 1)), bias + (rows @ second)[None] / 2.0))
+
+    poses = {name: pose if pose is FIXED else _moved(pose, true) for name, pose in state.block.world.items()}
+    inputs = replace(start.inputs.driven(drives), shape=(count,))
+    time, failed = np.full(count, state.time), np.zeros((1, count), dtype=int)
+    return replace(start, order=2, inputs=inputs, poses=poses, failed=failed, time=time)
+
+
+def _moved(pose: Pose, true: Any) -> Pose:
+    return Pose(true(pose.z), true(pose.u), None if pose.theta is None else true(pose.theta))
+
+
+def _entry(value: Number) -> Number:
+    """Return the last of a column: that of the true motion."""
+    return np.reshape(np.ravel(value)[-1], (1, 1))

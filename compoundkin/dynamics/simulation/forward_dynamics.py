@@ -1,33 +1,52 @@
-"""Forward dynamics: how a mechanism moves under its masses and loads."""
+"""Forward dynamics: how a mechanism moves under its masses and loads.
+
+The integration gives drivers as functions of time; the motion is then solved again at its times, with a driving law for
+every driver.
+"""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked, real_numbers
-from compoundkin.base.arrays import Number
-from compoundkin.base.errors import FewDigits, InvalidInput, Problem, warn
+from compoundkin.base.arguments import checked, is_finite_real, real_numbers
+from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.errors import FewDigits, InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion, warn
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.integration import PARTS, integrate
-from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
+from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
-from compoundkin.dynamics.simulation.simulated_motion import simulated_motion
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import watches
-from compoundkin.dynamics.simulation.simulation_start import simulation_start
-from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics import solve
+from compoundkin.kinematics.approach import drawn_value
+from compoundkin.kinematics.chosen_modes import shown_by
+from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
+from compoundkin.kinematics.driver_values import inputs
+from compoundkin.kinematics.gaps import gaps
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import first_configuration, solving_order_of
+from compoundkin.model.elements import Drive
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.laws import Law, as_law, constant_speed, motion_table
 from compoundkin.model.mechanism import Mechanism
 
 # A driver that feels less than this part of the heaviest link, some rounding squared as speeds are, moves no mass.
 NO_MASS = 1e-20
+
+
 # From one pose of the result to the next drivers go so far at most (radians, or parts of the size), in so many poses.
 APART, FEWEST, MOST = np.deg2rad(5.0), 100, 20000
+
+
 # Energies that are so far from adding up, or so many times the tolerance, are told of.
-LOST, WORSE = 1e-5, 1e4
+ENERGY_TOLERANCE, WORSE = 1e-5, 1e4
 
 
 @checked
@@ -72,7 +91,7 @@ def simulate(
     >>> swung.times[-1], swung.energy.worst < 1e-9
     (np.float64(2.0), True)
     """
-    _hold(mechanism, until, tolerance, restitution)
+    _check_simulated(mechanism, until, tolerance, restitution)
     _hold_progress(progress)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
@@ -91,12 +110,12 @@ def simulate(
 
 def _warn(energy: SimulatedEnergy, tolerance: float) -> None:
     """Warn where energies do not add up."""
-    if energy.worst > max(LOST, WORSE * tolerance):
+    if energy.worst > max(ENERGY_TOLERANCE, WORSE * tolerance):
         what = f"energies do not add up, {energy.worst:.1g} of the greatest is missing"
         warn(f"{what}: a prescribed speed jumps, digits are lost, or several drivers passed a change point", FewDigits)
 
 
-def _hold(mechanism: Mechanism, until: float, tolerance: float, restitution: float | None) -> None:
+def _check_simulated(mechanism: Mechanism, until: float, tolerance: float, restitution: float | None) -> None:
     """Raise InvalidInput for what cannot be simulated."""
     _ = mechanism.stated_units
     if not mechanism.masses:
@@ -138,7 +157,7 @@ def _hold_moving(chart: DriverChart, state: Number) -> None:
 def _times(course: SimulatedCourse, times: Any) -> Number:
     """Return the times of the result: those asked for as far as they are reached, else evenly spaced ones."""
     if times is not None:
-        return _asked(times, course)
+        return _requested_events(times, course)
     speeds = [_farthest(step) / (step.last - step.first) for step in course.steps]
     count = int(np.clip(np.ceil(max(speeds) * course.last / APART), FEWEST, MOST))
     return np.linspace(0.0, course.last, count + 1)
@@ -151,9 +170,229 @@ def _farthest(step: Step) -> float:
     return float(np.max(np.abs(last - first) / step.chart.scales))
 
 
-def _asked(times: Any, course: SimulatedCourse) -> Number:
+def _requested_events(times: Any, course: SimulatedCourse) -> Number:
     asked = real_numbers("times", times).reshape(-1)
     if len(asked) < 2 or not np.all(np.diff(asked) > 0.0) or asked[0] < 0.0 or asked[-1] > course.until:
         what = "they are not two or more increasing times within the simulation"
         raise InvalidInput(Problem("times", what, f"give times from 0 to {course.until:g}"))
     return asked[asked <= course.last]
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationStart:
+    """The first pose as a motion. The speeds of free drivers, the laws of others."""
+
+    motion: Motion
+    speeds: Mapping[str, float]
+    laws: Mapping[str, Law]
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The values of the free drivers."""
+        return {name: float(np.ravel(self.motion.inputs.drives[name][0])[0]) for name in self.speeds}
+
+
+def simulation_start(
+    mechanism: Mechanism,
+    start: Any,
+    prescribed: Mapping[str, Any],
+    modes: Mapping[str, int] | str | Configuration | None,
+) -> SimulationStart:
+    """Return where a simulation starts; raises InvalidInput and UnknownName for what does not fit."""
+    names = [own.name for own in mechanism.drives]
+    if start is not None and not isinstance(start, Mapping):
+        if len(names) != 1:
+            raise InvalidInput(Problem("start", "there is more than one driver", "name them: {'driver': value}"))
+        start = {names[0]: start}
+    told: Mapping[str, Any] = start or {}
+    for where, given in (("start", told), ("prescribed", prescribed)):
+        for name in given:
+            if name not in names:
+                raise UnknownName(
+                    Problem(f"{where}.{name}", f"there is no driver {name!r}", suggestion(str(name), names))
+                )
+    laws = _laws(mechanism, told, prescribed)
+    free = {name: _pair(f"start.{name}", told[name]) if name in told else (None, 0.0)
+            for name in names if name not in laws}  # fmt: skip
+    if not free:
+        raise InvalidInput(Problem("prescribed", "all drivers are prescribed", "leave one free, or use solve()"))
+    motion = _first_pose(mechanism, {name: value for name, (value, _) in free.items()}, laws, modes)
+    return SimulationStart(motion, {name: speed for name, (_, speed) in free.items()}, laws)
+
+
+def _first_pose(
+    mechanism: Mechanism,
+    free: Mapping[str, float | None],
+    laws: Mapping[str, Law],
+    modes: Mapping[str, int] | str | Configuration | None,
+) -> Motion:
+    """Return the first pose. Raises InvalidInput where it cannot be assembled."""
+    shown = _written_value(mechanism)
+    values = {name: shown[name] if value is None else value for name, value in free.items()}
+    values |= {name: float(np.ravel(law.coordinate(np.zeros(1), 0).c[0])[0]) for name, law in laws.items()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnassembledPoses)
+        warnings.simplefilter("ignore", FewDigits)  # another pair takes the driver's place there
+        motion = solve(mechanism, {name: [value] for name, value in values.items()}, order=1, modes=modes)
+    if motion.failed.any():
+        reasons = "; ".join(gap.reason for gap in gaps(motion))
+        raise InvalidInput(Problem("start", reasons or "it cannot be assembled there", "start elsewhere"))
+    return motion
+
+
+def _laws(mechanism: Mechanism, start: Mapping[str, Any], prescribed: Mapping[str, Any]) -> dict[str, Law]:
+    """Return the laws of the drivers that are prescribed, by the call or by the mechanism."""
+    found: dict[str, Law] = {}
+    for own in mechanism.drives:
+        if own.name in prescribed and own.name in start:
+            what = "it is given a start as a free driver, and prescribed too"
+            raise InvalidInput(Problem(f"prescribed.{own.name}", what, "leave one of both out"))
+        if own.name in prescribed:
+            given = prescribed[own.name]
+            law = constant_speed(0.0, start=given) if is_finite_real(given) else as_law(f"prescribed.{own.name}", given)
+            if law is not None:
+                found[own.name] = law
+        elif own.law is not None and own.name not in start:
+            found[own.name] = own.law
+    return found
+
+
+def _pair(where: str, given: Any) -> tuple[float, float]:
+    """Return value and speed of a free driver."""
+    parts = given if isinstance(given, tuple | list) else (given, 0.0)
+    if len(parts) != 2 or not all(is_finite_real(part) for part in parts):
+        remedy = "give a value in radians or lengths, or (value, speed)"
+        raise InvalidInput(Problem(where, f"{given!r} is no start", remedy))
+    return float(parts[0]), float(parts[1])
+
+
+def _written_value(mechanism: Mechanism) -> dict[str, float]:
+    """Return the drivers' values of the drawing, else of the first pose."""
+    order = solving_order_of(mechanism)
+    given = inputs(order, {own.name: 0.0 for own in mechanism.drives if own.values is None}, None, None, None)
+    shown = shown_by(order)
+    found = {}
+    for own in mechanism.drives:
+        value = drawn_value(order, given, own.name, shown.poses, shown.beside) if own.values is None else own.values
+        found[own.name] = 0.0 if value is None else float(np.ravel(value)[0])
+    return found
+
+
+# Accelerations are what forces take.
+ORDER = 2
+
+
+# So many coordinates are tried, the last ones first.
+TRIES = 3
+
+
+# Poses that two drivers tell agree within this part of the size.
+SAME = 1e-6
+
+
+# Value, speed and acceleration of a coordinate at times.
+SolvedCourse = tuple[Number, Number, Number]
+
+
+def simulated_motion(stretches: list[ChartStretch]) -> Motion:
+    """Return the motion of all stretches together, at the times that were asked for.
+
+    It is driven by a coordinate that tells the pose all the time, where there is one.
+    """
+    if len(stretches) == 1:
+        return _alone(stretches[0])
+    parts = [in_time(one.chart, one.times, _moved(one), first_configuration(one.chart.start, 0)) for one in stretches]
+    times = np.concatenate([one.times[one.asked] for one in stretches])
+    poses = _joined(parts, stretches)
+    charts = {one.chart.free: one.chart for one in reversed(stretches)}
+    tried: list[Motion] = []
+    for chart in list(charts.values())[:TRIES]:
+        motion, agrees = _driven_by(chart, parts, stretches, times, poses)
+        if agrees:
+            return motion
+        tried.append(motion)
+    # no coordinate is regular everywhere: each pose as it was found in the coordinate that was
+    motion = tried[0]
+    mended = motion.mended(np.zeros(len(times), dtype=int), np.arange(len(times)), poses)
+    return replace(mended, failed=np.zeros_like(motion.failed))
+
+
+def _alone(stretch: ChartStretch) -> Motion:
+    some = stretch.asked
+    states, accelerations = stretch.states[:, some], stretch.accelerations[:, some]
+    asked = replace(stretch, times=stretch.times[some], states=states, accelerations=accelerations)
+    return in_time(stretch.chart, asked.times, _moved(asked), first_configuration(stretch.chart.start, 0))
+
+
+def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pose]:
+    """Return the poses of all links at the times that were asked for, in a row."""
+
+    def row(name: str, side: str, k: int) -> Number:
+        found = []
+        for motion, one in zip(parts, stretches, strict=True):
+            c = getattr(motion.poses[name], side).c
+            value = c[k] if k < len(c) else 0.0
+            found.append(np.broadcast_to(value, motion.failed.shape)[:, one.asked])
+        return np.concatenate(found, axis=1)
+
+    def series(name: str, side: str) -> Series:
+        return Series(tuple([row(name, side, k) for k in range(ORDER + 1)]))
+
+    return {name: FIXED if name == FRAME else Pose(series(name, "z"), series(name, "u")) for name in parts[0].poses}
+
+
+def _driven_by(
+    chart: DriverChart, parts: list[Motion], stretches: list[ChartStretch], times: Number, poses: Mapping[str, Pose]
+) -> tuple[Motion, bool]:
+    """Return the motion by the free drivers of one chart, and whether its poses are those that were found."""
+    moved = {name: _followed(chart, name, parts, stretches) for name in chart.free}
+    first = Configuration(chart.start.structure, {}, placed_at(poses, (0, 0)), {}, {},
+                          dimensions_at(chart.start.structure, 0, 0))  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        motion = in_time(chart, times, moved, first)
+    off = [np.abs(one.c[0] - other.c[0]) / scale for name, pose in motion.poses.items()
+           for one, other, scale in ((pose.z, poses[name].z, motion.size), (pose.u, poses[name].u, 1.0))]  # fmt: skip
+    agrees = bool(np.all(motion.regular)) and all(bool(np.all(one < SAME)) for one in off)
+    return motion, agrees
+
+
+def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[ChartStretch]) -> SolvedCourse:
+    """Return how a driver of a chart moves all the time, read off the motions of all stretches."""
+    own = chart.start.structure.driven[name]
+    sense, found, last = float(own.pair.driven_by(own.drive.link)), [], None
+    for motion, one in zip(parts, stretches, strict=True):
+        # by the poses: at a multiple pin another driver makes other pairs
+        ends = motion.inputs.ends.get(own.pair.name) or own.pair.ends(motion.mechanism.geometry)
+        series = own.pair.coordinate(ends, tuple(motion.poses[link] for link in own.pair.members))
+        rows = [np.broadcast_to(series.derivative(k), motion.failed.shape)[0] * sense for k in range(ORDER + 1)]
+        if own.pair.free_is_angle:
+            rows[0] = np.unwrap(rows[0])
+            rows[0] = rows[0] + (0.0 if last is None else whole_turns(last - rows[0][0]))
+        last = rows[0][-1]
+        found.append(np.array(rows)[:, one.asked])
+    value, speed, acceleration = np.concatenate(found, axis=1)
+    return value, speed, acceleration
+
+
+def _moved(stretch: ChartStretch) -> dict[str, SolvedCourse]:
+    """Return how the free drivers move in a stretch."""
+    chart, n = stretch.chart, len(stretch.chart.free)
+    values, speeds = stretch.states[:n], stretch.states[n : 2 * n]
+    rates = stretch.accelerations
+    if not np.isfinite(rates).all():
+        late = stretch.times[np.argmin(np.isfinite(rates).all(axis=0))]
+        what = f"at {late:g} s the mechanism is at a limit position of its drivers, where their rates are not known"
+        raise InvalidInput(Problem("until", what, "end before, or let other links be its drivers"))
+    return {name: (values[k], speeds[k], rates[k]) for k, name in enumerate(chart.free)}
+
+
+def in_time(
+    chart: DriverChart, times: Number, moved: Mapping[str, SolvedCourse], first: Configuration | None
+) -> Motion:
+    """Return a motion in time of a chart's mechanism. Its free drivers have a law that goes through what they did."""
+    laws = {**chart.laws, **{name: motion_table(times, *one) for name, one in moved.items()}}
+    drives = [Drive(item.name, item.link, item.on, item.pair, law=laws[item.name]) for item in chart.mechanism.items
+              if isinstance(item, Drive)]  # fmt: skip
+    mechanism = chart.mechanism.replace(*drives, time=times)
+    return solve(mechanism, time=times, order=ORDER, modes=first)

@@ -1,4 +1,4 @@
-"""The equation of motion integrated: steps of an explicit method, each with its polynomial in between.
+"""The equation of motion integrated by an explicit method, and the course of its steps and states, chart by chart.
 
 Source: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
 section II.10: the method of Dormand and Prince of order 8, as SciPy has it.
@@ -7,6 +7,7 @@ section II.10: the method of Dormand and Prince of order 8, as SciPy has it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,30 +16,41 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
+from compoundkin.dynamics.simulation.driver_state import SimulatedState
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
     SimulationEvent,
+    Watch,
     after_impact,
     ended_pair,
     first_passed,
 )
-from compoundkin.dynamics.simulation.state_motion import SimulatedState
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 
 # No step takes a driver farther than this (radians, or parts of the size): configurations are followed, angles counted.
-FARTHEST = 1.0
+LONGEST_MOVE = 1.0
+
+
 # Where a pair moves so many times as fast as a driver and cannot take its place, the motion ends.
 LIMIT = 1e4
+
+
 # A step that is this part of the longest leads nowhere: the configuration cannot be followed any farther.
 STALLED = 1e-7
+
+
 # What is said where friction holds a mechanism.
 STICKS = "sticks"
+
+
 # Errors in speeds are measured against this part of the fastest driver's at least.
 SLOWEST = 1e-3
+
+
 # What is told of progress: so many parts of the whole.
 PARTS = 1000
+
 
 Progress = Callable[[int, int], None]
 
@@ -91,21 +103,21 @@ def _resting(state: Number) -> Callable[[Number], Number]:
     return lambda times: np.repeat(state[:, None], len(times), axis=1) if np.ndim(times) else state
 
 
-class _Turn(NamedTuple):
+class _Interruption(NamedTuple):
     """Where the course is broken off, and the state with which it goes on. None where it ends."""
 
     time: float
     state: Number | None
 
 
-def _passed(course: SimulatedCourse) -> _Turn | None:
+def _passed(course: SimulatedCourse) -> _Interruption | None:
     """Note what happened in the last step; return where that breaks the course off, None where it does not."""
     step = course.steps[-1]
     for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
         n, watch = len(step.chart.free), one.watch
         if watch.name == REST and not watch.asked:
             course.cut(one.time)
-            return _Turn(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
+            return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
         here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]))
         is_end = watch.name == END and not watch.asked
         text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
@@ -118,10 +130,10 @@ def _passed(course: SimulatedCourse) -> _Turn | None:
         if stops or impact is not None:
             course.cut(one.time)
         if stops:
-            return _Turn(one.time, None)
+            return _Interruption(one.time, None)
         if impact is not None:
             course.fastest = max(course.fastest, impact.approach)
-            return _Turn(one.time, np.array([*one.state[:n], *impact.speeds, one.state[-1] - impact.lost]))
+            return _Interruption(one.time, np.array([*one.state[:n], *impact.speeds, one.state[-1] - impact.lost]))
     return None
 
 
@@ -169,13 +181,13 @@ def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCou
         return np.concatenate([y[n : 2 * n], found.accelerations, [found.power]])
 
     rates = grown(time, state)
-    pace = _paces(chart, state[n : 2 * n], rates[n : 2 * n], course.until - time)
+    pace = _driver_paces(chart, state[n : 2 * n], rates[n : 2 * n], course.until - time)
     energy = chart.state(time, state[:n], pace).kinetic
     allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
     return DOP853(grown, time, state, course.until, rtol=course.tolerance, atol=allowed)
 
 
-def _paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: float) -> Number:
+def _driver_paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: float) -> Number:
     """Return about how fast each free driver will move: by its speed, or by its acceleration over its scale."""
     quick = np.maximum(np.abs(speeds), np.sqrt(np.abs(accelerations) * chart.scales))
     # one that is at rest without a load is measured against the others, and they against their scales in the whole time
@@ -188,4 +200,88 @@ def longest_step(chart: DriverChart, speeds: Number, accelerations: Number) -> f
     rate = np.max(np.abs(speeds) / chart.scales)
     growth = np.max(np.abs(accelerations) / chart.scales)
     # s = v t + a t^2 / 2, solved for the time without cancellation
-    return float(2.0 * FARTHEST / (rate + np.sqrt(rate * rate + 2.0 * growth * FARTHEST) + np.finfo(float).tiny))
+    return float(
+        2.0 * LONGEST_MOVE / (rate + np.sqrt(rate * rate + 2.0 * growth * LONGEST_MOVE) + np.finfo(float).tiny)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A step of the integration. Its chart, its times, and the state in between as a function of time."""
+
+    chart: DriverChart
+    first: float
+    last: float
+    between: Callable[[Number], Number]
+    memory: tuple[Any, ...]  # what keeps the configuration at its beginning
+
+    def told(self, times: Number, states: Number) -> Number:
+        """Return the accelerations of the free drivers at times in it, in columns."""
+        n = len(self.chart.free)
+        self.chart.recall(self.memory)
+        found = [self.chart.told(t, y[:n], y[n : 2 * n]) for t, y in zip(times, states.T, strict=True)]
+        return np.array(found).T
+
+
+@dataclass(frozen=True, eq=False)
+class ChartStretch:
+    """The course in one chart. States at times are in columns, its first and last among them.
+
+    `asked` tells which of the times were asked for.
+    """
+
+    chart: DriverChart
+    times: Number
+    states: Number
+    accelerations: Number
+    asked: Number
+
+
+@dataclass(eq=False)
+class SimulatedCourse:
+    """The steps from the start on. A state is the free drivers' values, their speeds, and the work done.
+
+    `fastest` is the approach of the fastest impact.
+    """
+
+    until: float
+    tolerance: float
+    watched: tuple[Watch, ...] = ()
+    restitution: float | None = None
+    steps: list[Step] = field(default_factory=list)
+    events: list[SimulationEvent] = field(default_factory=list)
+    evaluations: int = 0
+    fastest: float = 0.0
+    changed: float = -np.inf  # the time of the last change of coordinate
+
+    def at(self, times: Number) -> list[ChartStretch]:
+        """Return the states at times in order, chart by chart."""
+        charts = list(dict.fromkeys(step.chart for step in self.steps))
+        runs = [[step for step in self.steps if step.chart is chart] for chart in charts]
+        return [_stretch(steps, times, k == 0) for k, steps in enumerate(runs)]
+
+    def cut(self, time: float) -> None:
+        """Let the last step end at a time. It is left out where nothing is left of it."""
+        step = self.steps.pop()
+        if time > step.first or not self.steps:
+            self.steps.append(replace(step, last=time))
+
+    @property
+    def last(self) -> float:
+        """The time that is reached."""
+        return self.steps[-1].last if self.steps else 0.0
+
+
+def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
+    """Return the states at times in the steps of one chart. A time at which charts change belongs to the first."""
+    first, last = steps[0].first, steps[-1].last
+    own = times[((times >= first) if is_first else (times > first)) & (times <= last)]
+    whole = np.unique(np.concatenate([[first], own, [last]]))
+    index = np.minimum(np.searchsorted([step.last for step in steps], whole), len(steps) - 1)
+    states, accelerations = [], []
+    for k in np.unique(index):
+        here = whole[index == k]
+        states.append(steps[k].between(here))
+        accelerations.append(steps[k].told(here, states[-1]))
+    whole_states, told = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
+    return ChartStretch(steps[0].chart, whole, whole_states, told, np.isin(whole, own))

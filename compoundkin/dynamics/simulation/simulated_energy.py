@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.arrays import Number, dot, first_entry
 from compoundkin.base.display import ShortRepr
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.work.mass_motion import mass_motions
+from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.contract import Load
 

@@ -12,7 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.state_motion import SimulatedState
+from compoundkin.dynamics.simulation.driver_state import SimulatedState
 from compoundkin.kinematics.passed_ends import AT_END
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -20,7 +20,7 @@ from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.model.pairs.travel_limits import as_travel_limited
 
 # Within a step what is watched is looked at in so many places, so that what comes and goes is found as well.
-LOOKS = 4
+EVENT_SAMPLES = 4
 # What begins below zero is looked at these parts of a step as well: a bounce may be far shorter than the step.
 EARLY = 2.0 ** np.arange(-44.0, -2.0)
 
@@ -147,7 +147,7 @@ def _zeros(
     def value(time: float) -> float:
         return watch.value(chart, time, between(time))
 
-    looks = np.linspace(*times, LOOKS + 1)
+    looks = np.linspace(*times, EVENT_SAMPLES + 1)
     known = [value(float(time)) for time in looks]
     if watch.falls and known[0] <= 0.0:
         early = times[0] + (times[1] - times[0]) * EARLY

@@ -1,31 +1,49 @@
-"""One free driver in a table of its coordinate: the same equation of motion, read off instead of solved."""
+"""One free driver in a table of its coordinate: the equation of motion as Chebyshev polynomials, piece by piece.
+
+With one degree of freedom everything but time and speed is a function of the coordinate. It is solved once at Chebyshev
+points of pieces that are halved until the polynomials hold to rounding. Places where too many digits are lost, such as
+change points, are bridged smoothly.
+
+Source: L. N. Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3 and 4.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from bisect import bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number
-from compoundkin.base.errors import InvalidInput
-from compoundkin.base.poses import Pose
+from compoundkin.base.arrays import TURN, Number, first_entry
+from compoundkin.base.errors import CompoundkinError, InvalidInput
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.simulation.drive_table import DriveTable, drive_table
+from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import Rates
-from compoundkin.dynamics.simulation.loaded_state import loaded_state
-from compoundkin.dynamics.simulation.table_piece import TablePiece
+from compoundkin.dynamics.simulation.driver_state import Rates, loaded_state
+from compoundkin.kinematics import solve
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
+from compoundkin.kinematics.extremes import between
+from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.pairs import Pair
 
 # A pair that moves so many times as fast as a driver (each by its scale) is better to go on with: squares of this enter
 # the equation of motion, and twice as many of its digits are lost.
 FASTER = 30.0
+
+
 # Poses a whole turn apart are the same within this part of the size.
 SAME = 1e-9
+
+
 # A table reaches so far to both sides: half a turn, or this part of the size.
 REACH = 0.5
 
@@ -153,3 +171,255 @@ class _Columns(dict[str, Pose]):
     def __missing__(self, link: str) -> Pose:
         found = self[link] = self.piece.pose(link, self.basis, self.speed)
         return found
+
+
+# Pieces of a table to begin with, and how often they are halved.
+PIECES, HALVED = 16, 7
+
+
+# Polynomials hold where their last coefficients are this part of the largest: some hundred units of rounding.
+HOLDS, LAST = 3e-14, 3
+
+
+# Next to a change point accelerations have some ten digits; a corner of a load is still far above this.
+HOLDS_NEAR = 1e-8
+
+
+# Poses of the motion by which the configuration is kept.
+POSES = 145
+
+
+@dataclass(frozen=True, eq=False)
+class DriveTable:
+    """A table over a range of a driver. Pieces in order; where nothing holds there is none."""
+
+    low: float
+    high: float
+    pieces: Sequence[TablePiece]
+    starts: Sequence[float]
+    motion: Motion
+
+    def piece(self, value: float) -> TablePiece | None:
+        """Return the piece at a value."""
+        k = bisect_right(self.starts, value) - 1
+        found = self.pieces[k] if k >= 0 else None
+        return found if found is not None and value <= found.high else None
+
+    def sign(self, k: int, value: float) -> float:
+        """Return the sign of a dyad's mode at a value."""
+        place = _places(np.array([[value]]), (self.low, self.high))
+        return float(np.ravel(self.motion.tracker.sign(k, np.array([[0]]), place))[0])
+
+
+def drive_table(
+    first: Configuration, driver: str, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
+) -> DriveTable | None:
+    """Return the table of a driver around a configuration. None where that cannot be solved."""
+    mechanism = first.structure.mechanism
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            values = np.linspace(low, high, POSES)
+            motion = solve(mechanism, {driver: values}, speed=1.0, acceleration=0.0, order=2, modes=first)
+            found = _pieces(motion, low, high, loads, pairs)
+    except CompoundkinError:
+        return None
+    return DriveTable(low, high, found, [piece.low for piece in found], motion)
+
+
+def _pieces(
+    motion: Motion, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
+) -> list[TablePiece]:
+    """Return the pieces that hold, in order."""
+    edges, found = np.linspace(low, high, PIECES + 1), []
+    todo = list(pairwise(edges.tolist()))
+    for _ in range(HALVED + 1):
+        made = _solved(motion, todo, (low, high), loads, pairs)
+        found += [piece for piece in made if _holds(piece)]
+        broken = [piece for piece in made if not _holds(piece)]
+        todo = [part for one in broken for part in pairwise([one.low, (one.low + one.high) / 2, one.high])]
+        if not todo:
+            break
+    else:
+        if motion.change_points:
+            found += [piece for piece in broken if _holds(piece, HOLDS_NEAR)]
+    return with_bridges(sorted(found, key=lambda piece: piece.low), high - low)
+
+
+def _holds(piece: TablePiece, part: float = HOLDS) -> bool:
+    scales = np.max(np.abs(piece.terms), axis=1)
+    # the bias is a derivative of the inertia, and the forces are alike
+    scales = np.array([scales[:2].max()] * 2 + [scales[2:].max()] * 2)
+    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * scales[:, None]))
+
+
+def _solved(
+    motion: Motion,
+    parts: Sequence[tuple[float, float]],
+    ends: tuple[float, float],
+    loads: Sequence[Sequence[Load]],
+    pairs: Sequence[Pair],
+) -> list[TablePiece]:
+    """Return pieces, solved all at once."""
+    values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
+    at = between(motion, 0, _places(values, ends))
+    rows = _terms(at, loads)
+    # beyond an end of a guide groups close all the same
+    rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
+    ratios = _ratios(at, pairs)
+    cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
+    return [TablePiece(float(a), float(b), rows[:, cut] @ TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
+            for (a, b), cut in zip(parts, cuts, strict=True)]  # fmt: skip
+
+
+def _places(values: Number, ends: tuple[float, float]) -> Number:
+    """Return where along the motion of a table values are."""
+    places: Number = np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (POSES - 1)
+    return places
+
+
+def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
+    """Return inertia, bias, stored forces and others at all poses of a motion at unit speed."""
+    mechanism = motion.mechanism
+    factor, fall = mechanism.stated_units.inertia, complex(first_entry(mechanism.free_fall))
+    rows = np.zeros((4, motion.failed.shape[1]))
+    for own in mass_motions(motion):
+        rows[0] += np.ravel(own.product(1, own, 1)) * factor
+        rows[1] += np.ravel(own.product(1, own, 2)) * factor
+        rows[2] += np.ravel((np.conj(fall) * own.centre[1]).real * own.mass) * factor
+    for loaded in loaded_blocks(motion):
+        for row, some in zip(rows[2:], loads, strict=True):
+            for load in some:
+                for link, wrench in load.wrenches(loaded):
+                    row[loaded.poses] += np.ravel(loaded.freed(link, wrench).power(loaded.pose(link)))
+    return rows
+
+
+def _ratios(motion: Motion, pairs: Sequence[Pair]) -> Number:
+    """Return how fast the fastest of some pairs moves, each by its scale."""
+    found = np.zeros(motion.failed.shape[1])
+    for pair in pairs:
+        scale = 1.0 if pair.free_is_angle else motion.size
+        found = np.fmax(found, np.abs(np.ravel(motion.pairs[pair.name].rate)) / scale)
+    return found
+
+
+# Points of a piece.
+POINTS = 24
+
+
+_ANGLES = (np.arange(POINTS) + 0.5) * np.pi / POINTS
+
+
+NODES = np.cos(_ANGLES)
+
+
+TO_COEFFICIENTS = np.cos(np.outer(np.arange(POINTS), _ANGLES)) * (2.0 / POINTS)
+
+
+TO_COEFFICIENTS[0] /= 2.0
+
+
+_DEGREES = np.arange(POINTS)
+
+
+@dataclass(eq=False)
+class TablePiece:
+    """A piece of a table. It has polynomials of inertia, bias, stored and other forces, and the poses at its points."""
+
+    low: float
+    high: float
+    terms: Number  # (4, POINTS)
+    ratio: float  # how fast the fastest pair moves, by the scales
+    nodes: Mapping[str, Pose]
+    place: slice
+    known: dict[str, Number] = field(default_factory=dict)
+
+    def basis(self, value: float) -> Number:
+        """Return Chebyshev's polynomials at a value."""
+        x = (2.0 * value - self.low - self.high) / (self.high - self.low)
+        found: Number = np.cos(_DEGREES * np.arccos(min(1.0, max(-1.0, x))))
+        return found
+
+    def pose(self, link: str, basis: Number, speed: float) -> Pose:
+        """Return the pose of a link. Its rates are those at unit rate and at a speed."""
+        if self.nodes[link] is FIXED:
+            return FIXED
+        z, moved, u, turned = self.of(link) @ basis
+        pace = np.array([1.0, speed])
+        return Pose(Series((complex(z), moved * pace)), Series((complex(u), turned * pace)))
+
+    def of(self, link: str) -> Number:
+        """Return the polynomials of a link's origin and orientation, each with its rate."""
+        if link not in self.known:
+            self.known[link] = self.polynomials(link)
+        return self.known[link]
+
+    def polynomials(self, link: str) -> Number:
+        """Make these polynomials."""
+        pose = self.nodes[link]
+        rows = [self._row(series, k) for series in (pose.z, pose.u) for k in (0, 1)]
+        return np.array(rows) @ TO_COEFFICIENTS.T
+
+    def _row(self, series: Series, k: int) -> Number:
+        value = series.c[k] if k < len(series.c) else 0.0
+        row = np.ravel(value)
+        return np.broadcast_to(row, POINTS) if row.size == 1 else row[self.place]
+
+
+# A bridge rests on so many widths of the gap to both sides, and its polynomial is of this degree.
+BESIDE, DEGREE = 1.9, 12
+
+
+# No gap is bridged that is more than this part of the table; what is less than this part of a piece is rounding.
+WIDEST, NO_GAP = 1.0 / 200.0, 1e-9
+
+
+# The polynomial goes through what it continues within this part of the largest value.
+FITS = 1e-9
+
+
+class BridgePiece(TablePiece):
+    """A piece that continues what is beside it."""
+
+    beside: Sequence[tuple[TablePiece, float]]  # pieces to both sides with places there
+
+    def polynomials(self, link: str) -> Number:
+        """Make the polynomials of a link's origin and orientation, each with its rate."""
+        return self.through(lambda piece: piece.of(link))[0]
+
+    def through(self, polynomials: Callable[[TablePiece], Number]) -> tuple[Number, float]:
+        """Return polynomials through those beside it, and by how much they miss them."""
+        places = np.array([place for _, place in self.beside])
+        values = np.array([polynomials(piece) @ piece.basis(place) for piece, place in self.beside])
+        middle, reach = (self.low + self.high) / 2.0, (BESIDE + 0.5) * (self.high - self.low)
+        rows = np.polynomial.chebyshev.chebvander((places - middle) / reach, DEGREE)
+        fitted = np.linalg.lstsq(rows, values, rcond=None)[0]
+        inside = np.polynomial.chebyshev.chebvander(NODES / (2.0 * BESIDE + 1.0), DEGREE)
+        return (inside @ fitted).T @ TO_COEFFICIENTS.T, float(np.max(np.abs(rows @ fitted - values)))
+
+
+def with_bridges(pieces: Sequence[TablePiece], width: float) -> list[TablePiece]:
+    """Return pieces in order, with others where narrow gaps are between them."""
+    starts, found = [piece.low for piece in pieces], list(pieces[:1])
+    for left, right in pairwise(pieces):
+        gap = right.low - left.high
+        is_narrow = NO_GAP * (left.high - left.low) < gap <= WIDEST * width
+        bridge = _bridge(pieces, starts, left, right) if is_narrow else None
+        found += [right] if bridge is None else [bridge, right]
+    return found
+
+
+def _bridge(
+    pieces: Sequence[TablePiece], starts: Sequence[float], left: TablePiece, right: TablePiece
+) -> BridgePiece | None:
+    """Return the piece between two others. None where no one polynomial continues what is on both sides."""
+    made = BridgePiece(left.high, right.low, left.terms, max(left.ratio, right.ratio), left.nodes, left.place)
+    spread = (NODES[:: POINTS // DEGREE] + 1.0) / 2.0 * BESIDE * (made.high - made.low)
+    places = np.concatenate([made.low - spread, made.high + spread]).tolist()
+    known = [(pieces[max(bisect_right(starts, place) - 1, 0)], place) for place in places]
+    if not all(piece.low <= place <= piece.high for piece, place in known):
+        return None
+    made.beside = known
+    made.terms, off = made.through(lambda piece: piece.terms)
+    return made if off <= FITS * float(np.max(np.abs(left.terms))) else None

@@ -9,9 +9,9 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.studies.responses.close_places import close_places
-from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.responses.course_extremes import refined_samples
 from compoundkin.studies.responses.designs import Designs
+from compoundkin.studies.responses.response import Response
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,7 +77,7 @@ class DesignTrial(ShortRepr):
 
         What a motion does between two of its poses that are far apart is seen from neither.
         """
-        places = close_places(self.designs.poses)
+        places = refined_samples(self.designs.poses)
         if len(places) == self.designs.poses:
             return self
         key = (b"closely",)

@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
-from compoundkin.studies.goals.contract import GoalUnknown
+from compoundkin.studies.goals.goal import GoalUnknown
 
 # Where a course is looked at for good first values: every five degrees of a whole turn.
 PLACES = 72

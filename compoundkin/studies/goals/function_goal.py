@@ -15,9 +15,9 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import RADIANS, motion_figure
-from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.driver_schedule import driver_of
+from compoundkin.studies.goals.goal import Goal
 
 PAIRS = "give pairs (driver value, output), or a function of the driver's value"
 

@@ -1,4 +1,4 @@
-"""A problem of better dimensions as numbers: what is asked of designs, by parts of the ranges."""
+"""An optimisation as numbers: goals and constraints over a space of free dimensions between bounds, scaled to 0 to 1."""
 
 from __future__ import annotations
 
@@ -11,17 +11,19 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.studies.goals.contract import DesignConstraint, Goal, Term
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.model.attributes import AXES, component_names
 from compoundkin.studies.goals.design_trial import DesignTrial
-from compoundkin.studies.optimisation.search_space import SearchSpace
-from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.goals.goal import DesignConstraint, Goal, GoalUnknown, Term
 from compoundkin.studies.responses.designs import Designs, StudiedPath
+from compoundkin.studies.responses.response import Response
+from compoundkin.studies.samples.variation import Variation
 
 AnyTerm = TypeVar("AnyTerm", bound=Term)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AskedTerm(ShortRepr, Generic[AnyTerm]):
+class ObjectiveTerm(ShortRepr, Generic[AnyTerm]):
     """A goal or a constraint with the path that it asks.
 
     `own` are the numbers of the space that are its unknowns.
@@ -34,13 +36,13 @@ class AskedTerm(ShortRepr, Generic[AnyTerm]):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AskedGoal(AskedTerm[Goal]):
+class GoalSpec(ObjectiveTerm[Goal]):
     """A goal with its weight in the sum."""
 
     weight: float = 1.0
 
 
-AskedConstraint: TypeAlias = AskedTerm[DesignConstraint]
+ConstraintSpec: TypeAlias = ObjectiveTerm[DesignConstraint]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,8 +50,8 @@ class DesignProblem(ShortRepr):
     """Goals and constraints over a space. `count` is of the designs that were looked at."""
 
     space: SearchSpace
-    goals: tuple[AskedGoal, ...]
-    constraints: tuple[AskedConstraint, ...]
+    goals: tuple[GoalSpec, ...]
+    constraints: tuple[ConstraintSpec, ...]
     count: list[int] = field(default_factory=lambda: [0], repr=False)
 
     @cached_property
@@ -58,7 +60,7 @@ class DesignProblem(ShortRepr):
         return all(one.term.is_squares for one in self.goals)
 
     @property
-    def terms(self) -> tuple[AskedGoal | AskedConstraint, ...]:
+    def terms(self) -> tuple[GoalSpec | ConstraintSpec, ...]:
         """All goals and constraints."""
         return (*self.goals, *self.constraints)
 
@@ -156,7 +158,7 @@ class SearchedDesigns(ShortRepr):
         """Which designs have all numbers."""
         return np.isfinite(self.values) & np.isfinite(self.margins).all(axis=1)
 
-    def trial(self, one: AskedGoal | AskedConstraint) -> DesignTrial:
+    def trial(self, one: GoalSpec | ConstraintSpec) -> DesignTrial:
         """Return the designs as a goal or constraint sees them."""
         if one not in self._trials:
             own = self.problem.space.numbers(self.parts)[:, one.own]
@@ -178,15 +180,110 @@ class SearchedDesigns(ShortRepr):
         return {}
 
     @cached_property
-    def _trials(self) -> dict[AskedGoal | AskedConstraint, DesignTrial]:
+    def _trials(self) -> dict[GoalSpec | ConstraintSpec, DesignTrial]:
         return {}
 
-    def _residuals(self, one: AskedGoal) -> Number:
+    def _residuals(self, one: GoalSpec) -> Number:
         return one.term.residuals(self.trial(one))
 
-    def _spread(self, one: AskedGoal | AskedConstraint) -> Number:
+    def _spread(self, one: GoalSpec | ConstraintSpec) -> Number:
         """Return the slopes of a term by all parts of the ranges."""
         space, found = self.problem.space, one.term.slopes(self.trial(one))
         whole = np.zeros((*found.shape[:2], space.size))
         whole[:, :, : space.own], whole[:, :, one.own] = found[:, :, : space.own], found[:, :, space.own :]
         return whole * space.span
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SearchSpace(ShortRepr):
+    """All numbers that a search changes.
+
+    It sees them in parts of their ranges, so that all are of one size. `names` are the coordinates, two of a point,
+    and then the unknowns; `dimensions` tell which coordinates each free dimension is.
+    """
+
+    dimensions: Mapping[str, tuple[int, ...]]
+    names: tuple[str, ...]
+    low: Number
+    high: Number
+    is_bounded: Number
+
+    @classmethod
+    def of(cls, variations: Mapping[str, Variation], unknowns: tuple[GoalUnknown, ...]) -> SearchSpace:
+        """Return the space of free dimensions and unknowns.
+
+        Raises InvalidInput for ranges without ends.
+        """
+        ends = {name: _ends(name, one) for name, one in variations.items()}
+        places: dict[str, tuple[int, ...]] = {}
+        names: list[str] = []
+        for name, (least, _) in ends.items():
+            parts = component_names(name) if len(least) == len(AXES) else (name,)
+            places[name] = tuple(range(len(names), len(names) + len(parts)))
+            names += parts
+        own = [(one.low, one.high) for one in unknowns]
+        low, high = (np.array([*(v for e in ends.values() for v in e[k]), *(o[k] for o in own)]) for k in (0, 1))
+        bounded = np.array([True] * len(names) + [one.is_bounded for one in unknowns])
+        return cls(places, (*names, *(one.name for one in unknowns)), low, high, bounded)
+
+    @property
+    def size(self) -> int:
+        """How many numbers it has."""
+        return len(self.names)
+
+    @property
+    def own(self) -> int:
+        """How many of them are dimensions."""
+        return sum(map(len, self.dimensions.values()))
+
+    @cached_property
+    def span(self) -> Number:
+        """The width of the ranges."""
+        return self.high - self.low
+
+    @property
+    def bounds(self) -> tuple[Number, Number]:
+        """The least and the greatest parts, infinite where nothing bounds."""
+        return np.where(self.is_bounded, 0.0, -np.inf), np.where(self.is_bounded, 1.0, np.inf)
+
+    def numbers(self, parts: Number) -> Number:
+        """Return the numbers at parts of the ranges, (designs, numbers)."""
+        return self.low + self.span * parts
+
+    def of_dimensions(self, parts: Number) -> dict[str, Number]:
+        """Return the values of the free dimensions, (designs,) each, complex for points."""
+        numbers = self.numbers(parts).T
+        return {
+            name: numbers[at[0]] + 1j * numbers[at[1]] if len(at) == 2 else numbers[at[0]].copy()
+            for name, at in self.dimensions.items()
+        }
+
+    def parts(self, dimensions: Mapping[str, Number], inside: bool = True) -> Number:
+        """Return one design as parts of the ranges, within the bounds or not.
+
+        All unknowns are in the middle of theirs.
+        """
+        numbers = self.numbers(np.full(self.size, 0.5))
+        for name, at in self.dimensions.items():
+            value = dimensions[name]
+            numbers[list(at)] = [np.real(value), np.imag(value)] if len(at) == 2 else [np.real(value)]
+        found = (numbers - self.low) / self.span
+        return np.clip(found, 0.0, 1.0) if inside else found
+
+
+def _ends(name: str, variation: Variation) -> tuple[list[float], list[float]]:
+    """Return the least and greatest coordinates of a dimension."""
+    low, high = ([one.real, one.imag][: variation.coordinates] for one in map(complex, variation.ends))
+    where, remedy = f"free.{name}", "give a range (40, 60)"
+    if not np.isfinite(low + high).all():
+        raise InvalidInput(Problem(where, "its values have no ends", remedy))
+    if any(a >= b for a, b in zip(low, high, strict=True)):
+        raise InvalidInput(Problem(where, "its range has no width", "leave it out where it is not free"))
+    beside = np.array([0.5, 0.5 + SIDE])[:, None] * np.ones(variation.coordinates)
+    if len(set(variation.values(beside).tolist())) == 1:
+        raise InvalidInput(Problem(where, "it has single values, and a search takes all between two", remedy))
+    return low, high
+
+
+# Values so far from each other, as parts of all chances, differ unless a dimension has single values only.
+SIDE = 1e-6

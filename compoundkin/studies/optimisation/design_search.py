@@ -1,8 +1,12 @@
-"""A search of better designs: many looked at, the best led on all at once, the best ends refined."""
+"""Search for optimal designs: many are sampled, the best descend together, and the best ends are refined.
+
+Starts are designs of Sobol's sequence; ends that agree are one local minimum.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,23 +14,38 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.studies.optimisation.design_problem import DesignProblem
-from compoundkin.studies.optimisation.evolution import GENERATIONS, evolved
-from compoundkin.studies.optimisation.local_methods import EVOLUTION, METHODS, method_of
-from compoundkin.studies.optimisation.local_minima import EndedSearch, ended_searches
-from compoundkin.studies.optimisation.shared_refinement import refined_together
-from compoundkin.studies.optimisation.simultaneous_descent import STEPS, descended
-from compoundkin.studies.optimisation.starting_designs import StartingDesigns, starting_designs
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
+from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
+from compoundkin.studies.optimisation.refinement import (
+    EVOLUTION,
+    GENERATIONS,
+    HOLDS_WITHIN,
+    METHODS,
+    evolve,
+    merit,
+    method_of,
+    refine_together,
+)
+from compoundkin.studies.optimisation.simultaneous_descent import STEPS, descend
+from compoundkin.studies.responses.assembled_range import failed_name
+from compoundkin.studies.samples.sobol import SobolSample
 
 # Of the ends of searches led on at once so many different ones are refined, the best.
 REFINED = 8
+
+
 # So many where slopes are differences, which take long.
 BY_DIFFERENCES = 2
+
+
 # Before that, violations of constraints below this part of their size do not matter: refinement ends them.
 NEARLY = 1e-2
+
+
 # Ends that violate constraints by more than this part of their size do not come to hold them.
 FAR = 0.2
+
+
 # Progress is told in so many parts; so many of them are told when the starts are known, and when they were led on.
 PARTS, STARTED, LED = 100, 10, 50
 
@@ -67,7 +86,7 @@ class DesignSearch(ShortRepr):
         count = self._worth(close)
         refine = METHODS.get(self.word, METHODS["SLSQP"])
         parts = [one.parts for one in close]
-        parts[:count] = refined_together(
+        parts[:count] = refine_together(
             self.problem, parts[:count], scales, refine, lambda k: self._tell(LED + (PARTS - LED) * k // count)
         )
         self._tell(PARTS)
@@ -84,10 +103,10 @@ class DesignSearch(ShortRepr):
     def _led(self) -> Number:
         """Return where all starts lead at once."""
         if self.word == EVOLUTION:
-            found = evolved(self.problem, self.begun.parts, self.begun.scales, self.seed, self._told(GENERATIONS))
+            found = evolve(self.problem, self.begun.parts, self.begun.scales, self.seed, self._told(GENERATIONS))
             return np.where(self.begun.matters, found, self.begun.parts[0])
         if self.leads_on:
-            return descended(self.problem, self.begun.parts, self.begun.scales, self._told(STEPS))
+            return descend(self.problem, self.begun.parts, self.begun.scales, self._told(STEPS))
         return self.begun.parts
 
     def _told(self, steps: int) -> Callable[[], None]:
@@ -107,3 +126,159 @@ class DesignSearch(ShortRepr):
         except Exception as error:  # whatever a user's function does
             remedy = "give a function of two numbers: how much is done, of how much"
             raise InvalidInput(Problem("progress", f"it cannot be told: {error}", remedy)) from error
+
+
+# So many designs are looked at for each start, at least and at most so many in all.
+SAMPLED_FOR_EACH, LEAST_SAMPLED, MOST_SAMPLED = 16, 1 << 10, 1 << 16
+
+
+# So many at once: their curves stay in the cache of a processor, or near it.
+AT_ONCE = 1 << 10
+
+
+# A start is worth a search where it is better than so many of its neighbours.
+NEIGHBOURS = 8
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StartingDesigns(ShortRepr):
+    """The designs at which searches begin, the most promising first.
+
+    They are parts of the ranges. `screened` designs were looked at, `assembled` of them were. `scales` are the sizes of
+    margins among those. What `matters` are the numbers by which anything changes that is asked.
+    """
+
+    parts: Number
+    values: Number
+    screened: int
+    assembled: int
+    scales: Number
+    matters: Number
+
+
+def starting_designs(problem: DesignProblem, starts: int, seed: int, own: Number) -> StartingDesigns:
+    """Return so many starts, and with them a design of one's own. Raises NotAssembled where there are none.
+
+    Best of all are designs that are better than their neighbours. Source: A. Törn, S. Viitanen, Topographical global
+    optimization, in: Recent Advances in Global Optimization, Princeton 1992.
+    """
+    total = min(max(LEAST_SAMPLED, 1 << (SAMPLED_FOR_EACH * starts - 1).bit_length()), MOST_SAMPLED)
+    sample, failures = SobolSample(MOST_SAMPLED, seed), Counter[str]()
+    found: list[tuple[Number, Number, Number]] = []
+    row = kept = looked = 0
+    while row < total or (kept < starts and row < MOST_SAMPLED):
+        units = sample.units(problem.space.size, range(row, row + AT_ONCE))
+        designs = problem.at(problem.guessed(units if row else np.concatenate([own, units])))
+        row += AT_ONCE
+        looked += len(designs.parts)
+        good = designs.assembled
+        kept += int(good.sum())
+        found.append((designs.parts[good], designs.values[good], designs.margins[good]))
+        if not kept:
+            failures.update(_failed(designs))
+    if not kept:
+        raise _none(looked, failures)
+    parts, values, margins = (np.concatenate(one) for one in zip(*found, strict=True))
+    scales = _scales(margins)
+    order = _promising(parts, values, np.minimum(margins / scales, 0.0).sum(axis=1))[:starts]
+    matters = _matters(problem, parts[order])
+    return StartingDesigns(np.where(matters, parts[order], own), values[order], looked, kept, scales, matters)
+
+
+def _matters(problem: DesignProblem, parts: Number) -> Number:
+    """Tell by which numbers anything changes: those of which some slope is not nothing."""
+    designs = problem.at(parts)
+    return (designs.value_slopes != 0.0).any(axis=0) | (designs.margin_slopes != 0.0).any(axis=(0, 1))
+
+
+def _scales(margins: Number) -> Number:
+    """Return the size of each margin: what half of the designs are within."""
+    middle = np.median(np.abs(margins), axis=0)
+    return np.where(middle > 0.0, middle, 1.0)
+
+
+def _promising(parts: Number, values: Number, held: Number) -> Number:
+    """Return the order of designs: first those better than all neighbours, then the others."""
+    rank = np.empty(len(parts))
+    rank[np.lexsort((values, -held))] = np.arange(len(parts))
+    is_best = np.zeros(len(parts), dtype=bool)
+    squares = (parts**2).sum(axis=1)
+    near = min(NEIGHBOURS + 1, len(parts))
+    for rows in np.array_split(np.arange(len(parts)), -(-len(parts) // AT_ONCE)):
+        distances = squares[rows, None] + squares - 2.0 * parts[rows] @ parts.T
+        neighbours = np.argpartition(distances, near - 1, axis=1)[:, :near]
+        is_best[rows] = (rank[neighbours] >= rank[rows, None]).all(axis=1)
+    return np.lexsort((rank, ~is_best))
+
+
+def _failed(designs: SearchedDesigns) -> Counter[str]:
+    """Count designs by the group that first cannot be assembled, or the guide that is beyond an end."""
+    counted: Counter[str] = Counter()
+    path = designs.problem.path
+    failed = designs.designs(path).found.failed
+    if failed is not None:
+        first = np.where(failed > 0, failed, np.iinfo(failed.dtype).max).min(axis=-1)
+        for index, count in zip(*np.unique(first[(failed > 0).any(axis=-1)], return_counts=True), strict=True):
+            counted[failed_name(path.reference, int(index))] += int(count)
+    return counted
+
+
+def _none(screened: int, failures: Counter[str]) -> NotAssembled:
+    which = f"none of {screened} designs within the ranges"
+    remedy = "give ranges around dimensions that can be assembled, or drive over a smaller range"
+    if not failures:
+        # at all poses each of them is: it is lost in between, or a number is beyond all bounds
+        what = f"{which} is assembled between all poses too, with a finite number for all that is asked"
+        return NotAssembled(Problem("free", what, remedy))
+    told = ", ".join(f"{name} in {count}" for name, count in failures.most_common(3))
+    return NotAssembled(Problem("free", f"{which} can be assembled at all poses: it fails at {told}", remedy))
+
+
+# Ends are the same design where all their dimensions are within this part of the ranges: searches end far closer.
+SAME = 1e-3
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EndedSearch(ShortRepr):
+    """A design at which searches ended, by parts of the ranges.
+
+    `searches` are those, by number.
+    """
+
+    parts: Number
+    violation: float
+    value: float
+    searches: tuple[int, ...]
+    is_refined: bool = True
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """What ends are compared by."""
+        return self.violation, self.value
+
+
+def ended_searches(
+    problem: DesignProblem,
+    parts: Number,
+    scales: Number,
+    held: float = HOLDS_WITHIN,
+    searches: Sequence[tuple[int, ...]] | None = None,
+) -> list[EndedSearch]:
+    """Return the different designs among ends of searches, the best first.
+
+    Violations below `held` do not count; `searches` say which ended at each. Those that are not assembled are
+    left out.
+    """
+    which = [(k,) for k in range(len(parts))] if searches is None else searches
+    found = merit(problem.at(parts), scales, held)
+    order = sorted((k for k in range(len(parts)) if np.isfinite(found[k][1])), key=lambda k: (found[k], k))
+    kept: list[EndedSearch] = []
+    own = problem.space.own
+    for k in order:
+        for place, other in enumerate(kept):
+            if np.abs(other.parts[:own] - parts[k, :own]).max() < SAME:
+                kept[place] = EndedSearch(other.parts, *other.rank, (*other.searches, *which[k]))
+                break
+        else:
+            kept.append(EndedSearch(parts[k], *found[k], which[k]))
+    return kept

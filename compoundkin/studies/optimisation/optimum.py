@@ -1,4 +1,7 @@
-"""The answer of a search: the mechanism with better dimensions, what changed, what binds, and how sure one can be."""
+"""The result of an optimisation: the mechanism, its changed dimensions, active constraints, and other local minima.
+
+Assembly modes are written into the mechanism, so that it moves as it did in the search.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +15,15 @@ import numpy as np
 from compoundkin.analysis.checks import Check, verify
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
-from compoundkin.base.errors import suppress_pose_warnings
+from compoundkin.base.errors import CompoundkinError, suppress_pose_warnings
+from compoundkin.kinematics.chosen_modes import read_name
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
+from compoundkin.model.elements import mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.compiled_path import CompiledPath
-from compoundkin.studies.goals.contract import Goal
-from compoundkin.studies.optimisation.kept_modes import with_modes
+from compoundkin.studies.goals.goal import Goal
 
 
 @dataclass(frozen=True)
@@ -182,3 +186,41 @@ class Optimum(DisplaysHtml, ShortRepr):
 
 # Searches agree where their objectives do to so many parts; of objectives that become nothing, of those at the start.
 AGREED, NOTHING = 1e-4, 1e-12
+
+
+def with_modes(mechanism: Mechanism, motion: Motion, moved: Mapping[str, Any]) -> Mechanism:
+    """Return the mechanism, with its modes where it would not move so by itself.
+
+    `moved` is what `solve` is told of the motion. Configurations that are numbered cannot be written: such a mechanism
+    is returned as it is.
+    """
+    modes, alone = moved["modes"], {**moved, "modes": None}
+    if not isinstance(modes, str) or _moves_so(mechanism, motion, alone):
+        return mechanism
+    written = mechanism.replace(*_modes(mechanism, motion, modes))
+    return written if _moves_so(written, motion, alone) else mechanism
+
+
+def _modes(mechanism: Mechanism, motion: Motion, modes: str) -> list[Any]:
+    # as they are asked for: at a change point the motion itself has neither sign
+    found = []
+    for index, sign in read_name(motion.solving_order, modes).items():
+        links = motion.structure.groups[index].links
+        own = next((one for one in mechanism.modes if set(one.links) & set(links)), None)
+        found.append(mode(sign, *(own.links if own else links[:1])))
+    return found
+
+
+def _moves_so(mechanism: Mechanism, motion: Motion, moved: Mapping[str, Any]) -> bool:
+    """Tell whether a mechanism takes the motion by itself."""
+    try:
+        own = solve(mechanism, **moved)
+    except CompoundkinError:
+        return False
+    there, wanted = (np.array([point.position for point in found.points.values()]) for found in (own, motion))
+    size = np.nanmax(np.abs(wanted), initial=1.0)
+    return bool(np.allclose(there, wanted, rtol=0.0, atol=SAME_POSE * size, equal_nan=True))
+
+
+# Numbered configurations are found by Newton's steps to some ten digits.
+SAME_POSE = 1e-8

@@ -106,7 +106,7 @@ class _Descent(ShortRepr):
         return np.concatenate([own, violated], axis=1)
 
 
-def descended(problem: DesignProblem, parts: Number, scales: Number, tell: Callable[[], None]) -> Number:
+def descend(problem: DesignProblem, parts: Number, scales: Number, tell: Callable[[], None]) -> Number:
     """Return where searches from all starts end, by parts of the ranges.
 
     Violated constraints are added as squares. `tell` is called after each step.

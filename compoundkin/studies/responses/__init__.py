@@ -15,13 +15,10 @@ from compoundkin.model.attributes import STROKE, VALUE, motion_figure
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.compiled_path import compile
 from compoundkin.programs.recording.recorded_motion import output_of
-from compoundkin.studies.responses.contract import Response
-from compoundkin.studies.responses.course_response import CourseResponse
 from compoundkin.studies.responses.designs import Designs, StudiedPath
-from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse
+from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse, StrokeRatioResponse
+from compoundkin.studies.responses.response import CourseResponse, Response, SummedResponse, summed_response
 from compoundkin.studies.responses.solved_response import SolvedResponse
-from compoundkin.studies.responses.stroke_ratio import StrokeRatioResponse
-from compoundkin.studies.responses.summed_response import SummedResponse, summed_response
 
 __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
 

@@ -1,4 +1,4 @@
-"""Over which part of a motion designs are assembled, between the poses too."""
+"""The part of a motion over which designs are assembled, between the poses too, and which part of the mechanism fails."""
 
 from __future__ import annotations
 
@@ -9,14 +9,19 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.approach import MOST, SPACING
-from compoundkin.studies.responses.design_blocks import blocks
-from compoundkin.studies.responses.designs import Designs
+from compoundkin.kinematics.configuration import label
+from compoundkin.kinematics.motion import Motion
+from compoundkin.studies.responses.designs import Designs, design_blocks
 
 # Margins are looked at so many times as densely as `solve` looks for change points.
 FINER = 5
+
+
 # Where the least margin may be below that of a sample, between its neighbours, so many samples follow, so often: to
 # 1e-6 of a sample's spacing.
 PARTS, ROUNDS = 33, 5
+
+
 # Margins (squared sines) below this are rounding.
 ROUNDING = 1e-12
 
@@ -43,10 +48,10 @@ class AssembledRange(ShortRepr):
 
 def assembled_range(designs: Designs) -> AssembledRange:
     """Return where designs are not assembled; it is looked at once."""
-    return designs.kept(AssembledRange, lambda: _found(designs))
+    return designs.kept(AssembledRange, lambda: _search_failures(designs))
 
 
-def _found(designs: Designs) -> AssembledRange:
+def _search_failures(designs: Designs) -> AssembledRange:
     shape = designs.number, designs.poses
     values = designs.found
     failed = np.zeros(shape, dtype=np.int32) if values.failed is None else np.broadcast_to(values.failed, shape)
@@ -68,7 +73,7 @@ def _between(designs: Designs) -> tuple[Number, Number]:
     """Return which group of each design fails between its poses plus one, else 0, and after which pose."""
     parts = _parts(designs)
     places = np.linspace(0.0, designs.poses - 1.0, (designs.poses - 1) * parts + 1)
-    found = [_sampled(designs.picked(np.array(rows)), places) for rows in blocks(designs.number, len(places))]
+    found = [_sampled(designs.picked(np.array(rows)), places) for rows in design_blocks(designs.number, len(places))]
     failed, place = (np.concatenate(each) for each in zip(*found, strict=True))
     return failed, np.minimum(place.astype(int), designs.poses - 2)
 
@@ -116,3 +121,19 @@ def _first(failed: Number, places: Number) -> tuple[Number, Number]:
     """Return the first failure of each row, 0 where there is none, and its place."""
     index, k = np.arange(len(failed)), np.argmax(failed != 0, axis=1)
     return failed[index, k].copy(), places[index, k].copy()
+
+
+def is_travel_limit(motion: Motion, number: int) -> bool:
+    """Tell whether it is a guide that is beyond an end.
+
+    Those are numbered behind all groups.
+    """
+    return number > len(motion.structure.groups)
+
+
+def failed_name(motion: Motion, number: int) -> str:
+    """Return the name of the group that does not close, or of the guide."""
+    if is_travel_limit(motion, number):
+        ends = motion.solving_order.guide_ends
+        return str(ends.pairs[number - len(motion.structure.groups) - 1].name)
+    return label(motion.structure, number - 1)

@@ -1,4 +1,4 @@
-"""The least and greatest values of courses of many designs, between their poses too."""
+"""Least and greatest values of courses of many designs, between their poses too."""
 
 from __future__ import annotations
 
@@ -13,16 +13,21 @@ from compoundkin.kinematics.extremes.extreme_search import MOST_ADDED, POLE
 from compoundkin.kinematics.extremes.measures import ROUNDING
 from compoundkin.kinematics.extremes.windows import AT_FINE, FINE, FIT, INNER, SAMPLES, TRUSTED, vertices
 from compoundkin.studies.responses.assembled_range import assembled_range
-from compoundkin.studies.responses.close_places import close_parts, close_places
 from compoundkin.studies.responses.designs import Designs
 
 # A window is narrowed so often at most: at a kink to 1e-10 of it.
 NARROWINGS = 20
+
+
 # At a kink a course is farther from the polynomial through its samples than these tell: by so many times the sum of
 # so many of the last coefficients.
 SURE, LAST = 8.0, 3
+
+
 # Between the places at which a polynomial is looked at it rises by less than this part of its range.
 MISSED = 0.01
+
+
 AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
 
 
@@ -63,10 +68,10 @@ class CourseSearch(ShortRepr):
     def _course(self) -> tuple[int, Number]:
         """Return the course, and in how many parts the steps between poses are cut for it."""
         number, poses = self.designs.number, self.designs.poses
-        parts = close_parts(poses)
+        parts = refinement_parts(poses)
         if parts == 1:
             return 1, self.sign * np.broadcast_to(self.designs.found[self.name], (number, poses))
-        places = np.broadcast_to(close_places(poses), (number, parts * (poses - 1) + 1))
+        places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
         return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
 
     def _search(self, course: Number, parts: int, offers: CourseOffers) -> None:
@@ -194,3 +199,21 @@ def _peaks(course: Number) -> Number:
     added = MOST_ADDED * np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1)
     best = course.max(axis=1, keepdims=True)
     return peak & (course + added >= best) & (added > ROUNDING * np.abs(best))
+
+
+# What lies between poses is sought in so many steps of a motion at least: ten degrees of a turn.
+FINE_SAMPLES = 36
+
+
+def refinement_parts(poses: int) -> int:
+    """Return in how many parts steps between poses are cut, to look closely.
+
+    >>> refinement_parts(4), refinement_parts(361), refinement_parts(1)
+    (12, 1, 1)
+    """
+    return -(-FINE_SAMPLES // (poses - 1)) if poses > 1 else 1
+
+
+def refined_samples(poses: int) -> Number:
+    """Return the poses, and places between those of a motion that has few."""
+    return np.linspace(0.0, poses - 1.0, refinement_parts(poses) * (poses - 1) + 1)

@@ -1,8 +1,9 @@
-"""Some designs of a compiled path over one motion, and what is computed of them once."""
+"""Designs of a compiled path over one motion: their results, computed once each, and what their drivers do."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeVar
@@ -11,7 +12,8 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.extremes.inputs_between import interval
+from compoundkin.base.errors import CompoundkinError, Problem
+from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
@@ -21,9 +23,8 @@ from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.path_values import PathValues
-from compoundkin.studies.responses.driver_inputs import inputs_at, inputs_in_time, inputs_of
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -145,14 +146,14 @@ class Designs(ShortRepr):
     def picked(self, rows: Number) -> Designs:
         """Return some of them, by index."""
         dimensions = {name: value[rows] for name, value in self.dimensions.items()}
-        return replace(self, dimensions=dimensions, inputs=inputs_of(self.inputs, rows))
+        return replace(self, dimensions=dimensions, inputs=inputs_of_designs(self.inputs, rows))
 
-    def kept(self, key: Hashable, make: Callable[[], Found]) -> Found:
+    def kept(self, key: Hashable, make: Callable[[], Result]) -> Result:
         """Return what is made once, under a key."""
         # `cached_property` would let one thread compute at a time, whatever the designs: its lock is that of the class
         if key not in self._kept:
             self._kept[key] = make()
-        found: Found = self._kept[key]
+        found: Result = self._kept[key]
         return found
 
     def moved(self, coordinate: str, by: float) -> Designs:
@@ -211,3 +212,77 @@ class Designs(ShortRepr):
     @property
     def _columns(self) -> Mapping[str, Number]:
         return {name: np.reshape(value, (-1, 1)) for name, value in self.dimensions.items()}
+
+
+def inputs_of_designs(inputs: Inputs, rows: Number) -> Inputs:
+    """Return what drivers do in some designs, by index."""
+    return inputs.driven({name: tuple(_of(one, rows) for one in rates) for name, rates in inputs.drives.items()})
+
+
+def inputs_at(inputs: Inputs, rows: Number, places: Number) -> Inputs:
+    """Return what drivers do at places (rows, places), linearly from pose to pose."""
+    return _laid(inputs.pick(np.repeat(rows, places.shape[1]), places.ravel()), places.shape)
+
+
+def inputs_in_time(motion: Motion, order: int, places: Number) -> tuple[Inputs, Number]:
+    """Return what drivers do at places of a motion in time.
+
+    They follow their laws. The times there come with it.
+    """
+    one, at = np.zeros(places.size, dtype=int), places.ravel()
+    times = times_between(motion, one, at).reshape(places.shape)
+    return _laid(inputs_between(motion, one, at, order), places.shape), times
+
+
+def _of(value: Number, rows: Number) -> Number:
+    return value[rows] if np.ndim(value) and value.shape[0] > 1 else value
+
+
+def _laid(column: Inputs, shape: tuple[int, ...]) -> Inputs:
+    """Return columns of drivers' numbers in another shape; one that all share stays a number."""
+
+    def laid(value: Number) -> Number:
+        if not np.ndim(value):
+            return value
+        return value.reshape(shape) if value.size == np.prod(shape) else float(value.item())
+
+    drives = {name: tuple(laid(value) for value in rates) for name, rates in column.drives.items()}
+    return Inputs(shape, column.ends, drives)
+
+
+# So many designs times poses are computed at once at most.
+MOST_POSES = 2**19
+
+
+def designs_at_once(poses: int, most: int = MOST_POSES) -> int:
+    """Return how many designs of so many poses are a block: one at least."""
+    return max(1, most // max(1, poses))
+
+
+def design_blocks(count: int, poses: int, most: int = MOST_POSES) -> Iterator[range]:
+    """Yield so many designs in blocks.
+
+    >>> list(design_blocks(5, 10, 20))
+    [range(0, 2), range(2, 4), range(4, 5)]
+    """
+    step = designs_at_once(poses, most)
+    for start in range(0, count, step):
+        yield range(start, min(start + step, count))
+
+
+# The argument of `compile` that frees them, by which it tells their problems.
+FREE = "free"
+
+
+@contextmanager
+def name_freeing_argument(argument: str) -> Iterator[None]:
+    """Tell what is wrong with free dimensions by the argument that has them."""
+    try:
+        yield
+    except CompoundkinError as error:
+        raise type(error)([_placed(one, argument) for one in error.problems], error.heading) from None
+
+
+def _placed(problem: Problem, argument: str) -> Problem:
+    first, dot, name = problem.where.partition(".")
+    return replace(problem, where=f"{argument}.{name}") if dot and first == FREE else problem

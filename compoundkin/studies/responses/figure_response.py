@@ -1,21 +1,26 @@
-"""A figure of the whole course of a quantity: its least and greatest value, its stroke, between the poses too."""
+"""Figures of a whole course: least and greatest value, stroke, time ratio and imbalance, between the poses too."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.extremes import extremes
-from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE
+from compoundkin.kinematics.extremes.dead_points import moving_driver
+from compoundkin.kinematics.extremes.places import SAME_PLACE
+from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE, TIME_RATIO
 from compoundkin.studies.responses.assembled_range import assembled_range
-from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.course_extremes import CourseExtreme, CourseSearch
 from compoundkin.studies.responses.designs import Designs
+from compoundkin.studies.responses.response import Response
 
 # A length that is found by its square is known to this part of the greatest: the square root of rounding.
 ZERO = 1e-8
+
+
 # By how much each figure counts the greatest and the least value.
 PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0), (-1.0, -1.0))}
 
@@ -69,4 +74,94 @@ class FigureResponse(Response):
             (solved,) = extremes(designs.picked(handed).motion, self.of)
             end = solved.greatest if sign > 0 else solved.least
             found.value[handed], found.place[handed] = end.value, end.at.place
+        return found
+
+
+# Slopes beside an extreme are told by samples so far apart, in parts of the cycle: 2.4 degrees of a crank.
+SPACING = 1.0 / 150.0
+
+
+# Weights of samples at 1 to 4 spacings, for the first derivative (odd) and the second (even, with that in the middle):
+# right to the eighth power of the spacing. Source: B. Fornberg, Mathematics of Computation 51 (1988), table 1.
+FIRST = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
+
+
+SECOND, MIDDLE = np.array([8 / 5, -1 / 5, 8 / 315, -1 / 560]), -205 / 72
+
+
+STEPS = np.arange(1, len(FIRST) + 1)
+
+
+BESIDE = np.concatenate([-STEPS[::-1], [0], STEPS])
+
+
+ODD, EVEN = np.concatenate([-FIRST[::-1], [0.0], FIRST]), np.concatenate([SECOND[::-1], [MIDDLE], SECOND])
+
+
+# The signs of the greatest and the least value.
+ENDS = (1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class StrokeRatioResponse(Response):
+    """The time ratio or imbalance angle of an output over a closed cycle, (designs,).
+
+    `stroke` is its stroke. It is none of designs that rest, or do not go to and fro.
+    """
+
+    stroke: FigureResponse = field(default_factory=lambda: FigureResponse(""))
+    figure: str = TIME_RATIO
+
+    def values(self, designs: Designs) -> Number:
+        """Return the figure of each design."""
+        part = self._part(designs)
+        if self.figure != TIME_RATIO:
+            return np.pi * np.abs(2.0 * part - 1.0)
+        longer = np.maximum(part, 1.0 - part)
+        return np.asarray(longer / (1.0 - longer))
+
+    def slopes(self, designs: Designs) -> Number:
+        """Return its slopes. Extremes move along the cycle as the slope of the course changes there."""
+        part = self._part(designs)
+        moved = sum(sign * self._moved(designs, sign) for sign in ENDS)
+        sense = np.sign(part - 0.5)
+        rise = 2.0 * np.pi if self.figure != TIME_RATIO else (1.0 - np.maximum(part, 1.0 - part)) ** -2.0
+        return np.asarray(rise * sense * moved)
+
+    def _part(self, designs: Designs) -> Number:
+        """Return which part of the cycle leads from the least to the greatest value."""
+        high, low = (self._progress(designs, self.stroke.extreme(designs, sign).place) for sign in ENDS)
+        stroke, course = self.stroke.values(designs), designs.found[self.stroke.of]
+        with np.errstate(invalid="ignore"):
+            closes = np.abs(course[:, -1] - course[:, 0]) <= SAME_PLACE * stroke
+        return np.where(closes & (stroke > 0.0), np.mod(high - low, 1.0), np.nan)
+
+    def _progress(self, designs: Designs, places: Number) -> Number:
+        """Return which part of the cycle has passed at places."""
+        return np.interp(places, np.arange(designs.poses), self._cycle(designs))
+
+    def _cycle(self, designs: Designs) -> Number:
+        """Return which part of the cycle has passed at the poses: of the time, or of the way of the driver."""
+        at = designs.times
+        if at is None:
+            at = designs.inputs.drives[moving_driver(designs.path.reference)][0]
+        if np.size(at) != designs.poses:
+            what = "the driver moves otherwise from design to design"
+            raise InvalidInput(Problem(self.name, what, "give one motion for all designs"))
+        whole = np.ravel(at)
+        return (whole - whole[0]) / (whole[-1] - whole[0])
+
+    def _moved(self, designs: Designs, sign: float) -> Number:
+        """Return the slopes of where an extreme is, in parts of the cycle, (coordinates, designs)."""
+        place = self.stroke.extreme(designs, sign).place
+        found = np.full((len(designs.path.coordinates), designs.number), np.nan)
+        rows = np.flatnonzero(~np.isnan(place))
+        if not len(rows):
+            return found
+        near = np.mod(self._progress(designs, place[rows])[:, None] + SPACING * BESIDE, 1.0)
+        places = np.interp(near, self._cycle(designs), np.arange(designs.poses))
+        of, is_angle = self.stroke.of, self.stroke.is_angle
+        second = designs.values_at(of, rows, places, is_angle) @ EVEN / SPACING**2
+        with np.errstate(all="ignore"):
+            found[:, rows] = -(designs.slopes_at(of, rows, places) @ ODD / SPACING) / second
         return found

@@ -10,16 +10,15 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled, NotDetermined
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.studies.responses.contract import Response
-from compoundkin.studies.responses.design_blocks import blocks
-from compoundkin.studies.responses.designs import Designs
+from compoundkin.studies.responses.designs import Designs, design_blocks
+from compoundkin.studies.responses.response import Response
 
 # So many poses are solved at once, so that a motion with all its forces stays in memory.
 MOST_POSES = 2**15
 # The step of a central difference, as a part of what is a large change: truncation and rounding are then alike.
 STEP = 1e-5
 # A design of which nothing can be found must not take the others with it.
-NOTHING = (InvalidInput, InvalidMechanism, NotAssembled, NotDetermined)
+UNSOLVED = (InvalidInput, InvalidMechanism, NotAssembled, NotDetermined)
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,7 @@ class SolvedResponse(Response):
         """Return it; figures of designs that are not assembled at all poses are none."""
         shape = (designs.number, designs.poses) if self.is_course else (designs.number,)
         found = np.full(shape, np.nan, dtype=complex if self.is_vector else float)
-        for block in blocks(designs.number, designs.poses, MOST_POSES):
+        for block in design_blocks(designs.number, designs.poses, MOST_POSES):
             for rows, values in self._parts(designs, np.array(block)):
                 found[rows] = values
         return found
@@ -40,7 +39,7 @@ class SolvedResponse(Response):
         try:
             with np.errstate(all="ignore"):
                 yield rows, self._solved(designs.picked(rows))
-        except NOTHING:
+        except UNSOLVED:
             half = len(rows) // 2
             if half:
                 yield from self._parts(designs, rows[:half])

@@ -8,13 +8,11 @@ from typing import Any
 
 from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
-from compoundkin.studies.samples.contract import DesignSample
-from compoundkin.studies.samples.grid_of_levels import GridSample
-from compoundkin.studies.samples.latin_hypercube import LatinHypercubeSample
-from compoundkin.studies.samples.listed_rows import TableSample
-from compoundkin.studies.samples.random_rows import RandomSample
+from compoundkin.studies.samples.design_sample import DesignSample
+from compoundkin.studies.samples.grid_sample import GridSample, TableSample
+from compoundkin.studies.samples.random_sample import LatinHypercubeSample, RandomSample
 from compoundkin.studies.samples.sobol import SobolSample
-from compoundkin.studies.variations.contract import Variation
+from compoundkin.studies.samples.variation import Variation
 
 KINDS_OF_SAMPLES: tuple[type[DesignSample], ...] = (
     SobolSample,

@@ -11,8 +11,8 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, warn
-from compoundkin.studies.samples.contract import UnitSample, columns_of
-from compoundkin.studies.variations.contract import Variation
+from compoundkin.studies.samples.design_sample import UnitSample, columns_of
+from compoundkin.studies.samples.variation import Variation
 
 BITS = 30
 

@@ -1,23 +1,43 @@
-"""`tolerance`: what errors of dimensions and loose pins do to chosen outputs of a mechanism."""
+"""`tolerance`: the effect of errors of dimensions and of loose pins on outputs of a mechanism, by slopes and at random."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.display import ShortRepr, count_phrase
+from compoundkin.base.errors import (
+    FewDigits,
+    InvalidInput,
+    NotAssembled,
+    Problem,
+    UnassembledPoses,
+    suppress_pose_warnings,
+    warn,
+)
 from compoundkin.kinematics.configuration import Configuration
+from compoundkin.model.attributes import AXES, PARTS, RADIANS
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.studies.responses import studied_path
-from compoundkin.studies.responses.freed_dimensions import freed_by
-from compoundkin.studies.tolerances.chances import Chances
-from compoundkin.studies.tolerances.found_outputs import found_outputs
-from compoundkin.studies.tolerances.given_errors import GivenError, error_sources, freed, given_tolerances
-from compoundkin.studies.tolerances.loose_pins import given_clearances
-from compoundkin.studies.tolerances.stated_offsets import with_offsets
-from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
-from compoundkin.studies.tolerances.toleranced_designs import TolerancedDesigns
+from compoundkin.studies.responses import Designs, Response, StudiedPath, studied_path
+from compoundkin.studies.responses.assembled_range import assembled_range
+from compoundkin.studies.responses.designs import design_blocks, name_freeing_argument
+from compoundkin.studies.samples.random_sample import RandomSample
+from compoundkin.studies.tolerances.clearances import clearance_specs, with_stated_offsets
+from compoundkin.studies.tolerances.error_sources import (
+    ErrorSource,
+    ErrorSpec,
+    error_sources,
+    free_dimension_names,
+    tolerance_specs,
+)
+from compoundkin.studies.tolerances.output_tolerance import OutputTolerance, SampledOutput
+from compoundkin.studies.tolerances.tolerance_analysis import Chances, ToleranceAnalysis
 
 
 @checked
@@ -60,20 +80,162 @@ def tolerance(
     """
     names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
     chances = Chances.of(count, seed, percentiles, sigmas)
-    given = [*given_tolerances(tolerances, chances.sigmas), *given_clearances(mechanism, clearance or {})]
-    _hold(names, given)
+    given = [*tolerance_specs(tolerances, chances.sigmas), *clearance_specs(mechanism, clearance or {})]
+    _check_tolerances(names, given)
     rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
-    with freed_by("tolerances"):
-        free = freed([one.dimension for one in given])
-        path, responses = studied_path(with_offsets(mechanism, free), free, names, values, modes=modes, **rates)
+    with name_freeing_argument("tolerances"):
+        free = free_dimension_names([one.dimension for one in given])
+        path, responses = studied_path(with_stated_offsets(mechanism, free), free, names, values, modes=modes, **rates)
         sources = error_sources(path, given)
     designs = TolerancedDesigns(path, sources, chances.sample)
-    found, left_out = found_outputs(designs, responses, chances.percentiles)
+    found, left_out = output_tolerances(designs, responses, chances.percentiles)
     return ToleranceAnalysis(path.reference, sources, found, chances, left_out)
 
 
-def _hold(names: Sequence[str], given: Sequence[GivenError]) -> None:
+def _check_tolerances(names: Sequence[str], given: Sequence[ErrorSpec]) -> None:
     if not names:
         raise InvalidInput(Problem("outputs", "no output is named", 'tolerance(..., outputs=["ram.stroke"])'))
     if not given:
         raise InvalidInput(Problem("tolerances", "nothing has a tolerance", 'tolerance(..., {"crank.B": 0.05})'))
+
+
+def output_tolerances(
+    designs: TolerancedDesigns, responses: Sequence[Response], percents: tuple[float, ...]
+) -> tuple[dict[str, OutputTolerance], int]:
+    """Return the outputs by name, and how many random designs are left out.
+
+    A vector is two outputs. Raises NotAssembled where the mechanism itself or too many random designs are not assembled
+    over the whole motion; warns UnassembledPoses of some.
+    """
+    _check_nominal(designs)
+    values, assembled = designs.found(responses)
+    _report_progress(assembled)
+    outputs: dict[str, OutputTolerance] = {}
+    for response in responses:
+        for one in _outputs(designs, response, values[response.name][assembled], percents):
+            outputs[one.name] = one
+            _report_slopes(one)
+    return outputs, int(np.count_nonzero(~assembled))
+
+
+def _outputs(
+    designs: TolerancedDesigns, response: Response, sampled: Number, percents: tuple[float, ...]
+) -> Iterator[OutputTolerance]:
+    nominal = designs.nominal
+    shape = (designs.path.reference.inputs.poses,) if response.is_course else ()
+    values = np.broadcast_to(response.values(nominal), (1, *shape))[0]
+    coordinates = designs.path.coordinates
+    slopes = np.broadcast_to(response.slopes(nominal), (len(coordinates), 1, *shape))[:, 0]
+    for axis in AXES if response.is_vector else ("",):
+        part = PARTS.get(axis, np.real)
+        name = f"{response.name}.{axis}" if axis else response.name
+        by = dict(zip(coordinates, part(slopes), strict=True))
+        near = SampledOutput(_near(name, part(sampled), part(values), response.unit), percents)
+        yield OutputTolerance(name, response.unit, response.dimension, part(values), by, designs.sources, near)
+
+
+def _near(name: str, values: Number, nominal: Number, unit: str) -> Number:
+    """Return the values of designs that have one wherever the mechanism itself does.
+
+    Angles are counted by the turn that is nearest to the nominal one.
+    """
+    has = ~(np.isnan(values) & ~np.isnan(nominal)).reshape(len(values), -1).any(axis=1)
+    if np.count_nonzero(has) < 2:
+        what = f"it has no value in {np.count_nonzero(~has)} of {len(has)} random designs"
+        raise NotAssembled(Problem(f"outputs.{name}", what, "give closer tolerances, or leave it out"))
+    values = values if has.all() else values[has]
+    return values - whole_turns(values - nominal) if unit == RADIANS else values
+
+
+def _report_slopes(one: OutputTolerance) -> None:
+    lacking = np.isnan(one.deviation) & ~np.isnan(one.nominal)
+    if lacking.any():
+        where = f" at {np.count_nonzero(lacking)} of {lacking.size} poses" if one.is_course else ""
+        told = f"{one.name} has no slopes{where}, at a limit or a change point; only the random designs tell there"
+        warn(told, FewDigits)
+
+
+def _check_nominal(designs: TolerancedDesigns) -> None:
+    with suppress_pose_warnings():
+        missing = int(np.count_nonzero(~designs.nominal.found.assembled))
+    if missing:
+        what = f"{count_phrase(missing, 'pose')} of the mechanism itself cannot be assembled"
+        raise NotAssembled(Problem("values", what, "give values at which it can, gaps(solve(...)) tells where"))
+
+
+def _report_progress(assembled: Number) -> None:
+    missing, count = np.count_nonzero(~assembled), len(assembled)
+    if count - missing < 2:
+        what = f"{missing} of {count} random designs cannot be assembled over the whole motion"
+        raise NotAssembled(
+            Problem("tolerances", what, "give closer tolerances, or values that are farther from limits")
+        )
+    if missing:
+        told = f"{missing} of {count} random designs cannot be assembled over the whole motion; "
+        warn(told + "percentiles are those of the others", UnassembledPoses)
+
+
+# The values of all random designs are kept: so many numbers at most, a gibibyte.
+MOST_VALUES = 2**27
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TolerancedDesigns(ShortRepr):
+    """The mechanism as it stands, and random designs within the tolerances."""
+
+    path: StudiedPath
+    sources: tuple[ErrorSource, ...]
+    sample: RandomSample
+
+    @cached_property
+    def own(self) -> dict[str, Number]:
+        """The dimensions without errors, (1,) each."""
+        stated = self.path.compiled.programs.stated
+        return {one.name: np.reshape(stated.own(one), 1) for one in self.path.compiled.programs.dimensions}
+
+    @cached_property
+    def nominal(self) -> Designs:
+        """The one design without errors."""
+        return self.path.designs(self.own)
+
+    def found(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
+        """Return the values of responses by name, and which designs assemble."""
+        self._hold_room(responses)
+        parts: dict[str, list[Number]] = {one.name: [] for one in responses}
+        assembled = []
+        for rows in design_blocks(self.sample.count, self.path.reference.inputs.poses):
+            with suppress_pose_warnings():
+                designs = self.designs(rows)
+                assembled.append(assembled_range(designs).assembled)
+                for one in responses:
+                    shape = (designs.number, designs.poses)[: 1 + one.is_course]
+                    parts[one.name].append(np.broadcast_to(one.values(designs), shape))
+        return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(assembled)
+
+    def _hold_room(self, responses: Sequence[Response]) -> None:
+        """Raise InvalidInput where the values of all designs would not stay in memory."""
+        poses = self.path.reference.inputs.poses
+        each = sum((poses if one.is_course else 1) * (1 + one.is_vector) for one in responses)
+        if self.sample.count * each > MOST_VALUES:
+            what = f"{self.sample.count} designs of {each} values each do not stay in memory"
+            raise InvalidInput(Problem("count", what, f"at most {MOST_VALUES // each}; a study keeps more in a folder"))
+
+    def designs(self, rows: range) -> Designs:
+        """Return some of them."""
+        errors = self._errors(rows)
+        found = {}
+        for one in self.path.compiled.programs.dimensions:
+            parts = [errors[name] for name in one.coordinates]
+            found[one.name] = self.own[one.name] + (parts[0] + 1j * parts[1] if one.is_vector else parts[0])
+        return self.path.designs(found)
+
+    def _errors(self, rows: range) -> dict[str, Number]:
+        """Return the errors of all coordinates, (designs,) each."""
+        units = self.sample.units(sum(source.columns for source in self.sources), rows)
+        found, column = {name: np.zeros(len(rows)) for name in self.path.coordinates}, 0
+        for source in self.sources:
+            errors = source.errors(units[:, column : column + source.columns])
+            for name, error in zip(source.coordinates, errors, strict=True):
+                found[name] = found[name] + error
+            column += source.columns
+        return found

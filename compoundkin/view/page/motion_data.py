@@ -11,8 +11,8 @@ import numpy as np
 
 from compoundkin.analysis.centres import Centres, instant_centres
 from compoundkin.base.arrays import Number, degrees
+from compoundkin.dynamics.force_analysis import loaded_forces
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.loaded_motions import loaded_forces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.extremes.inputs_between import inputs_between

@@ -21,7 +21,7 @@ from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.html_blocks import ABOUT, Blocks
 from compoundkin.view.page.html_document import Document, asset, vendored_library

@@ -63,8 +63,8 @@ def improvement(
     Raises UnknownName for quantities that there are not, InvalidInput without Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.studies.goals.least_goal import least
-    >>> from compoundkin.studies.optimisation.better_dimensions import optimise
+    >>> from compoundkin.studies.goals.value_goals import least
+    >>> from compoundkin.studies.optimisation.design_optimisation import optimise
     >>> free = {"rocker.C.x": (3.5, 4.5)}
     >>> found = optimise(load_named("crank-rocker"), free, least("rocker.angle.stroke"), starts=4)
     >>> [line.get_label() for line in improvement(found).figure.axes[0].get_lines()]
@@ -196,8 +196,8 @@ def starts(optimum: Optimum, *, title: str | None = None, size: tuple[float, flo
     constraints do not hold as well as at the best are crosses where they began. Raises InvalidInput without Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.studies.goals.least_goal import least
-    >>> from compoundkin.studies.optimisation.better_dimensions import optimise
+    >>> from compoundkin.studies.goals.value_goals import least
+    >>> from compoundkin.studies.optimisation.design_optimisation import optimise
     >>> free = {"rocker.C.x": (3.5, 4.5)}
     >>> found = optimise(load_named("crank-rocker"), free, least("rocker.angle.stroke"), starts=4)
     >>> starts(found).figure.axes[0].get_xlabel()

@@ -17,7 +17,7 @@ from compoundkin.analysis.coupler.relative_motion import relative_link, relative
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.forces import Forces, moved
+from compoundkin.dynamics.forces import Forces, motion_of
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import FORCE, LENGTH, PARTS, unit_of, with_superscripts
 from compoundkin.model.geometry import FRAME
@@ -248,7 +248,7 @@ def phase(
     >>> picture.figure.axes[0].get_ylabel()
     'rocker.angular_velocity [rad/s]'
     """
-    motion = moved(motion)
+    motion = motion_of(motion)
     x, y = plotted_quantity(motion, name), plotted_quantity(motion, rate or rate_name(motion, name))
     for one in (x, y):
         if one.is_vector:
@@ -287,7 +287,7 @@ def hodograph(
     >>> hodograph(solve(load_named("six-bar")), "G.velocity").figure.axes[0].get_xlabel()
     'G.velocity, x [mm/s]'
     """
-    motion = moved(motion)
+    motion = motion_of(motion)
     vectors = plotted_quantities(motion, names)
     for one in vectors:
         if not one.is_vector:
@@ -326,7 +326,7 @@ def polar(
     >>> polar(solve(load_named("crank-shaper")), "E.velocity").figure.axes[0].name
     'polar'
     """
-    motion = moved(motion)
+    motion = motion_of(motion)
     radii = tuple(one.part(LENGTH) if one.is_vector else one for one in plotted_quantities(motion, names))
     angle = moving_driver(motion) if around is None else plotted_quantity(motion, around)
     _check_radii(radii, angle)

@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, degrees
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.forces import Forces, moved
+from compoundkin.dynamics.forces import Forces, motion_of
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
 from compoundkin.kinematics.extremes.places import SAME_PLACE
@@ -75,7 +75,7 @@ def plot(
     >>> [axes.get_ylabel() for axes in picture.figure.axes]
     ['bar.angle [deg]', 'G.velocity [mm/s]']
     """
-    motions = [moved(one) for one in ([motion] if isinstance(motion, Motion | Forces) else motion)]
+    motions = [motion_of(one) for one in ([motion] if isinstance(motion, Motion | Forces) else motion)]
     known, scales = names_of_curves(motions, tuple(designs)), AxisScales.asked(xlim, ylim, log)
     drawn = motions_of_plot(motions, names, against, stacked)
     panels = [QuantityPanel(drawn, k, scales, extremes) for k in range(len(drawn[0].panels))]

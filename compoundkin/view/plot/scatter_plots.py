@@ -12,8 +12,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
-from compoundkin.studies.runs.pareto_rows import pareto_rows
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.study_result import StudyResult, pareto_rows
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import PointLabel, broken_label, value_text
 from compoundkin.view.plot.plot_style import COLOURS, FAINT, GREY, INK, Plot

@@ -12,8 +12,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.model.attributes import GREATEST, component_names, with_superscripts
-from compoundkin.studies.runs.study_program import StudyColumn
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.study_program import StudyColumn
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas

@@ -19,8 +19,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import with_superscripts
 from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.runs.study_program import StudyColumn
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.study_program import StudyColumn
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style

@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.analysis.checks import verify
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.named_forces.link_forces import LinkForces
+from compoundkin.dynamics.reactions.link_forces import LinkForces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extremes, Measure, extremes
 from compoundkin.model.geometry import FRAME

@@ -12,7 +12,7 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
 from compoundkin.base.arguments import check_design
 from compoundkin.base.arrays import degrees
-from compoundkin.dynamics.loaded_motions import loaded_forces
+from compoundkin.dynamics.force_analysis import loaded_forces
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design

@@ -17,9 +17,8 @@ from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS
 from compoundkin.model.geometry import FRAME
 from compoundkin.studies.optimisation.optimum import LocalMinimum, Optimum
-from compoundkin.studies.runs.design_states import CIRCUIT, ORDER_DEFECT, REASON
-from compoundkin.studies.runs.study_program import ROW, StudyColumn
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.study_program import CIRCUIT, ORDER_DEFECT, REASON, ROW, StudyColumn
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.pose_sample import Sample

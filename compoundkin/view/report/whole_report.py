@@ -15,7 +15,7 @@ from compoundkin.kinematics.one_design import motion_of_design, shape_of
 from compoundkin.model.mechanism import Mechanism, mechanism_of_design
 from compoundkin.structure import Structure, decompose
 from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.runs.study_result import StudyResult
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.report_data import Outcome

@@ -15,8 +15,8 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.named_forces.link_wrench import DRIVER, FRICTION, PAIR, WEIGHT, LinkWrench
-from compoundkin.dynamics.named_forces.link_wrench import INERTIA as OF_INERTIA
+from compoundkin.dynamics.reactions.link_wrench import DRIVER, FRICTION, PAIR, WEIGHT, LinkWrench
+from compoundkin.dynamics.reactions.link_wrench import INERTIA as OF_INERTIA
 from compoundkin.model.geometry import FRAME
 from compoundkin.view.sketch.labels import Label, label_around, text_half
 from compoundkin.view.sketch.scene import Scene

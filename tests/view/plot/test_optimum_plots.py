@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("matplotlib")
 
 import compoundkin as ck
-from compoundkin.studies.goals.bound_constraint import at_least
+from compoundkin.studies.goals.constraints import at_least
 from tests import catalog
 
 STROKE = "rocker.angle.stroke"

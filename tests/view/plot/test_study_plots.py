@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("matplotlib")
 
 import compoundkin as ck
-from compoundkin.studies.runs.pareto_rows import pareto_rows
+from compoundkin.studies.study_result import pareto_rows
 from compoundkin.view.plot.scatter_plots import rank_correlation
 from compoundkin.view.plot.study_columns import drawn_rows
 from tests import catalog

@@ -1,1 +1,0 @@
-"""Counterweights: which exist, and what they do."""

@@ -1,0 +1,310 @@
+"""The effort of a driver along a motion: the figures by which a motor is chosen, and mechanical advantage with friction.
+
+The effort is a function of the place and is computed between the poses too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.analysis.mechanical_advantage import ForcePort, Port, TorquePort, mechanical_advantage
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.dynamics.course_quadrature import Integrand, Pieces, integrals, smooth_pieces
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
+from compoundkin.kinematics.extremes import Extremes, Measure, between, closed_cycles, extremes, given_over
+from compoundkin.kinematics.extremes.inputs_between import inputs_between
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import EFFORT, POWER
+from compoundkin.model.elements import Expectation, Item
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads import effort, force, torque
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.gravity import Gravity
+from compoundkin.model.loads.mass import Mass
+from compoundkin.model.loads.pretension import Pretension
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.units import Units
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DriverCourse(ShortRepr):
+    """A driver's effort along a motion, with its way."""
+
+    forces: Forces
+    driver: str
+
+    @property
+    def motion(self) -> Motion:
+        """The motion."""
+        return self.forces.motion
+
+    @property
+    def order(self) -> int:
+        """How many derivatives of the motion the effort takes."""
+        return 2 if self.forces.inertia else 1
+
+    @property
+    def units(self) -> Units:
+        """The mechanism's units."""
+        return self.motion.mechanism.stated_units
+
+    @property
+    def unit(self) -> str:
+        """The unit of the effort."""
+        return self.units.moment if self.motion.drives[self.driver].is_angle else self.units.force
+
+    def effort(self, at: Motion) -> Number:
+        """Return the effort at the poses, or at places between them."""
+        forces = self.forces if at is self.motion else force_analysis(at, inertia=self.forces.inertia)
+        return np.asarray(forces.drives[self.driver].effort)
+
+    def power(self, at: Motion) -> Number:
+        """Return effort times rate at the poses, or at places between them."""
+        return self.effort(at) * at.drives[self.driver].rate
+
+    def above(self, less: Number) -> Measure:
+        """Return the effort less a number for each design, to be searched."""
+        scale, own = self._largest, np.reshape(less, (*self.motion.shape[:-1], 1))
+
+        def of(at: Motion) -> Number:
+            return self.effort(at) - (own if at is self.motion else given_over(at, own)[0])
+
+        return Measure(f"{self.driver}.{EFFORT}", self.unit, self.order, of, scale=scale)
+
+    @property
+    def measures(self) -> tuple[Measure, Measure]:
+        """The effort and the power as what can be searched."""
+        effort = f"{self.driver}.{EFFORT}"
+        return (
+            Measure(effort, self.unit, self.order, self.effort, scale=self._largest),
+            Measure(
+                f"{self.driver}.{POWER}", self.units.power, self.order, self.power, scale=self._largest * self._pace
+            ),
+        )
+
+    @property
+    def _largest(self) -> float:
+        return float(np.nanmax(np.abs(self.effort(self.motion)), initial=0.0))
+
+    @property
+    def _pace(self) -> float:
+        return float(np.nanmax(np.abs(self.motion.drives[self.driver].rate), initial=0.0))
+
+    def way_by_place(self, designs: Number, places: Number) -> Number:
+        """Return how fast the driver goes, by the place."""
+        found = inputs_between(self.motion, designs, places, 1, by_place=True).drives[self.driver][1]
+        return np.broadcast_to(found, (len(places), 1))[:, 0]
+
+    def surplus(self, mean: Number) -> Integrand:
+        """Return what a constant effort gives beyond what is needed, by the place.
+
+        `mean` is the constant effort, one for each design.
+        """
+        constant = np.broadcast_to(mean, self.motion.inputs.designs)
+
+        def of(designs: Number, places: Number) -> Number:
+            effort = self.effort(between(self.motion, designs, places, self.order))
+            return ((constant[designs] - effort) * self.way_by_place(designs, places))[None]
+
+        return of
+
+    def _rows(self, designs: Number, places: Number) -> Number:
+        """Return by the place: way, work; then 1, effort, power and the squares of both, by what means are taken over.
+
+        Means are over the time of a motion in time, else over the driver's way.
+        """
+        at = between(self.motion, designs, places, self.order)
+        effort, way, rate = self.effort(at), self.way_by_place(designs, places), at.drives[self.driver].rate
+        over = np.abs(way) if self.motion.time is None else self._time_by_place(designs, places)
+        power = effort * rate
+        return np.stack([way, effort * way, *(over * f for f in (1.0, effort, power, effort**2, power**2))])
+
+    def _time_by_place(self, designs: Number, places: Number) -> Number:
+        """Return how fast the time goes, by the place."""
+        before = np.clip(np.floor(places), 0, self.motion.inputs.poses - 2)
+        times = (between(self.motion, designs, before + k, 0).time for k in (0.0, 1.0))
+        first, second = times
+        return np.asarray(second) - np.asarray(first)
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """The smooth pieces of the motion."""
+        return smooth_pieces(self.motion)
+
+    @cached_property
+    def _sums(self) -> Number:
+        found, total = integrals(self._rows, self.pieces), np.zeros((7, self.motion.inputs.designs))
+        np.add.at(total.T, self.pieces.design, found.T)
+        return total
+
+    @property
+    def way(self) -> Number:
+        """How far the driver goes, (designs,)."""
+        return self._sums[0]
+
+    @property
+    def work(self) -> Number:
+        """The work of the driver, (designs,)."""
+        return self._sums[1]
+
+    @property
+    def means(self) -> Number:
+        """The means of effort and power, (2, designs)."""
+        return self._sums[3:5] / self._sums[2]
+
+    @property
+    def mean_squares(self) -> Number:
+        """The roots of the means of the squares of effort and power, (2, designs)."""
+        return np.sqrt(self._sums[5:] / self._sums[2])
+
+
+def driver_course(forces: Forces, driver: str | None, of_cycle: bool = False) -> DriverCourse:
+    """Return the course of a driver, of the only one without a name.
+
+    Raises UnknownName for another name, InvalidInput where none is named of several, where it does not move, and for
+    what is no whole closed cycle if that is asked.
+    """
+    motion, name = forces.motion, driver_named(forces.motion, driver)
+    if motion.inputs.poses < 2:
+        raise InvalidInput(Problem("motion", "a single pose has no course", "solve it at several values of a driver"))
+    if of_cycle and not (closed_cycles(motion).all() and not np.any(motion.failed)):
+        raise InvalidInput(Problem("motion", "it is no closed cycle", "solve it over a full turn of its driver"))
+    if np.any(np.ptp(np.broadcast_to(motion.drives[name].value, motion.shape), axis=-1) == 0.0):
+        raise InvalidInput(Problem(name, "the driver does not move along the motion", "name one that does"))
+    return DriverCourse(forces, name)
+
+
+def driver_named(motion: Motion, driver: str | None) -> str:
+    """Return a driver, the only one without a name. Raises UnknownName, InvalidInput where none is named of several."""
+    names = tuple(motion.drives)
+    if driver is None and len(names) != 1:
+        raise InvalidInput(Problem("driver", f"there are {len(names)}: {', '.join(names)}", "name one"))
+    if driver is not None and driver not in names:
+        raise UnknownName(Problem("driver", f"there is no driver {driver!r}", suggestion(driver, names)))
+    return names[0] if driver is None else driver
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DriveFigures(ShortRepr):
+    """A driver's effort and power over a motion; arrays of shape (designs,).
+
+    Means and effective values (`rms`) are over the time, of a motion that is not in time over the driver's way.
+    `effort` and `power` have the least and the greatest values with their places.
+    """
+
+    driver: str
+    mean_effort: Number
+    rms_effort: Number
+    effort: Extremes
+    work: Number
+    mean_power: Number
+    rms_power: Number
+    power: Extremes
+
+    @property
+    def ripple(self) -> Number:
+        """The greatest less the least effort, over the mean."""
+        with np.errstate(divide="ignore"):
+            return self.effort.stroke / np.abs(self.mean_effort)
+
+    @property
+    def peak_effort(self) -> Number:
+        """The effort farthest from zero, without its sign."""
+        return _farthest(self.effort)
+
+    @property
+    def peak_power(self) -> Number:
+        """The power farthest from zero, without its sign."""
+        return _farthest(self.power)
+
+
+@checked
+def drive_figures(forces: Forces, driver: str | None = None) -> DriveFigures:
+    """Return mean, effective and greatest effort and power of a driver, and its work.
+
+    Of the only driver without a name. All are found between the poses. Poses that are not assembled are left out.
+    Raises UnknownName for what is no driver, InvalidInput for a driver that does not move and a single pose.
+
+    >>> from compoundkin.dynamics.force_analysis import force_analysis
+    >>> from compoundkin.kinematics import solve
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> parts = link("frame", A=0), link("arm", A=0, B=1), drive("arm"), mass("arm", 2, at="B"), gravity(0, -10)
+    >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})
+    >>> found = drive_figures(force_analysis(solve(arm, speed=3)))
+    >>> found.peak_effort.round(9), found.rms_effort.round(6), found.peak_power.round(9)
+    (array([20.]), array([14.142136]), array([60.]))
+    """
+    course = driver_course(forces, driver)
+    (mean_effort, mean_power), (rms_effort, rms_power) = course.means, course.mean_squares
+    effort, power = extremes(course.motion, *course.measures)
+    return DriveFigures(course.driver, mean_effort, rms_effort, effort, course.work, mean_power, rms_power, power)
+
+
+def _farthest(found: Extremes) -> Number:
+    return np.maximum(np.abs(found.least.value), np.abs(found.greatest.value))
+
+
+# A ratio of forces does not depend on units; a mechanism without any is given these.
+ANY_UNITS = Units("m", "kg", "N")
+
+
+@checked
+def force_ratio(motion: Motion, output: Port, driver: str | None = None) -> Number:
+    """Return how many times a driver's effort is available at an output.
+
+    At every pose, of the only driver without a name. Outputs are those of `mechanical_advantage`: a link, a pair or a
+    driver by name, a `TorquePort` or a `ForcePort`. Only friction acts beside a load there, neither weights nor masses
+    nor other loads; without friction it is the mechanical advantage by rates, with it less. Infinite where the load
+    needs no effort.
+
+    Raises UnknownName and InvalidInput as `mechanical_advantage`.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> motion = solve(load_named("four-bar-norton"), {"crank": [np.deg2rad(40)]})
+    >>> force_ratio(motion, "rocker").round(3).tolist()        # Norton: 25 / 6.998
+    [3.572]
+    """
+    name = driver_named(motion, driver)
+    by_rates = mechanical_advantage(motion, output, name)
+    # against the output's motion; at a toggle position, where it rests, any load needs no effort
+    load = -np.where(by_rates.velocity_ratio * np.sign(motion.drives[name].rate) < 0.0, -1.0, 1.0)
+    mechanism = motion.mechanism
+    items = [item for item in mechanism.items if not isinstance(item, Mass | Gravity | Load | Pretension | Expectation)]
+    loaded = Mechanism(
+        mechanism.title, *items, *_resisting_loads(motion, output, load), units=mechanism.units or ANY_UNITS
+    )
+    forces = force_analysis(replace(motion, structure=replace(motion.structure, mechanism=loaded)), inertia=False)
+    with np.errstate(divide="ignore"):
+        found = -load / np.asarray(forces.drives[name].effort)
+    return np.where(by_rates.output_rests, np.inf, found)
+
+
+def _resisting_loads(motion: Motion, output: Port, load: Number) -> Iterator[Item]:
+    """Yield a load at an output, and its opposite on the link against which it acts."""
+    if isinstance(output, str):
+        is_link = output in motion.links and output not in motion.structure.translating_links
+        yield torque(output, load) if is_link else effort(output, load)
+    elif isinstance(output, TorquePort):
+        yield torque(output.link, load)
+        if output.on != FRAME:
+            yield torque(output.on, -load, name="opposite")
+    else:
+        yield from _resisting_force(output, load)
+
+
+def _resisting_force(output: ForcePort, load: Number) -> Iterator[Item]:
+    if output.on != FRAME:
+        remedy = "take a pair between the two links, or the frame"
+        raise InvalidInput(Problem("output.on", "a force against a moving link has no fixed point on it", remedy))
+    yield force(output.link, load * np.exp(1j * np.asarray(output.angle, dtype=float)), at=output.point)

@@ -1,0 +1,360 @@
+"""Coulomb friction coupled to the true reactions, in all pairs at once.
+
+Reactions are linear in the loads, friction among them, at a given pose. So one reverse pass for each friction gives
+everything that the iterations need, in either direction of motion. With m the sums of normal forces and s the senses of
+motion, the frictions are -s m, and m = h(m) are the sums under them. Where the mechanism contracts (nearly always) there
+is one solution, found by Newton's steps, or the image h(m) where that is better. Elsewhere the directions of all normal
+forces are tried; no solution and several solutions are reported.
+
+Source: Coulomb friction on a reverse pass over Assur groups, e.g. J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of
+Machines and Mechanisms, chapter on static forces; a pin's friction moment is coefficient times radius times force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.linear import solve
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.friction.friction_contacts import LoadedContact, in_one_row, senses
+from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.reactions.reverse_pass import Reactions, all_reactions, own_wrenches, reverse_pass
+from compoundkin.model.pairs.contract import as_transmitting_pair
+
+# Steps for all poses; a friction that presses its own pair with 0.9 of itself takes ten.
+NEWTON_STEPS = 60
+
+
+# Sums differ from their image by so many parts of the terms that cancel in them: rounding.
+SUM_ROUNDING = 2e-15
+
+
+# Two solutions are one where they differ by this part.
+SAME_SOLUTION = 1e-7
+
+
+# So many presses have all directions tried; of more, so many patterns of them.
+ALL_DIRECTIONS, PATTERNS = 6, 96
+
+
+# So many turns of the forces in pins are tried as well. Of random systems of two or three pins that feed on each other
+# strongly one of two solutions is then missed in one to four of a thousand; of one pin, or of contacts, in none.
+TURNS = 16
+
+
+ONE, NONE, SEVERAL, UNKNOWN = range(4)
+
+
+class Frictions(NamedTuple):
+    """The sizes of frictions with their signs, (frictions, poses).
+
+    The state tells how many solutions there are at each pose.
+    """
+
+    sizes: Number
+    state: Number
+
+
+def solve_coulomb(influence: FrictionInfluence, signs: Number) -> Frictions:
+    """Return the frictions against motion in some senses.
+
+    `signs` (frictions, poses) are -1, 0 or 1.
+    """
+    finite = np.isfinite(influence.own).all(axis=0) & np.isfinite(influence.by).all(axis=(0, 1))
+    state = np.where(finite & np.isfinite(signs).all(axis=0), ONE, UNKNOWN)
+    sums = np.full(signs.shape, np.nan)
+    known = np.flatnonzero(state == ONE)
+    sure = np.zeros(len(state), dtype=bool)
+    if len(known):
+        part, senses = (influence, signs) if len(known) == len(state) else (influence.of(known), signs[:, known])
+        sums[:, known], rested = _iterated(part, senses)
+        sure[known] = part.contracts(senses) & rested
+    doubtful = np.flatnonzero((state == ONE) & ~sure)
+    if len(doubtful):
+        sums[:, doubtful], state[doubtful] = _solve_by_directions(influence.of(doubtful), signs[:, doubtful])
+    sums[:, state != ONE] = np.nan
+    return Frictions(-signs * sums, state)
+
+
+def _iterated(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
+    """Return the sums of presses from the frictionless ones, and where they came to rest."""
+    sums = influence.sums(np.abs(influence.own))
+    going: Number = np.arange(sums.shape[1])
+    rested = np.zeros(sums.shape[1], dtype=bool)
+    part, senses = influence, signs
+    at: Number = np.array(sums)
+    for _ in range(NEWTON_STEPS):
+        image, newton = _steps(part, senses, at)
+        gaps = _distance_from_image(part, senses, newton), _distance_from_image(part, senses, image)
+        # what is not a number is never the better one
+        better = gaps[0] <= gaps[1]
+        at = np.where(better[None], newton, image)
+        sums[:, going] = at
+        done: Number = np.where(better, *gaps) <= SUM_ROUNDING * part.rounding(at)
+        rested[going] = done
+        if done.all():
+            break
+        if done.any():
+            going, part, senses, at = going[~done], part.of(~done), senses[:, ~done], at[:, ~done]
+    return sums, rested
+
+
+def _steps(influence: FrictionInfluence, signs: Number, sums: Number) -> tuple[Number, Number]:
+    """Return the image of some sums, and what Newton makes of them."""
+    presses = influence.normal_forces(-signs * sums)
+    sizes = np.abs(presses)
+    image = influence.sums(sizes)
+    matrix = _matrix(influence, signs, _directions(presses, sizes, 0.0))
+    return image, sums - solve(matrix, (sums - image).T).T
+
+
+def _directions(normal_forces: Number, sizes: Number, otherwise: Number) -> Number:
+    """Return the directions of presses, something else where there are none."""
+    return np.where(sizes > 0.0, normal_forces / np.where(sizes > 0.0, sizes, 1.0), otherwise)
+
+
+def _matrix(influence: FrictionInfluence, signs: Number, toward: Number) -> Number:
+    """Return the derivatives of sums minus their image, (poses, pairs, frictions). Presses keep their directions."""
+    along = influence.sums((np.conjugate(toward) * influence.by).real) * signs[:, None]
+    return np.eye(len(signs)) + along.transpose(2, 1, 0)
+
+
+def _distance_from_image(influence: FrictionInfluence, signs: Number, sums: Number) -> Number:
+    """Return how far sums are from their image."""
+    found: Number = np.abs(sums - influence.sums(np.abs(influence.normal_forces(-signs * sums)))).max(axis=0)
+    return found
+
+
+def _solve_by_directions(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
+    """Return the only solution at each pose. The state tells where there is none, or more than one."""
+    found = np.full(signs.shape, np.nan)
+    count = np.zeros(signs.shape[1], dtype=int)
+    for toward in _starts(influence, signs):
+        sums, good = _from_directions(influence, signs, toward)
+        far = np.abs(sums - found).max(axis=0) > SAME_SOLUTION * np.abs(sums).max(axis=0)
+        count = np.where(good & ((count == 0) | far), count + 1, count)
+        found = np.where(good & (count == 1), sums, found)
+    return found, np.select([count == 0, count == 1], [NONE, ONE], SEVERAL)
+
+
+def _from_directions(influence: FrictionInfluence, signs: Number, toward: Number) -> tuple[Number, Number]:
+    """Return the solution nearest to some directions of presses, and where it is one."""
+    for _ in range(NEWTON_STEPS):
+        right = influence.sums((np.conjugate(toward) * influence.own).real)
+        sums = solve(_matrix(influence, signs, toward), right.T).T
+        presses = influence.normal_forces(-signs * sums)
+        before, toward = toward, _directions(presses, np.abs(presses), toward)
+        if not np.any(np.abs(toward - before) > SUM_ROUNDING):
+            break
+    closed = _distance_from_image(influence, signs, sums) <= 10.0 * SUM_ROUNDING * influence.rounding(sums)
+    return sums, closed & np.all(sums >= 0.0, axis=0)
+
+
+def _starts(influence: FrictionInfluence, signs: Number) -> Iterator[Number]:
+    """Yield directions of presses (presses, poses) to start from.
+
+    They are those without friction and their opposites, in all combinations; and those of frictions alone that feed on
+    themselves, which solutions of large forces have. Forces of pins may point anywhere: some are turned at random.
+    """
+    own = _directions(influence.own, np.abs(influence.own), 1.0)
+    alone = influence.normal_forces(-signs * influence.feeding(signs).T) - influence.own
+    fed = _directions(alone, np.abs(alone), 1.0)
+    yield from (own * pattern[:, None] for pattern in _patterns(len(own)))
+    yield from (fed, -fed)
+    is_vector = np.any(own.imag != 0.0, axis=1) | np.any(influence.by.imag != 0.0, axis=(0, 2))
+    if is_vector.any():
+        turns = np.exp(1j * np.random.default_rng(2).uniform(0.0, TURN, (TURNS, len(own))) * is_vector)
+        yield from (around * turn[:, None] for turn in turns for around in (own, fed))
+
+
+def _patterns(normal_forces: int) -> Number:
+    """Return patterns of signs, (patterns, presses)."""
+    if normal_forces <= ALL_DIRECTIONS:
+        return np.array(list(product((1.0, -1.0), repeat=normal_forces)))
+    drawn = np.random.default_rng(1).choice([1.0, -1.0], (PATTERNS - 1, normal_forces))
+    return np.concatenate([np.ones((1, normal_forces)), drawn])
+
+
+# So often at most is what parts gears found again: each time its change is a friction's part of the one before.
+ROUNDS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class BlockWithFriction:
+    """A block of poses whose frictions can be found in any direction of motion. The loads are known."""
+
+    at: LoadedBlock
+    rubs: tuple[LoadedContact, ...]
+    known: Mapping[str, Wrench]
+    units: tuple[Wrench, ...]
+    dry: Reactions
+    alone: tuple[Reactions, ...]
+    influence: FrictionInfluence
+
+    def with_friction(self, sizes: Number) -> Reactions:
+        """Return the reactions under frictions of these sizes (frictions, poses)."""
+        loads = dict(self.known)
+        for k, (rub, unit) in enumerate(zip(self.rubs, self.units, strict=True)):
+            for link, wrench in rub.on_links(unit.times(sizes[k].reshape(self.at.block.shape))).items():
+                loads[link] = loads.get(link, Wrench()) + wrench
+        return all_reactions(self.at, loads)
+
+    def frictions(self, signs: Number) -> Frictions:
+        """Return the frictions against motion in some senses, (frictions, poses).
+
+        What parts gears presses bearings too, and goes by what they transmit: where there is such, once more until
+        nothing changes.
+        """
+        found = solve_coulomb(self.influence, signs)
+        gears = any(as_transmitting_pair(self.at.motion.solving_order.pairs[name]) for name in self.dry.pairs)
+        for _ in range(ROUNDS if gears else 0):
+            before, found = found, solve_coulomb(self._parted(found.sizes), signs)
+            change = np.abs(found.sizes - before.sizes)
+            if not np.any(change > SUM_ROUNDING * np.abs(found.sizes).max(axis=0)):
+                break
+        return found
+
+    def _parted(self, sizes: Number) -> FrictionInfluence:
+        """Return the influence of frictions, what comes with these sizes being given."""
+        known = np.nan_to_num(sizes)
+        pairs = _of_pairs(self.at, self.with_friction(known))
+        presses = [
+            in_one_row(press, self.at) for rub in self.rubs for press in rub.normal_forces(self.at, pairs[rub.name])
+        ]
+        by_frictions = self.influence.normal_forces(known) - self.influence.own
+        return replace(self.influence, own=np.array(presses, dtype=complex) - by_frictions)
+
+    def effort(self, driver: str, sizes: Number) -> Number:
+        """Return a driver's effort (poses) under frictions of these sizes."""
+        own, *by = (in_one_row(self._effort(driver, found), self.at) for found in (self.dry, *self.alone))
+        return own + sum(sizes[k] * one for k, one in enumerate(by))
+
+    def _effort(self, driver: str, found: Reactions) -> Number:
+        step = self.at.motion.structure.driven[driver]
+        poses = tuple(self.at.block.world[name] for name in step.pair.members)
+        along = step.pair.effort(self.at.block.ends[step.pair.name], poses, found.pairs[step.pair.name])
+        return along * step.pair.driven_by(step.drive.link)
+
+    def interval(self, driver: str, moved: LoadedBlock, which: Number) -> tuple[Number, Number]:
+        """Return the least and the greatest effort that hold a driver at rest.
+
+        `which` are the poses asked for, a mask. The efforts move it one way and the other; where it is
+        wedged one way there is no limit that way.
+        """
+        signs = senses(self.rubs, moved)
+        ends = []
+        for way in (-1.0, 1.0):
+            found = self.frictions(way * signs)
+            effort = np.where(found.state == NONE, way * np.inf, self.effort(driver, found.sizes))
+            ends.append(np.where(which, effort, np.nan))
+        return np.minimum(*ends), np.maximum(*ends)
+
+
+def block_with_friction(
+    at: LoadedBlock, rubs: tuple[LoadedContact, ...], known: Mapping[str, Wrench]
+) -> BlockWithFriction:
+    """Return a block with what each friction does alone."""
+    order, block = at.motion.solving_order, at.block
+    dry = all_reactions(at, known)
+    units = tuple(rub.unit(at) for rub in rubs)
+    alone = tuple(reverse_pass(order, block, rub.on_links(unit)) for rub, unit in zip(rubs, units, strict=True))
+    return BlockWithFriction(at, rubs, known, units, dry, alone, _influence(at, rubs, dry, alone))
+
+
+def _influence(
+    at: LoadedBlock, rubs: tuple[LoadedContact, ...], dry: Reactions, alone: tuple[Reactions, ...]
+) -> FrictionInfluence:
+    """Return how the pairs that rub are pressed without friction, and by a unit of each."""
+    own, by, starts = list[Number](), [list[Number]() for _ in rubs], list[int]()
+    unrubbed, *each = (_of_pairs(at, reactions) for reactions in (dry, *alone))
+    for rub in rubs:
+        starts.append(len(own))
+        own += [in_one_row(press, at) for press in rub.normal_forces(at, unrubbed[rub.name])]
+        for column, wrenches in zip(by, each, strict=True):
+            column += [in_one_row(press, at) for press in rub.normal_forces(at, wrenches[rub.name])]
+    return FrictionInfluence(np.array(own, dtype=complex), np.array(by, dtype=complex), np.array(starts))
+
+
+def _of_pairs(at: LoadedBlock, reactions: Reactions) -> Mapping[str, Wrench]:
+    """Return the wrenches of the mechanism's own pairs. Of one held by too much, parts of some are left free."""
+    structure = at.motion.structure
+    if structure.relaxation is None:
+        return reactions.pairs
+    return own_wrenches(structure, reactions.pairs, at.motion.failed[at.designs, at.poses].shape)
+
+
+# Powers of the gains that tell the largest entry of Perron's vector, with a shift against vectors that alternate.
+POWER_STEPS, SHIFT = 50, 0.1
+
+
+@dataclass(frozen=True)
+class FrictionInfluence:
+    """The forces that press rubbing pairs together. They are affine in the sizes of the frictions.
+
+    `own` (presses, poses) are those without friction, complex; `by` (frictions, presses, poses) what a unit of each
+    friction adds; `starts` (frictions) are the first press of each friction.
+    """
+
+    own: Number
+    by: Number
+    starts: Number
+
+    def of(self, which: Number) -> FrictionInfluence:
+        """Return those of some poses."""
+        return FrictionInfluence(self.own[:, which], self.by[..., which], self.starts)
+
+    def normal_forces(self, sizes: Number) -> Number:
+        """Return the forces (presses, poses) under frictions of these sizes (frictions, poses)."""
+        total = self.own
+        for one, size in zip(self.by, sizes, strict=True):
+            total = total + one * size
+        return total
+
+    def sums(self, values: Number) -> Number:
+        """Return sums over the presses of each friction. The values are (..., presses, poses)."""
+        if len(self.starts) == len(self.own):
+            return values
+        return np.add.reduceat(values, self.starts, axis=-2)
+
+    def rounding(self, sizes: Number) -> Number:
+        """Return how large the terms are that cancel in the presses. It is the largest at each pose."""
+        total = np.abs(self.own)
+        for one, size in zip(self.by, sizes, strict=True):
+            total = total + np.abs(one) * np.abs(size)
+        return total.max(axis=0)
+
+    def gains(self, signs: Number) -> Number:
+        """Return how much each friction presses each pair at most, (poses, pairs, frictions)."""
+        return (self.sums(np.abs(self.by)) * np.abs(signs)[:, None]).transpose(2, 1, 0)
+
+    def contracts(self, signs: Number) -> Number:
+        """Tell where frictions have one solution for any load.
+
+        There the matrix one minus the gains is an M-matrix. Then the iteration contracts in some weighted norm.
+        Source: A. Berman and R. J. Plemmons, Nonnegative Matrices in the Mathematical Sciences, theorem 6.2.3.
+        """
+        gains = self.gains(signs)
+        # the plain norm tells it of most mechanisms
+        sure: Number = gains.sum(axis=-1).max(axis=-1) < 1.0
+        asked = np.flatnonzero(~sure)
+        if len(asked):
+            weights = solve(np.eye(gains.shape[-1]) - gains[asked], np.ones((len(asked), gains.shape[-1])))
+            sure[asked] = np.all(weights > 0.0, axis=-1)
+        return sure
+
+    def feeding(self, signs: Number) -> Number:
+        """Return how much the frictions feed on each other, (poses, frictions).
+
+        It is Perron's vector of the gains, with 1 for the greatest.
+        """
+        gains, vector = self.gains(signs), np.ones(signs.T.shape)
+        for _ in range(POWER_STEPS):
+            vector = np.einsum("pij,pj->pi", gains, vector) + SHIFT * vector
+            vector = vector / vector.max(axis=-1, keepdims=True)
+        return vector

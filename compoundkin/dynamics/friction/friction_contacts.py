@@ -1,0 +1,158 @@
+"""Pairs with friction, and the sense against which their friction acts at every pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Series
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.definition import matching_pairs, pair_by_name
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.pairs.contact import FrictionPair, as_friction_pair
+from compoundkin.model.pairs.contract import Ends, Poses
+
+# What rubs slower than this part of the fastest link rests in its pair: rounding of a rate that is zero.
+AT_REST = 1e-12
+
+
+# So much of a unit of time, the size by the fastest speed, is a moment before; a pair that rested there too is slower.
+STEP, STEP_AT_REST = 1e-6, 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedContact:
+    """A pair with its friction as written. At a multiple pin each of its pairs is one."""
+
+    pair: FrictionPair
+    friction: Friction
+
+    @property
+    def name(self) -> str:
+        """The name of the pair."""
+        return self.pair.name
+
+    def sides(self, at: LoadedBlock) -> tuple[Ends, Poses]:
+        """Return the pair's ends and its members' poses."""
+        return at.block.ends[self.name], tuple(at.block.world[name] for name in self.pair.members)
+
+    def unit(self, at: LoadedBlock) -> Wrench:
+        """Return the friction by a press of one, toward a growing coordinate.
+
+        It is the wrench on the second member.
+        """
+        radius = 0.0 if self.friction.radius is None else at.fitted(self.friction.radius)
+        return self.pair.rubbed(*self.sides(at), radius).times(at.fitted(self.friction.coefficient))
+
+    def normal_forces(self, at: LoadedBlock, wrench: Wrench) -> tuple[Number, ...]:
+        """Return the forces that press its links together, of the wrench of the pair."""
+        length = None if self.friction.length is None else at.fitted(self.friction.length)
+        return self.pair.normal_forces(*self.sides(at), wrench, length)
+
+    def on_links(self, wrench: Wrench) -> dict[str, Wrench]:
+        """Return what a wrench on the second member does to both links."""
+        first, second = self.pair.members[:2]
+        return {first: -wrench, second: wrench}
+
+    def sliding(self, at: LoadedBlock) -> Number:
+        """Return the speed of the second member against the first where they rub. A pin's is by its size."""
+        _, poses = self.sides(at)
+        unit = self.pair.rubbed(*self.sides(at), at.motion.size)
+        return unit.power(poses[1]) - unit.power(poses[0])
+
+
+def friction_contacts_of(motion: Motion) -> tuple[LoadedContact, ...]:
+    """Return all pairs that rub, in the order in which frictions are written.
+
+    Raises InvalidInput for a pair that is meant by two names.
+    """
+    pairs, found = motion.solving_order.pairs, dict[str, LoadedContact]()
+    for friction in motion.mechanism.frictions.values():
+        for name in _named(motion, friction.pair):
+            if name in found:
+                what = f"{name} has a friction already, by the name {found[name].friction.pair!r}"
+                raise InvalidInput(Problem(f"frictions.{friction.pair}", what, "leave one of them out"))
+            if pair := as_friction_pair(pairs[name]):
+                found[name] = LoadedContact(pair, friction)
+    return tuple(found.values())
+
+
+def _named(motion: Motion, name: str) -> Iterator[str]:
+    """Yield the pairs of a name: itself, that of a full name or of a driver, or all of a multiple pin by its letter.
+
+    Raises InvalidInput where no pair of the motion joins the two links of a multiple pin.
+    """
+    pairs, mechanism = motion.solving_order.pairs, motion.mechanism
+    if name in pairs:
+        yield name
+        return
+    meant = pair_by_name(mechanism, name)
+    own = matching_pairs(pairs, meant[0]) if meant else (pair for pair in pairs.values() if pair.letters == (name,))
+    found = [pair.name for pair in own]
+    if not found:
+        letter = name if meant is None else meant[0].letters[0]
+        known = ", ".join(pair.name for pair in pairs.values() if pair.letters == (letter,))
+        what = "no pair of this motion joins these two links, so that what presses between them is not known"
+        raise InvalidInput(Problem(f"frictions.{name}", what, f"name {known}, or {letter} for all of them"))
+    yield from found
+
+
+def senses(rubs: tuple[LoadedContact, ...], at: LoadedBlock) -> Number:
+    """Return the sense in which each pair rubs, (frictions, poses): -1, 0 or 1.
+
+    A pair that reverses at a pose has the sense that it had before.
+    """
+    fastest = _fastest(at)
+    found = np.array([_sense(rub.sliding(at), AT_REST * fastest, at) for rub in rubs])
+    if at.block.order > 1 and not found.all():
+        earlier = _earlier(at, fastest)
+        before = np.array([_sense(rub.sliding(earlier), STEP_AT_REST * fastest, at) for rub in rubs])
+        found = np.where(found == 0.0, before, found)
+    return found
+
+
+def _sense(sliding: Number, least: Number, at: LoadedBlock) -> Number:
+    return in_one_row(np.where(np.abs(sliding) > least, np.sign(sliding), 0.0 * sliding), at)
+
+
+def _earlier(at: LoadedBlock, fastest: Number) -> LoadedBlock:
+    """Return the block a moment before, by its series."""
+    step = STEP * at.motion.size / np.where(fastest > 0.0, fastest, 1.0)
+
+    def shifted(series: Series) -> Series:
+        c = (*series.c, 0.0, 0.0)
+        return Series((c[0] - step * c[1] + step**2 * c[2], c[1] - 2.0 * step * c[2]))
+
+    world = {name: pose if name == FRAME else pose.mapped(shifted) for name, pose in at.block.world.items()}
+    return replace(at, block=replace(at.block, world=world, order=1))
+
+
+def in_one_row(value: Number, at: LoadedBlock) -> Number:
+    """Return a value at all poses of a block, in one row."""
+    return np.broadcast_to(value, at.block.shape).reshape(-1)
+
+
+def _fastest(at: LoadedBlock) -> Number:
+    """Return the speed of the fastest link, of its origin or of its turn times the size."""
+    fastest: Number = 0.0
+    for pose in at.block.world.values():
+        for series, scale in ((pose.z, 1.0), (pose.u, at.motion.size)):
+            if len(series.c) > 1:
+                fastest = np.maximum(fastest, np.abs(series.c[1]) * scale)
+    return fastest
+
+
+def poses_at_rest(motion: Motion) -> Number:
+    """Return the poses at which no driver moves, (designs, poses)."""
+    rest = np.ones(motion.failed.shape, dtype=bool)
+    drives: Mapping[str, tuple[Number, ...]] = motion.inputs.drives if motion.order else {}
+    for values in drives.values():
+        rest = rest & (np.asarray(values[1] if len(values) > 1 else 0.0) == 0.0)
+    return rest

@@ -1,0 +1,155 @@
+"""Harmonics over a closed cycle: of shaking forces, shaking moments, drivers' efforts, or any other quantity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.dynamics.driver_course import driver_named
+from compoundkin.dynamics.forces import Forces, motion_of
+from compoundkin.kinematics.extremes import between, closed_cycles
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.model.attributes import SHAKING_FORCE
+from compoundkin.model.geometry import FRAME
+
+SHAKING = f"{FRAME}.{SHAKING_FORCE}"
+
+
+# A driver whose way differs from a full turn by so many radians makes one: sums of steps round.
+FULL_TURN_ERROR = 1e-9
+
+
+# A cycle is sampled at twice as many places until no coefficient changes by more than this part of the largest.
+CONVERGED, FEWEST, MOST = 1e-12, 64, 4096
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Harmonics(ShortRepr):
+    """The harmonics of a quantity; arrays (designs, orders + 1).
+
+    The mean is first. A number is the sum of amplitude x cos(order x angle + phase). A vector is the sum of `forward` x
+    exp(i order angle) and `backward` x exp(-i order angle), vectors that turn with the cycle and against it. The angle
+    is the driver's where the cycle is its full turn, else a full turn from the beginning to the end of the cycle.
+    """
+
+    name: str
+    unit: str
+    is_vector: bool
+    forward: Number
+    backward: Number
+
+    @property
+    def orders(self) -> Number:
+        """The orders, from 0."""
+        return np.arange(self.forward.shape[-1])
+
+    def part(self, component: str) -> Harmonics:
+        """Return the harmonics of a component of a vector, "x" or "y"."""
+        if not self.is_vector or component not in ("x", "y"):
+            raise InvalidInput(Problem(self.name, f"it has no component {component!r}", 'take "x" or "y" of a vector'))
+        other = np.conj(self.backward) if component == "x" else -np.conj(self.backward)
+        half = (self.forward + other) / (2.0 if component == "x" else 2j)
+        return Harmonics(f"{self.name}.{component}", self.unit, False, half, np.conj(half))
+
+    @property
+    def amplitude(self) -> Number:
+        """The amplitudes of a number. The first is the mean's size. Raises InvalidInput for a vector."""
+        self._hold()
+        return np.abs(self.forward) * np.where(self.orders > 0, 2.0, 1.0)
+
+    @property
+    def phase(self) -> Number:
+        """The phases of a number, radians. Raises InvalidInput for a vector."""
+        self._hold()
+        return np.angle(self.forward)
+
+    def _hold(self) -> None:
+        if self.is_vector:
+            raise InvalidInput(Problem(self.name, "a vector has no amplitude", 'take .part("x"), .forward, .backward'))
+
+
+@checked
+def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driver: str | None = None) -> Harmonics:
+    """Return the harmonics of a quantity over a closed cycle.
+
+    That is the shaking force without a name. The cycle is sampled at places equally spaced by the time, or by the
+    driver, which are solved again; ever more of them, until nothing changes. Of the only driver without a name. Names
+    are those of `quantity`. Raises InvalidInput for what is no closed cycle and for a driver that does not go on
+    throughout, UnknownName for unknown names.
+
+    Source: e.g. J. P. Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, chapter 5.
+
+    >>> from compoundkin.kinematics import solve
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> crank = Mechanism("m", link("frame", A=(3, 0)), link("crank", A=0, B=2), drive("crank"))
+    >>> harmonics(solve(crank), "B.x", orders=2).amplitude.round(12).tolist()         # 3 + 2 cos
+    [[3.0, 2.0, 0.0]]
+    """
+    motion = motion_of(of)
+    _check_closed(motion, orders)
+    course = _Cycle(motion, driver_named(motion, driver) if motion.time is None else None)
+    count, found = max(FEWEST, 4 * orders), None
+    while True:
+        coefficients = course.coefficients(name, orders, count)
+        if (found is not None and _change(coefficients, found) <= CONVERGED) or count >= MOST:
+            break
+        count, found = 2 * count, coefficients
+    known = quantity(motion, name)
+    return Harmonics(name, known.unit, known.is_vector, *coefficients)
+
+
+def _change(new: tuple[Number, Number], old: tuple[Number, Number]) -> float:
+    scale = max(float(np.max(np.abs(one))) for one in new) or 1.0
+    return max(float(np.max(np.abs(a - b))) for a, b in zip(new, old, strict=True)) / scale
+
+
+def _check_closed(motion: Motion, orders: int) -> None:
+    if orders < 1:
+        raise InvalidInput(Problem("orders", f"{orders} is no number of orders", "1 or more"))
+    if motion.inputs.poses < 2 or not closed_cycles(motion).all() or np.any(motion.failed):
+        raise InvalidInput(Problem("motion", "it is no closed cycle", "solve it over a full turn of its driver"))
+
+
+class _Cycle:
+    """A closed cycle of a motion by the time, or by a driver."""
+
+    def __init__(self, motion: Motion, driver: str | None) -> None:
+        self.motion = motion
+        along: Number = motion.time if driver is None else motion.drives[driver].value
+        self.along = np.broadcast_to(along, motion.shape).reshape(motion.failed.shape)
+        steps = np.diff(self.along, axis=1)
+        if not (np.all(steps > 0) or np.all(steps < 0)):
+            raise InvalidInput(
+                Problem(driver or "time", "it does not go on throughout the cycle", "name a driver that does")
+            )
+        span = self.along[:, -1] - self.along[:, 0]
+        is_turn = driver is not None and motion.drives[driver].is_angle
+        self.start = np.where(
+            is_turn & (np.abs(np.abs(span) - TURN) < FULL_TURN_ERROR), self.along[:, 0] * np.sign(span), 0.0
+        )
+
+    def coefficients(self, name: str, orders: int, count: int) -> tuple[Number, Number]:
+        """Return the coefficients of both senses, (designs, orders + 1)."""
+        designs, poses = self.along.shape
+        part = np.arange(count) / count
+        places = np.array([_places(row, part) for row in self.along])
+        at = between(self.motion, np.repeat(np.arange(designs), count), np.clip(places, 0, poses - 1).ravel())
+        values = np.reshape(quantity(at, name).values, (designs, count))
+        whole = np.fft.fft(values, axis=1) / count
+        k = np.arange(orders + 1)
+        turned = np.exp(-1j * k * self.start[:, None])
+        return whole[:, k] * turned, whole[:, -k] * np.conj(turned)
+
+
+def _places(row: Number, part: Number) -> Number:
+    """Return the places where a row of values, which go on, has gone parts of its whole way."""
+    gone = (row - row[0]) / (row[-1] - row[0])
+    found: Number = np.interp(part, gone, np.arange(len(row)))
+    return found

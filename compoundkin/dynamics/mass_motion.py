@@ -1,0 +1,268 @@
+"""Masses in motion: mass centres and their derivatives, the inertia that drivers feel, and the equation of motion.
+
+With velocities v_i of the mass centres and angular velocities w_i at unit rate of driver i, and the accelerations that
+the links have at the drivers' true speeds without any acceleration of theirs, the principle of virtual work gives
+M_ij = sum m v_i . v_j + J w_i w_j and h_i = sum m v_i . a + J w_i alpha in M(q) q'' + h(q, q') = Q: no constraints, no
+differences.
+
+Source: T. R. Kane and D. A. Levinson, Dynamics: Theory and Applications, McGraw-Hill 1985, chapters 2 and 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number, cross, dot
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import Pose
+from compoundkin.kinematics.extremes import given_over
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.unit_rates import moved_together
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.mass import Mass
+from compoundkin.model.units import Units
+from compoundkin.structure.kinematic_structure import Structure
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MassMotion(ShortRepr):
+    """A mass with the derivatives of its centre and of its link's angle. Arrays are (designs, poses)."""
+
+    link: str
+    mass: Number
+    inertia: Number
+    centre: tuple[Number, ...]
+    turning: tuple[Number, ...]  # angular velocity, angular acceleration
+
+    def product(self, own: int, other: MassMotion, k: int) -> Number:
+        """Return the product of a derivative of each of two motions."""
+        turning = self.turning[own - 1] * other.turning[k - 1]
+        return dot(self.centre[own], other.centre[k]) * self.mass + turning * self.inertia
+
+    @property
+    def force(self) -> Number:
+        """Mass times acceleration."""
+        return self.centre[2] * self.mass
+
+    @property
+    def moment(self) -> Number:
+        """The moment about the world's origin that the acceleration takes."""
+        return cross(self.centre[0], self.force) + self.turning[1] * self.inertia
+
+
+def mass_motions(motion: Motion) -> Iterator[MassMotion]:
+    """Yield the masses with their motions, to the order of the motion."""
+    free = {spin.link for spin in motion.structure.passive}
+    for mass in motion.mechanism.masses.values():
+        pose, place = motion.poses[mass.link], mass_centre_place(motion, mass)
+        centre = tuple(pose.derivative(place, k) for k in range(motion.order + 1))
+        # a link that may turn freely, such as a roller, is not turned
+        inertia = 0.0 if mass.link in free else given_over(motion, mass.inertia)
+        yield MassMotion(mass.link, given_over(motion, mass.mass), inertia, centre, _turning(motion, pose))
+
+
+def mass_centre_place(motion: Motion, mass: Mass) -> Number:
+    """Return the place of a mass centre in its link's frame."""
+    return given_over(motion, motion.mechanism.mass_centre(mass))
+
+
+def _turning(motion: Motion, pose: Pose) -> tuple[Number, ...]:
+    turning = pose.u.turning()
+    return tuple(turning.derivative(k) for k in range(motion.order))
+
+
+def units_of_masses(motion: Motion) -> Units:
+    """Return the units of a mechanism with masses. Raises InvalidInput where it has no units, or no masses."""
+    units = motion.mechanism.stated_units
+    if not motion.mechanism.masses:
+        raise InvalidInput(Problem("masses", "no link has a mass", 'write mass("bar", 0.2, at=(50, 0), inertia=40)'))
+    return units
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EquivalentInertia(ShortRepr):
+    """The inertia that drivers feel at every pose, and its derivatives by their coordinates.
+
+    `matrix` is (..., drivers, drivers) and `slopes` (..., drivers, drivers, drivers), the last axis the coordinate that
+    it is derived by. In units of mass and length, as masses are written: mass x length^2 for angles, a mass for slides.
+    The kinetic energy is half of rates x matrix x rates.
+    """
+
+    drivers: tuple[str, ...]
+    matrix: Number
+    slopes: Number
+
+    @property
+    def inertia(self) -> Number:
+        """The inertia that the only driver feels. Raises InvalidInput where there are several."""
+        self._one()
+        return self.matrix[..., 0, 0]
+
+    @property
+    def slope(self) -> Number:
+        """Its derivative by the coordinate of the only driver. Raises InvalidInput where there are several."""
+        self._one()
+        return self.slopes[..., 0, 0, 0]
+
+    def _one(self) -> None:
+        if len(self.drivers) != 1:
+            told = f"{len(self.drivers)} drivers feel an inertia: {', '.join(self.drivers)}"
+            raise InvalidInput(Problem("inertia", told, "take .matrix and .slopes"))
+
+
+@checked
+def equivalent_inertia(motion: Motion) -> EquivalentInertia:
+    """Return the inertia that drivers feel at every pose, with its derivatives.
+
+    It depends on the poses only: speeds, loads and gravity do not matter. The derivatives come of accelerations at
+    constant unit speeds, without a difference. Raises InvalidInput for a mechanism without masses.
+
+    Source: reduced mass and its derivative, e.g. F. Wittenbauer, Graphische Dynamik, Springer 1923.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.loads import mass
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.kinematics import solve
+    >>> bar, units = mass("crank", 3.0, at=(2, 0), inertia=1), {"length": "m", "mass": "kg", "force": "N"}
+    >>> arm = Mechanism("m", link("frame", A=0), link("crank", A=0, B=4), drive("crank"), bar, units=units)
+    >>> equivalent_inertia(solve(arm, [0.0, 1.0])).inertia.tolist()     # 1 + 3 x 2^2
+    [13.0, 13.0]
+    """
+    units_of_masses(motion)
+    drivers = tuple(motion.drives)
+    with np.errstate(all="ignore"):
+        alone = [_masses(motion, {name: 1.0}) for name in drivers]
+        second = _second(motion, drivers, alone)
+        count = len(drivers)
+        matrix, slopes = np.empty((*motion.failed.shape, count, count)), np.empty((*motion.failed.shape, *(count,) * 3))
+        for i in range(count):
+            for j in range(count):
+                matrix[..., i, j] = sum(a.product(1, b, 1) for a, b in zip(alone[i], alone[j], strict=True))
+                for k in range(count):
+                    slopes[..., i, j, k] = _slope(alone, second, (i, j, k))
+    return EquivalentInertia(drivers, _in_motion_shape(motion, matrix), _in_motion_shape(motion, slopes))
+
+
+def _masses(motion: Motion, speeds: Mapping[str, Number]) -> tuple[MassMotion, ...]:
+    return tuple(mass_motions(moved_together(motion, speeds, 2)))
+
+
+def _second(
+    motion: Motion, drivers: tuple[str, ...], alone: list[tuple[MassMotion, ...]]
+) -> dict[tuple[int, int], tuple[MassMotion, ...]]:
+    """Return the masses with their second derivatives by two coordinates in the place of accelerations."""
+    found = {(k, k): moved for k, moved in enumerate(alone)}
+    for i in range(len(drivers)):
+        for k in range(i):
+            both = _masses(motion, {drivers[i]: 1.0, drivers[k]: 1.0})
+            mixed = tuple(_mixed(*of) for of in zip(both, alone[i], alone[k], strict=True))
+            found[i, k] = found[k, i] = mixed
+    return found
+
+
+def _mixed(both: MassMotion, one: MassMotion, other: MassMotion) -> MassMotion:
+    """Return what two coordinates that move together add to the accelerations, by each of the two."""
+    centre = 0.5 * (both.centre[2] - one.centre[2] - other.centre[2])
+    turning = 0.5 * (both.turning[1] - one.turning[1] - other.turning[1])
+    return MassMotion(both.link, both.mass, both.inertia, (both.centre[0], 0j, centre), (0.0, turning))
+
+
+def _slope(
+    alone: list[tuple[MassMotion, ...]], second: dict[tuple[int, int], tuple[MassMotion, ...]], at: tuple[int, int, int]
+) -> Number:
+    i, j, k = at
+    rows = zip(second[i, k], alone[j], second[j, k], alone[i], strict=True)
+    return sum(a.product(2, b, 1) + c.product(2, d, 1) for a, b, c, d in rows)
+
+
+def _in_motion_shape(motion: Motion, values: Number) -> Number:
+    """Return values (designs, poses, ...) in the motion's shape, NaN where poses are not assembled."""
+    values[np.broadcast_to(motion.failed, values.shape[:2]) != 0] = np.nan
+    return values.reshape(*motion.shape, *values.shape[2:])
+
+
+# What is said of arrays.
+OF_DESIGNS = "its numbers are arrays, and one design is simulated at a time"
+
+
+class MovingMass(NamedTuple):
+    """The mass of a link that moves, and its centre in the link's frame.
+
+    It is in the units in which forces come out.
+    """
+
+    link: str
+    centre: complex
+    mass: float
+    inertia: float
+
+
+def moving_masses(structure: Structure) -> tuple[MovingMass, ...]:
+    """Return the masses of the links. Raises InvalidInput for those that are arrays over designs.
+
+    A link that may turn freely, such as a roller, is not turned: its inertia does nothing.
+    """
+    mechanism, free = structure.mechanism, {spin.link for spin in structure.passive}
+    if np.size(mechanism.gravity) > 1:
+        raise InvalidInput(Problem("gravity", OF_DESIGNS, "give single numbers"))
+    factor, found = mechanism.stated_units.inertia, []
+    for own in mechanism.masses.values():
+        at = mechanism.mass_centre(own)
+        if any(np.size(value) > 1 for value in (own.mass, own.inertia, at)):
+            raise InvalidInput(Problem(f"masses.{own.link}", OF_DESIGNS, "give single numbers"))
+        mass, inertia = (float(np.ravel(value)[0]) * factor for value in (own.mass, own.inertia))
+        if own.link != FRAME:
+            turned = 0.0 if own.link in free else inertia
+            found.append(MovingMass(own.link, complex(np.ravel(at)[0]), mass, turned))
+    return tuple(found)
+
+
+class InertiaTerms(NamedTuple):
+    """The mass matrix by the drivers, the bias, and the weights.
+
+    The bias is what inertia takes without accelerations of the drivers.
+    """
+
+    matrix: Number
+    bias: Number
+    weight: Number
+
+
+def inertia_terms(
+    masses: Sequence[MovingMass], world: Mapping[str, Pose], count: int, gravity: complex
+) -> InertiaTerms:
+    """Return the terms of an equation of motion at one pose of `count` drivers.
+
+    Each pose has the rates at unit rate of every driver in a column, and last those of the true motion without
+    accelerations of the drivers.
+    """
+    rates = np.zeros((2 * len(masses), count + 1), dtype=complex)
+    second = np.zeros(2 * len(masses), dtype=complex)
+    weights = np.empty(2 * len(masses))
+    for k, own in enumerate(masses):
+        pose = world[own.link]
+        centre, u = pose.at(own.centre).c, pose.u.c
+        weights[2 * k], weights[2 * k + 1] = own.mass, own.inertia
+        if len(centre) > 2:
+            rates[2 * k] = _flat(centre[1])
+            second[2 * k] = 2.0 * _last(centre[2])
+        if len(u) > 2:
+            rates[2 * k + 1] = _flat(cross(u[0], u[1]))
+            second[2 * k + 1] = 2.0 * _last(cross(u[0], u[2]))
+    back = rates[:, :count].conj().T * weights
+    falling = np.tile([gravity, 0j], len(masses))
+    return InertiaTerms((back @ rates[:, :count]).real, (back @ second).real, (back @ falling).real)
+
+
+def _flat(value: Number) -> Number:
+    return value.reshape(-1) if isinstance(value, np.ndarray) else value
+
+
+def _last(value: Number) -> Number:
+    return value.reshape(-1)[-1] if isinstance(value, np.ndarray) else value

@@ -1,1 +1,0 @@
-"""The independent verification of forces."""

@@ -1,1 +1,0 @@
-"""Work and power, masses in motion, and efforts without reactions."""

@@ -1,0 +1,315 @@
+"""Path and pose goals: a point at given places, or a link in given poses, with or without values of the driver."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from compoundkin.base.arguments import checked, is_real
+from compoundkin.base.arrays import Number, wrapped
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import ANGLE, POSITION
+from compoundkin.studies.goals.design_trial import DesignTrial, PosesApart, real_parts
+from compoundkin.studies.goals.driver_schedule import DriverSchedule, driver_schedule
+from compoundkin.studies.goals.goal import Goal, GoalUnknown
+from compoundkin.studies.samples.variation import as_planar
+
+
+@dataclass(frozen=True, eq=False)
+class PathGoal(Goal):
+    """The distances of a point from places, each at its own pose."""
+
+    point: str
+    through: Number  # (poses,) complex
+
+    @property
+    def told(self) -> str:
+        """The point and how many places."""
+        return f"{self.point} through {len(self.through)} points with timing"
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """The places of the point."""
+        return {self.point: self.through}
+
+    @property
+    def _output(self) -> str:
+        return f"{self.point}.{POSITION}"
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return the place of the point.
+
+        Raises InvalidInput where there are not as many poses as places.
+        """
+        poses = motion.inputs.poses
+        if poses != len(self.through):
+            what = f"there are {len(self.through)} points, and {poses} poses"
+            raise InvalidInput(Problem(f"path.{self.point}", what, "give values=... of the driver, one for each point"))
+        return (self._output,)
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return what the point is off in x at all poses, then in y."""
+        return real_parts(trial.values(self._output) - self.through)
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of those."""
+        return real_parts(trial.slopes(self._output))
+
+
+@checked
+def path(point: str, through: object) -> Goal:
+    """Return the goal that a point goes through places, each at its own pose.
+
+    `through` are complex numbers or (x, y), as many as there are poses. Raises InvalidInput for what is none.
+
+    >>> path("G", [(1, 2), (3, 4)]).told
+    'G through 2 points with timing'
+    """
+    return PathGoal(point, plane_points(f"path.{point}", through))
+
+
+def plane_points(where: str, given: object) -> Number:
+    """Return places of the plane as complex numbers. Raises InvalidInput for what is none."""
+    if isinstance(given, tuple) and len(given) == 2 and all(map(is_real, given)):
+        raise InvalidInput(Problem(where, f"{given} is one point, and no list of them", f"[{given}, ...]"))
+    try:
+        found = np.asarray(given)
+        found = as_planar(found) if found.ndim == 2 and found.shape[1] == 2 else found + 0j
+    except (TypeError, ValueError, OverflowError):
+        found = np.empty((0, 0))
+    if found.ndim != 1 or not found.size or not np.isfinite(found).all():
+        raise InvalidInput(Problem(where, "these are no points", "give a list of (x, y) or of complex numbers"))
+    return found
+
+
+# Designs whose distances from all places are held at once.
+BLOCK = 512
+
+
+@dataclass(frozen=True, eq=False)
+class TraceGoal(Goal):
+    """What places are off where the driver is best for each of them."""
+
+    wanted: TargetPoints
+    driver: str | None = None
+    is_ordered: bool = True
+
+    @property
+    def told(self) -> str:
+        """What is to be where."""
+        return f"{self.wanted.told}{'' if self.is_ordered else ' in any order'}"
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """The places of the point."""
+        return {self.wanted.point: self.wanted.places}
+
+    @property
+    def has_own_poses(self) -> bool:
+        """The driver goes where it is best."""
+        return True
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return what is compared.
+
+        Raises InvalidInput where it is not plain which driver is meant.
+        """
+        self._schedule(motion)
+        return self.wanted.outputs
+
+    def _schedule(self, motion: Motion) -> DriverSchedule:
+        return driver_schedule(
+            f"trace.{self.wanted.point}", motion, self.driver, len(self.wanted.places), self.is_ordered
+        )
+
+    def unknowns(self, motion: Motion) -> tuple[GoalUnknown, ...]:
+        """Return what tells where the driver is at each place."""
+        return self._schedule(motion).unknowns
+
+    def guesses(self, trial: DesignTrial) -> Number:
+        """Return those for the poses that are nearest, in their order."""
+        schedule = self._schedule(trial.designs.path.reference)
+        if not trial.number:
+            return trial.unknowns
+        return np.concatenate([schedule.nearest(self.wanted.squares(part)) for part in self._parts(trial, schedule)])
+
+    def _parts(self, trial: DesignTrial, schedule: DriverSchedule) -> Iterator[DesignTrial]:
+        for start in range(0, trial.number, BLOCK):
+            rows = np.arange(start, min(start + BLOCK, trial.number))
+            some = replace(trial, designs=trial.designs.picked(rows), unknowns=trial.unknowns[rows])
+            yield some.at(schedule.driver, schedule.looked_at)
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return what is off in x at all places, in y, in the angle."""
+        off = self.wanted.off(self._there(trial))
+        return off.reshape(len(off), -1)
+
+    def _there(self, trial: DesignTrial) -> PosesApart:
+        schedule = self._schedule(trial.designs.path.reference)
+        return trial.apart(schedule.driver, schedule.values(trial.unknowns))
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of those."""
+        schedule = self._schedule(trial.designs.path.reference)
+        there = self._there(trial)
+        by_driver = self.wanted.off_slopes(there, schedule.driver)
+        own = by_driver * schedule.slopes(trial.unknowns)[:, None]
+        found = np.concatenate([self.wanted.off_slopes(there), own], axis=-1)
+        return found.reshape(len(found), -1, found.shape[-1])
+
+
+@checked
+def trace(point: str, through: object, *, driver: str | None = None, in_order: bool = True) -> Goal:
+    """Return the goal that a point goes through places, wherever its driver is then.
+
+    `through` are complex numbers or (x, y), met in their order one way or the other; with `in_order=False` in any, as
+    where a driver goes there and back. A driver that makes a whole turn over the poses may begin anywhere in it, and
+    does not go on beyond one turn; any other stays in its range. Raises InvalidInput for what is none.
+
+    >>> trace("G", [(1, 2), (3, 4), (1, 2)]).told
+    'G through 3 points'
+    """
+    return TraceGoal(TargetPoints(point, plane_points(f"trace.{point}", through)), driver, in_order)
+
+
+@dataclass(frozen=True, eq=False)
+class PoseGoal(Goal):
+    """What a link is off from poses."""
+
+    wanted: TargetPoints
+
+    @property
+    def told(self) -> str:
+        """What is to be where."""
+        return f"{self.wanted.told} with timing"
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """The places of the point."""
+        return {self.wanted.point: self.wanted.places}
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return what is compared.
+
+        Raises InvalidInput where there are not as many poses as are wanted.
+        """
+        self.wanted.hold(f"poses.{self.wanted.link}", motion)
+        return self.wanted.outputs
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return what is off in x at all poses, in y, in the angle."""
+        off = self.wanted.off(trial)
+        return off.reshape(len(off), -1)
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of those."""
+        found = self.wanted.off_slopes(trial)
+        return found.reshape(len(found), -1, found.shape[-1])
+
+
+@checked
+def poses(
+    link: str,
+    point: str,
+    wanted: object,
+    *,
+    arm: float | None = None,
+    timed: bool = True,
+    driver: str | None = None,
+) -> Goal:
+    """Return the goal that a link is in poses.
+
+    `wanted` are (x, y, angle): a point of it, and its angle in radians, each at its own pose of the motion; with
+    `timed=False` in their order wherever the driver is then. An angle counts as the length it makes at `arm`, by
+    default the reach of the places about their middle. Raises InvalidInput for what is none.
+
+    >>> poses("plate", "G", [(1, 2, 0.0), (3, 4, 0.5)]).told
+    'plate with G in 2 poses with timing'
+    """
+    found = target_poses(f"poses.{link}", link, point, wanted, arm)
+    return PoseGoal(found) if timed else TraceGoal(found, driver)
+
+
+@dataclass(frozen=True, eq=False)
+class TargetPoints:
+    """Places of a point, (places,) complex.
+
+    With `angles` also those of a link, which count as lengths by `arm`.
+    """
+
+    point: str
+    places: Number
+    link: str = ""
+    angles: Number = 0.0
+    arm: float = 1.0
+
+    @property
+    def told(self) -> str:
+        """What is to be where."""
+        if self.link:
+            return f"{self.link} with {self.point} in {len(self.places)} poses"
+        return f"{self.point} through {len(self.places)} points"
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The names of what is off."""
+        place = f"{self.point}.{POSITION}"
+        return (place, f"{self.link}.{ANGLE}") if self.link else (place,)
+
+    def hold(self, where: str, motion: Motion) -> None:
+        """Raise InvalidInput where there are not as many poses as places."""
+        poses, places = motion.inputs.poses, len(self.places)
+        if poses != places:
+            what, remedy = f"there are {places} places, and {poses} poses", "values=... of the driver, one for each"
+            raise InvalidInput(Problem(where, what, remedy))
+
+    def off(self, trial: DesignTrial | PosesApart) -> Number:
+        """Return what is off at each pose, (designs, numbers, poses).
+
+        The numbers are x, y and the angle.
+        """
+        place = trial.values(self.outputs[0]) - self.places
+        parts = [place.real, place.imag]
+        if self.link:
+            parts.append(self.arm * wrapped(trial.values(self.outputs[1]) - self.angles))
+        return np.stack(parts, axis=1)
+
+    def off_slopes(self, trial: DesignTrial | PosesApart, driver: str = "") -> Number:
+        """Return the slopes of that by the coordinates, or by a driver.
+
+        They are (designs, numbers, poses, coordinates).
+        """
+        place, *angle = (
+            trial.driver_slopes(name, driver)[..., None] if driver else trial.slopes(name) for name in self.outputs
+        )
+        return np.stack([place.real, place.imag, *(self.arm * one for one in angle)], axis=1)
+
+    def squares(self, trial: DesignTrial) -> Number:
+        """Return the squares of what is off, (designs, places, poses)."""
+        place = trial.values(self.outputs[0])[:, None, :] - self.places[:, None]
+        found = place.real**2 + place.imag**2
+        if self.link:
+            angle = trial.values(self.outputs[1])[:, None, :] - np.asarray(self.angles)[:, None]
+            found = found + (self.arm * wrapped(angle)) ** 2
+        return np.asarray(found)
+
+
+def target_poses(where: str, link: str, point: str, given: object, arm: float | None) -> TargetPoints:
+    """Return poses of a link, given as (x, y, angle) in radians.
+
+    Raises InvalidInput for what is none.
+    """
+    try:
+        rows = np.asarray(given, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        rows = np.empty(0)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise InvalidInput(Problem(where, "these are no poses", "give a list of (x, y, angle), radians"))
+    places = plane_points(where, rows[:, :2])
+    if not np.isfinite(rows).all() or (arm is not None and not (np.isfinite(arm) and arm > 0.0)):
+        raise InvalidInput(Problem(where, "angles and arm must be numbers, the arm above 0", "arm=10.0"))
+    size = float(abs(places - places.mean()).max()) or 1.0
+    return TargetPoints(point, places, link, rows[:, 2], size if arm is None else float(arm))

@@ -1,0 +1,209 @@
+"""Goals over a part of a driver's range: dwells, even outputs and straight lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import POSITION, motion_figure
+from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
+from compoundkin.studies.goals.driver_schedule import driver_of
+from compoundkin.studies.goals.goal import Goal
+
+
+@dataclass(frozen=True)
+class DwellGoal(Goal):
+    """What an output differs from its mean, at all poses of a stretch."""
+
+    output: str
+    stretch: DriverStretch
+
+    @property
+    def told(self) -> str:
+        """The output, and where."""
+        return f"{self.output} even{self.stretch.told}"
+
+    @property
+    def has_own_poses(self) -> bool:
+        """Whether it asks over a part of the motion."""
+        return self.stretch.ends is not None
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return the output; raises InvalidInput for the figure of a whole course."""
+        self.stretch.hold(motion)
+        of, figure = motion_figure(self.output)
+        if figure:
+            raise InvalidInput(Problem(self.output, "it is one number, and always even", f'say "{of}"'))
+        return (self.output,)
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return the differences from the mean."""
+        found = self.stretch.of(trial).values(self.output)
+        return real_parts(found - found.mean(axis=1, keepdims=True))
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of those."""
+        found = self.stretch.of(trial).slopes(self.output)
+        return real_parts(found - found.mean(axis=1, keepdims=True))
+
+
+@checked
+def dwell(output: str, between: object, *, driver: str | None = None) -> Goal:
+    """Return the goal that an output stands still between two values of the driver.
+
+    The squares of what it differs from its mean are summed over 25 poses; points may be given too. Raises InvalidInput
+    for what is no stretch.
+
+    >>> dwell("rocker.angle", (1.0, 2.0)).told
+    'rocker.angle even between 1 and 2'
+    """
+    return DwellGoal(output, driver_stretch(f"dwell.{output}", () if between is None else between, driver))
+
+
+@checked
+def even(output: str) -> Goal:
+    """Return the goal that an output is as even as can be.
+
+    That is over the whole motion, "crank.effort". The squares of what it differs from its mean are summed over the
+    poses.
+
+    >>> even("crank.effort").told
+    'crank.effort even'
+    """
+    return DwellGoal(output, driver_stretch(f"even.{output}", None, None))
+
+
+@dataclass(frozen=True)
+class StraightLineGoal(Goal):
+    """The distances of a point from the line that fits best.
+
+    It has a direction or any.
+    """
+
+    point: str
+    stretch: DriverStretch
+    angle: float | None = None
+
+    @property
+    def told(self) -> str:
+        """The point, and where."""
+        return f"{self.point} along a straight line{self.stretch.told}"
+
+    @property
+    def has_own_poses(self) -> bool:
+        """Whether it asks over a part of the motion."""
+        return self.stretch.ends is not None
+
+    @property
+    def _output(self) -> str:
+        return f"{self.point}.{POSITION}"
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return the place of the point."""
+        self.stretch.hold(motion)
+        return (self._output,)
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return the distances, to the left of the line."""
+        about = _about(self.stretch.of(trial).values(self._output))
+        return (about * self._direction(about).conj()).imag
+
+    def _direction(self, about: Number) -> Number:
+        """Return the direction of the line of each design, (designs, 1): the first principal axis."""
+        if self.angle is not None:
+            return np.exp(1j * np.full((len(about), 1), self.angle))
+        return np.exp(0.5j * np.angle((about**2).sum(axis=1, keepdims=True)))
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return their slopes; the line turns with the designs."""
+        there = self.stretch.of(trial)
+        about, by = _about(there.values(self._output)), _about(there.slopes(self._output))
+        along = self._direction(about)
+        found = (by * along.conj()[..., None]).imag
+        if self.angle is not None:
+            return np.asarray(found)
+        squares = (about**2).sum(axis=1)[:, None]
+        # a point that rests has no line that could turn
+        turn = ((about[..., None] * by).sum(axis=1) / np.where(squares == 0.0, 1.0, squares)).imag
+        return found - turn[:, None, :] * (about * along.conj()).real[..., None]
+
+
+def _about(places: Number) -> Number:
+    return places - places.mean(axis=1, keepdims=True)
+
+
+@checked
+def straight_line(point: str, between: object = None, *, angle: float | None = None, driver: str | None = None) -> Goal:
+    """Return the goal that a point goes along a straight line.
+
+    That is between two values of the driver, or over all poses. The squares of its distances from the line that fits
+    best are summed; `angle` fixes its direction (radians). Ask beside it for a length, `at_least("G.x.stroke", 20)`: a
+    point that rests has no distance at all. Raises InvalidInput for what is no stretch. Source of the fit: K. Pearson,
+    Phil. Mag. 2 (1901) 559-572.
+
+    >>> straight_line("G", (1.0, 2.0)).told
+    'G along a straight line between 1 and 2'
+    """
+    if angle is not None and not np.isfinite(angle):
+        raise InvalidInput(Problem(f"straight_line.{point}", "the angle is no number", "angle=0.0, radians"))
+    return StraightLineGoal(point, driver_stretch(f"straight_line.{point}", between, driver), angle)
+
+
+# Poses at which a stretch is looked at: what bends once or twice within it is followed well.
+POSES = 25
+
+
+@dataclass(frozen=True)
+class DriverStretch:
+    """Values of a driver from one end to the other.
+
+    Without `ends` it is the motion itself.
+    """
+
+    where: str
+    ends: tuple[float, float] | None = None
+    driver: str | None = None
+
+    @property
+    def told(self) -> str:
+        """Nothing, or that it is a part."""
+        return "" if self.ends is None else f" between {self.ends[0]:g} and {self.ends[1]:g}"
+
+    def hold(self, motion: Motion) -> None:
+        """Raise InvalidInput where it is not plain which driver is meant."""
+        if self.ends is not None:
+            driver_of(self.where, motion, self.driver)
+
+    def of(self, trial: DesignTrial) -> DesignTrial:
+        """Return the designs at its poses."""
+        if self.ends is None:
+            return trial
+        return trial.at(driver_of(self.where, trial.designs.path.reference, self.driver), self.values)
+
+    @property
+    def values(self) -> Number:
+        """Values of the driver."""
+        assert self.ends is not None
+        return np.linspace(*self.ends, POSES)
+
+
+def driver_stretch(where: str, between: object, driver: str | None) -> DriverStretch:
+    """Return the stretch between two values of a driver.
+
+    It is all of the motion where none are given. Raises InvalidInput for what is none.
+    """
+    if between is None:
+        return DriverStretch(where, None, driver)
+    try:
+        low, high = (float(one) for one in between)  # type: ignore[attr-defined]
+        given = np.isfinite(low) and np.isfinite(high) and low != high
+    except (TypeError, ValueError):
+        given = False
+    if not given:
+        raise InvalidInput(Problem(where, "there is no such stretch", "between=(1.0, 2.5), values of the driver"))
+    return DriverStretch(where, (low, high), driver)

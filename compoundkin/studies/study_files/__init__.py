@@ -1,1 +1,0 @@
-"""Studies as files: TOML or JSON, angles in degrees; their keys, their reader, their writer, their schema."""

@@ -1,0 +1,445 @@
+"""The folder of a study: `study.json` with its definition, and rows in Parquet files that are whole or absent.
+
+Workers write their parts, or return them where they cannot reach the folder. A folder opens without the program that
+made it; columns are read when they are needed.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import re
+import secrets
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import import_module
+from pathlib import Path
+from time import time
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, StudyStopped, warn
+from compoundkin.base.suffixes import suffix_for
+from compoundkin.files.atomic import write_atomically
+from compoundkin.files.parquet_library import parquet
+from compoundkin.studies.samples import sample_from
+from compoundkin.studies.samples.variations import variation_from
+from compoundkin.studies.study_plan import (
+    CALLED,
+    ORDER,
+    PLAN_ARGUMENTS,
+    StudyPlan,
+    differences,
+    digest,
+    mechanism_of_document,
+)
+from compoundkin.studies.study_program import StudyColumn, version_text, versions
+from compoundkin.studies.study_rows import RunStore, StudyRows, cached_program, compute_rows, missing_rows
+
+
+def open_folder(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:
+    """Return the study of a folder and its rows.
+
+    Raises InvalidInput where it is no folder of a study, or where the study has functions of a program.
+    """
+    parquet("folder")
+    place = Path(os.path.abspath(path))
+    head = read_head(place)
+    try:
+        plan = plan_from(head.study)
+    except (KeyError, TypeError, AttributeError):
+        raise InvalidInput(Problem(str(place / HEAD), "what it says of the study is damaged")) from None
+    return plan, RowsInFolder(head.columns, StudyFolder(place, digest(head.study)).parts())
+
+
+def plan_from(data: Mapping[str, Any]) -> StudyPlan:
+    """Return the study of which these are the data.
+
+    Raises InvalidInput where a part of it is no data: a function, a configuration without signs.
+    """
+    if untold := list(_unreadable(data, "")):
+        remedy = "run the study into this folder: what is there is not computed again"
+        raise InvalidInput(Problem(f"study.{untold[0]}", "it is an object of a program, which no file holds", remedy))
+    named = {name: data["dimensions"][name] for name in data[ORDER]}
+    dimensions = {name: variation_from(f"dimensions.{name}", one) for name, one in named.items()}
+    sample = sample_from(data["sample"])
+    rest: dict[str, Any] = {name: data.get(name) for name in PLAN_ARGUMENTS}
+    return StudyPlan(mechanism_of_document(data["mechanism"]), dimensions, tuple(data["outputs"]), sample, **rest)
+
+
+def _unreadable(data: Any, where: str) -> Iterator[str]:
+    """Yield the places of what the data only name."""
+    if isinstance(data, Mapping):
+        if CALLED in data:
+            yield where
+        for key, one in data.items():
+            yield from _unreadable(one, f"{where}.{key}" if where else key)
+
+
+FORMAT = 1
+
+
+HEAD = f"study{suffix_for('mechanism', 'json')}"
+
+
+_MORE = 3
+
+
+class FolderHead(NamedTuple):
+    """What `study.json` says of a study: its data, its columns, versions.
+
+    `token` is a word that no other folder has.
+    """
+
+    study: Mapping[str, Any]
+    columns: tuple[StudyColumn, ...]
+    versions: Mapping[str, str]
+    token: str
+
+
+def prepare_folder(path: str | os.PathLike[str], plan: StudyPlan) -> tuple[StudyFolder, FolderHead]:
+    """Return the folder of a study, which is made where there is none.
+
+    Raises InvalidInput for the folder of another study, for one with other files, and where it cannot be written.
+    Warns LikelySlip where other versions have begun it.
+    """
+    parquet("folder")
+    place = Path(os.path.abspath(path))
+    own = FolderHead(plan.data, plan.columns, versions(plan.program), secrets.token_hex(8))
+    if not os.path.exists(place / HEAD):
+        _begin(place, own)
+    there = read_head(place)
+    _check_same_study(place, own, there)
+    return StudyFolder(place, plan.fingerprint), there
+
+
+def read_head(place: Path) -> FolderHead:
+    """Return what a folder says of its study. Raises InvalidInput where it is none."""
+    try:
+        found = json.loads((place / HEAD).read_bytes())
+        known, columns = found["format"], tuple(StudyColumn(**column) for column in found["columns"])
+        head = FolderHead(found["study"], columns, found["versions"], found["token"])
+    except FileNotFoundError:
+        raise InvalidInput(Problem(str(place), f"it is no folder of a study: it has no {HEAD}")) from None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        what = getattr(error, "strerror", None) or "it is damaged"
+        raise InvalidInput(Problem(str(place / HEAD), f"it cannot be read: {what}")) from None
+    if known != FORMAT:
+        raise InvalidInput(Problem(str(place / HEAD), f"its format {known} is not known", "update compoundkin"))
+    return head
+
+
+def _begin(place: Path, head: FolderHead) -> None:
+    """Make a folder, or take an empty one."""
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        others = [one.name for one in place.iterdir() if not one.name.startswith(".")]
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise InvalidInput(Problem(str(place), f"it cannot be a folder of a study: {what}")) from None
+    if os.path.exists(place / HEAD):
+        # another run has begun it meanwhile
+        return
+    if others:
+        what = f"it has files that are no study's, such as {others[0]}"
+        raise InvalidInput(Problem(str(place), what, "name a new folder"))
+    columns = [column._asdict() for column in head.columns]
+    text = json.dumps({"format": FORMAT, **head._asdict(), "columns": columns}, indent=1)
+    write_atomically(place / HEAD, lambda file: file.write(text.encode("utf-8", "surrogatepass")))
+
+
+def _check_same_study(place: Path, own: FolderHead, there: FolderHead) -> None:
+    """Raise InvalidInput where a folder is that of another study."""
+    if digest(own.study) != digest(there.study):
+        where = list(differences(own.study, there.study))
+        # the order says something only where the dimensions are the same
+        where = [name for name in where if name != ORDER or where == [ORDER]]
+        more = f" and {len(where) - _MORE} more" if len(where) > _MORE else ""
+        what = f"it has rows of another study, which differs in {', '.join(where[:_MORE])}{more}"
+        raise InvalidInput(Problem(str(place), what, "name another folder"))
+    if other := version_text(own.versions, there.versions):
+        warn(f"{place}: rows were begun by other versions: now {other}; last digits may differ", LikelySlip)
+
+
+@dataclass(frozen=True)
+class PartTask:
+    """Computes a part of a study and writes it. It may be pickled."""
+
+    plan: StudyPlan
+    folder: StudyFolder
+    token: str
+    versions: Mapping[str, str]
+
+    def __call__(self, rows: range) -> bytes | None:
+        """Write the part of some rows; return its bytes where the folder is not seen from here.
+
+        Raises InvalidInput where other versions compute here than where the run was started.
+        """
+        program = cached_program(self.plan)
+        if other := version_text(versions(program), self.versions):
+            raise InvalidInput(Problem("on", f"a worker has {other}", "give all workers the same versions"))
+        content = part_content(self.plan.columns, compute_rows(self.plan, rows), self.folder.fingerprint)
+        if not is_reachable(self.folder.path, self.token):
+            return content
+        self.folder.write(rows, content)
+        return None
+
+
+@lru_cache(16)
+def is_reachable(place: Path, token: str) -> bool:
+    """Return whether a folder is there.
+
+    Another of the same name on another machine is not the same.
+    """
+    try:
+        return read_head(place).token == token
+    except InvalidInput:
+        return False
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FolderStore(RunStore):
+    """A folder of parts. What is in it stays, whatever happens to the run."""
+
+    folder: StudyFolder
+    head: FolderHead
+
+    def missing(self) -> Iterator[range]:
+        """Yield the rows that are in no part.
+
+        What killed writers left long ago is removed.
+        """
+        self.folder.sweep(is_complete=False)
+        yield from self.folder.missing(len(self.plan))
+
+    @property
+    def task(self) -> Callable[[range], Any]:
+        """What writes a part."""
+        return PartTask(self.plan, self.folder, self.head.token, versions(self.plan.program))
+
+    def take(self, rows: range, answer: bytes | None) -> None:
+        """Write a part that a worker has sent."""
+        if answer is not None:
+            self.folder.write(rows, answer)
+
+    def finished(self) -> RowsInFolder:
+        """Return all rows; raises StudyStopped where parts are not to be seen."""
+        parts = self.folder.parts()
+        if lost := len(self.plan) - sum(len(part.fresh) for part in parts):
+            raise StudyStopped(
+                Problem(str(self.folder.path), f"{lost} rows were written that are not there", "run again")
+            )
+        self.folder.sweep(is_complete=True)
+        return RowsInFolder(self.head.columns, parts)
+
+    def kept(self) -> str:
+        """Return how many rows are there."""
+        there = len(self.plan) - sum(map(len, self.folder.missing(len(self.plan))))
+        return f"{there:,} of {len(self.plan):,} rows are written in {self.folder.path}: run again to go on"
+
+
+_SUFFIX = suffix_for("table", "parquet")
+
+
+_PART = re.compile(rf"rows-(\d+)-(\d+){re.escape(_SUFFIX)}")
+
+
+# What a writer leaves that was killed; another may still be writing what is younger, in seconds.
+_LEFT, _YOUNG = ".*.tmp", 3600
+
+
+class StudyPart(NamedTuple):
+    """A part: its file and its rows.
+
+    The `fresh` ones are those that no part before it has.
+    """
+
+    path: Path
+    rows: range
+    fresh: range
+
+
+@dataclass(frozen=True)
+class StudyFolder:
+    """A folder of a study: where it is, and the fingerprint of the study."""
+
+    path: Path
+    fingerprint: str
+
+    def part(self, rows: range) -> Path:
+        """Return where the part of some rows is or will be."""
+        return self.path / f"rows-{rows.start:09d}-{rows.stop:09d}{_SUFFIX}"
+
+    def write(self, rows: range, content: bytes) -> None:
+        """Write the part of some rows.
+
+        Raises InvalidInput where it cannot be written, and no other run has put these rows there meanwhile: one that
+        completes the folder sweeps what is being written.
+        """
+        try:
+            write_atomically(self.part(rows), lambda file: file.write(content))
+        except InvalidInput:
+            if any(one.stop > rows.start for one in self.missing(rows.stop)):
+                raise
+
+    def parts(self) -> tuple[StudyPart, ...]:
+        """Return the parts that are there, in order.
+
+        Warns LikelySlip of files that are damaged or belong to another study: their rows count as missing.
+        """
+        found: list[StudyPart] = []
+        named = [(_PART.fullmatch(path.name), path) for path in self.path.iterdir()]
+        there = [(range(int(match[1]), int(match[2])), path) for match, path in named if match]
+        reached = 0
+        # runs with other chunks leave parts that overlap: the rows are the same, each is taken once
+        for rows, path in sorted(there, key=lambda one: (one[0].start, -one[0].stop)):
+            if rows_of_part(path, self.fingerprint) != rows:
+                warn(f"{path}: the part is damaged or of another study: its rows count as missing", LikelySlip)
+            elif rows.stop > reached:
+                found.append(StudyPart(path, rows, range(max(rows.start, reached), rows.stop)))
+                reached = rows.stop
+        return tuple(found)
+
+    def missing(self, count: int) -> list[range]:
+        """Return which of so many rows are in no part."""
+        return list(missing_rows((part.fresh for part in self.parts()), count))
+
+    def sweep(self, is_complete: bool) -> None:
+        """Remove what killed writers left; where rows are missing, only what is old."""
+        for path in self.path.glob(_LEFT):
+            # another run may finish its file meanwhile
+            with suppress(FileNotFoundError):
+                if is_complete or time() - path.stat().st_mtime > _YOUNG:
+                    path.unlink()
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RowsInFolder(StudyRows):
+    """Rows in parts: a column is read from all, a row from one."""
+
+    parts: tuple[StudyPart, ...]
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return sum(len(part.fresh) for part in self.parts)
+
+    def column(self, name: str) -> Number:
+        """Return all values of a column. Raises InvalidInput where there is no part yet."""
+        (column,) = (one for one in self.columns if one.name == name)
+        found: Number | None = None
+        start = 0
+        for part in self.parts:
+            values = part_column(part.path, column)[part.fresh.start - part.rows.start :]
+            if found is None:
+                found = np.empty((self.count, *values.shape[1:]), values.dtype)
+            found[start : start + len(values)] = values
+            start += len(values)
+        if found is None:
+            raise InvalidInput(Problem(name, "no row is there yet", "run the study"))
+        return found
+
+    def picked(self, places: Number) -> dict[str, Number]:
+        """Return all columns of some rows."""
+        if not len(places):
+            return {one.name: np.empty(0) for one in self.columns}
+        starts = np.cumsum([0, *(len(part.fresh) for part in self.parts)])
+        owner = np.searchsorted(starts, places, side="right") - 1
+        order: list[Number] = []
+        found: list[dict[str, Number]] = []
+        for k in np.unique(owner):
+            part, mine = self.parts[k], np.flatnonzero(owner == k)
+            inside = places[mine] - starts[k] + part.fresh.start - part.rows.start
+            found.append(part_rows(part.path, self.columns, inside))
+            order.append(mine)
+        back = np.argsort(np.concatenate(order))
+        return {one.name: np.concatenate([rows[one.name] for rows in found])[back] for one in self.columns}
+
+
+# What every part says of the study that it belongs to.
+STUDY = b"study"
+
+
+# So many rows are read at once where one is asked for.
+ROWS_TOGETHER = 8192
+
+
+def part_content(columns: Iterable[StudyColumn], found: Mapping[str, Any], fingerprint: str) -> bytes:
+    """Return the bytes of a part, with units, and the fingerprint of its study."""
+    arrow, write = import_module("pyarrow"), parquet().write_table
+    chosen = list(columns)
+    arrays = [_array(arrow, found[column.name], column.width) for column in chosen]
+    units = [{"unit": column.unit} if column.unit else None for column in chosen]
+    fields = [
+        arrow.field(one.name, array.type, metadata=unit) for one, array, unit in zip(chosen, arrays, units, strict=True)
+    ]
+    schema = arrow.schema(fields, metadata={STUDY: fingerprint, b"angles": b"radians"})
+    texts = [field.name for field in fields if field.type == arrow.string()]
+    content = io.BytesIO()
+    table = arrow.Table.from_arrays(arrays, schema=schema)
+    write(table, content, row_group_size=ROWS_TOGETHER, use_dictionary=texts, write_page_checksum=True)
+    return content.getvalue()
+
+
+def _array(arrow: Any, values: Number, width: int | None) -> Any:
+    if width is None:
+        return arrow.array(values, type=arrow.string() if values.dtype == object else None)
+    return arrow.FixedSizeListArray.from_arrays(arrow.array(np.ravel(values)), width)
+
+
+def rows_of_part(path: Path, fingerprint: str) -> range | None:
+    """Return which rows a part has, by what it says of itself.
+
+    None where it is damaged or belongs to another study.
+    """
+    try:
+        found = parquet().read_metadata(path)
+    except (OSError, ValueError):
+        return None
+    if (found.metadata or {}).get(STUDY) != fingerprint.encode() or not found.num_rows:
+        return None
+    first, last = (found.row_group(k).column(0).statistics for k in (0, found.num_row_groups - 1))
+    return range(first.min, last.max + 1)
+
+
+def part_column(path: Path, column: StudyColumn) -> Number:
+    """Return a column of a part. Raises InvalidInput where it is damaged."""
+    with _opened(path) as file:
+        return _values(file.read([column.name]), column)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Yield a part whose pages are checked as they are read; what is wrong with it is told."""
+    try:
+        with parquet().ParquetFile(path, page_checksum_verification=True) as file:
+            yield file
+    except FileNotFoundError:
+        raise InvalidInput(Problem(str(path), "the part is gone", "run the study into this folder again")) from None
+    except (OSError, ValueError):
+        remedy = "remove it, and run the study into this folder again"
+        raise InvalidInput(Problem(str(path), "the part is damaged", remedy)) from None
+
+
+def part_rows(path: Path, columns: Iterable[StudyColumn], places: Number) -> dict[str, Number]:
+    """Return all columns of some rows of a part, by their places in it. Raises InvalidInput where it is damaged."""
+    groups = np.unique(places // ROWS_TOGETHER)
+    with _opened(path) as file:
+        table = file.read_row_groups(groups.tolist())
+    # the groups that are read follow each other
+    near = np.searchsorted(groups, places // ROWS_TOGETHER) * ROWS_TOGETHER + places % ROWS_TOGETHER
+    return {column.name: _values(table, column)[near] for column in columns}
+
+
+def _values(table: Any, column: StudyColumn) -> Number:
+    found = table.column(column.name).combine_chunks()
+    if column.width is not None:
+        return np.asarray(found.flatten()).reshape(-1, column.width)
+    if str(found.type) == "string":
+        return np.array(found.to_pylist(), dtype=object)
+    return np.asarray(found.to_numpy(zero_copy_only=False))

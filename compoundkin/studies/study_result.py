@@ -1,0 +1,218 @@
+"""`StudyResult`: the rows of a study, one for each design, and the Pareto-optimal ones of two objectives."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.kinematics.table import ASSEMBLED, Table, data_frame
+from compoundkin.model.attributes import AXES
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.study_folder import open_folder
+from compoundkin.studies.study_plan import StudyPlan
+from compoundkin.studies.study_program import StudyColumn
+from compoundkin.studies.study_rows import StudyRows
+
+_X, _Y = (f".{axis}" for axis in AXES)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StudyResult(DisplaysHtml, ShortRepr):
+    """What a study found: `study` says of what, `rows` are those that are there.
+
+    Angles are radians, vectors complex; what does not assemble is NaN, False in "assembled", and has a "reason".
+
+    >>> import compoundkin as ck
+    >>> crank_rocker = ck.catalog.load_named("crank-rocker")
+    >>> result = ck.study(crank_rocker, {"crank.B.x": (1.8, 2.2)}, "rocker.angle.stroke", count=64).run()
+    >>> result.names[:4], len(result)
+    (('row', 'crank.B.x', 'rocker.angle.stroke', 'assembled'), 64)
+    >>> (best,) = result.best("rocker.angle.stroke", greatest=True)
+    >>> bool(best["rocker.angle.stroke"] == result["rocker.angle.stroke"].max())
+    True
+    """
+
+    study: StudyPlan
+    rows: StudyRows
+
+    @classmethod
+    @checked
+    def open(cls, folder: str | os.PathLike[str]) -> StudyResult:
+        """Return what a folder has, at the end of a run or before.
+
+        Raises InvalidInput where it is no folder of a study, or holds objects of a program.
+        """
+        return cls(*open_folder(folder))
+
+    @property
+    def columns(self) -> tuple[StudyColumn, ...]:
+        """Its columns: name, unit, kind, and how wide a course is."""
+        return self.rows.columns
+
+    @property
+    def reference(self) -> Motion:
+        """The motion of the mechanism as it stands, over the same poses."""
+        return self.study.program.path.reference
+
+    @cached_property
+    def _named(self) -> Mapping[str, StudyColumn]:
+        return {column.name: column for column in self.rows.columns}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the columns: the row's number, dimensions, outputs, what became of it."""
+        return tuple(self._named)
+
+    @cached_property
+    def _vectors(self) -> tuple[str, ...]:
+        return tuple(
+            name.removesuffix(_X)
+            for name in self.names
+            if name.endswith(_X) and name.removesuffix(_X) + _Y in self._named
+        )
+
+    def __len__(self) -> int:
+        return self.rows.count
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all rows of the study are there."""
+        return len(self) == len(self.study)
+
+    @checked
+    def __getitem__(self, name: str) -> Number:
+        """Return a column by its name, (rows,), a course (rows, poses). The name of a vector gives both parts, complex.
+
+        Raises UnknownName with the nearest there is.
+        """
+        if name in self._named:
+            return self.rows.column(name)
+        if name in self._vectors:
+            return self.rows.column(name + _X) + 1j * self.rows.column(name + _Y)
+        known = [*self.names, *self._vectors]
+        raise UnknownName(Problem(name, "the study has no such column", suggestion(name, known)))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._named or name in self._vectors
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    @property
+    def assembled(self) -> Number:
+        """Which rows assemble over the whole range of the drivers."""
+        return self.rows.column(ASSEMBLED)
+
+    @checked
+    def best(self, name: str, count: int = 1, *, greatest: bool = False) -> tuple[dict[str, Any], ...]:
+        """Return the rows with the least values of a figure, or the greatest.
+
+        The best is first. They are those that assemble, each with all columns by name.
+        Raises InvalidInput for what is no number.
+        """
+        values = self[name]
+        if values.ndim != 1 or values.dtype.kind not in "fiu":
+            remedy = "ask for one number of each row, such as its least" if values.ndim == 2 else ""
+            raise InvalidInput(Problem(name, "it is not one number for each row", remedy))
+        if count < 1:
+            raise InvalidInput(Problem("count", f"there are no {count} best rows", "at least 1"))
+        meant = np.flatnonzero(self.assembled & np.isfinite(values))
+        order = np.argsort(-values[meant] if greatest else values[meant], kind="stable")
+        return self._rows(meant[order[:count]])
+
+    def _rows(self, places: Number) -> tuple[dict[str, Any], ...]:
+        found = self.rows.picked(places)
+        # a vector stands where its first part does
+        shown = {name.removesuffix(_X) if name.removesuffix(_X) in self._vectors else name: column
+                 for name, column in found.items() if name.removesuffix(_Y) not in self._vectors}  # fmt: skip
+        for name in self._vectors:
+            shown[name] = found[name + _X] + 1j * found[name + _Y]
+        return tuple({name: _single(column[k]) for name, column in shown.items()} for k in range(len(places)))
+
+    @checked
+    def mechanism(self, row: int) -> Mechanism:
+        """Return the mechanism of a row, by its number. Raises InvalidInput where there is none."""
+        return self.study.mechanism_of(row)
+
+    @checked
+    def motion(self, row: int) -> Motion:
+        """Return the motion of a row, by its number.
+
+        Raises InvalidInput where there is none, NotAssembled where it has no pose at all.
+        """
+        return self.study.motion_of(row)
+
+    def table(self, *names: str) -> Table:
+        """Return columns as a table, to be saved.
+
+        All but courses where none is named. Raises UnknownName, InvalidInput for courses.
+        """
+        chosen = names or tuple(name for name, column in self._named.items() if not column.width)
+        found = [part for name in chosen for part in self._quantity(name).components]
+        return Table(self.study.mechanism.title, tuple(found))
+
+    def _quantity(self, name: str) -> Quantity:
+        values = self[name]
+        if values.ndim > 1:
+            raise InvalidInput(Problem(name, "it has a value at every pose: no column of a table", "leave it out"))
+        if values.dtype == object:
+            values = np.array(["" if one is None else one for one in values], dtype=str)
+        column = self._named.get(name) or self._named[name + _X]
+        return Quantity(name, column.unit, values)
+
+    def to_pandas(self) -> Any:
+        """Return it as a pandas DataFrame, angles in radians.
+
+        A course is an array in each row. Its `attrs` hold the title, the units and how angles are counted.
+        Raises InvalidInput where pandas is not installed.
+        """
+        columns = {name: self.rows.column(name) for name in self.names}
+        units = {name: column.unit for name, column in self._named.items() if column.unit}
+        listed = {name: values if values.ndim == 1 else list(values) for name, values in columns.items()}
+        return data_frame(self.study.mechanism.title, listed, units)
+
+    def plot(self, *names: str, **options: Any) -> Any:
+        """Plot columns against each other."""
+        return display_function("study_plot")(self, *names, **options)
+
+    def __repr__(self) -> str:
+        there = f"{len(self):,}" if self.is_complete else f"{len(self):,} of {len(self.study):,}"
+        return f"StudyResult({self.study.mechanism.title!r}: {there} rows of {count_phrase(len(self.names), 'column')})"
+
+
+def _single(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def pareto_rows(first: Number, second: Number) -> Number:
+    """Find the rows that no other row betters, least values being best.
+
+    A row is bettered by one that is less in one objective and not greater in the other; equal rows stay together. The
+    indices come by rising values of the first objective. Rows with NaN are left out. Source: H. T. Kung,
+    F. Luccio, F. P. Preparata, On finding the maxima of a set of vectors (1975).
+
+    >>> pareto_rows(np.array([1.0, 2.0, 2.0, 3.0, np.nan]), np.array([5.0, 3.0, 4.0, 3.0, 0.0])).tolist()
+    [0, 1]
+    """
+    known = np.flatnonzero(np.isfinite(first) & np.isfinite(second))
+    if not len(known):
+        return known
+    order = known[np.lexsort((second[known], first[known]))]
+    a, b = first[order], second[order]
+    # rows of equal first objectives, of which those with the least second one come first
+    begins = np.flatnonzero(np.concatenate([[True], a[1:] != a[:-1]]))
+    least = b[begins]
+    before = np.concatenate([[np.inf], np.minimum.accumulate(least)[:-1]])
+    best = np.repeat(np.where(least < before, least, np.nan), np.diff([*begins, len(a)]))
+    return order[b == best]

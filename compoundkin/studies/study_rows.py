@@ -1,0 +1,207 @@
+"""Rows of a study: read by column or by row, divided into pieces, computed by workers, and stored in memory."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from math import ceil
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import suppress_pose_warnings
+from compoundkin.studies.study_plan import StudyPlan
+from compoundkin.studies.study_program import StudyColumn, StudyProgram
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StudyRows(ABC, ShortRepr):
+    """Rows that are there, in the order of their numbers.
+
+    They have gaps where a run is not at its end.
+    """
+
+    columns: tuple[StudyColumn, ...]
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """How many there are."""
+
+    @abstractmethod
+    def column(self, name: str) -> Number:
+        """Return all values of a column, (rows,), of a course (rows, poses)."""
+
+    @abstractmethod
+    def picked(self, places: Number) -> dict[str, Number]:
+        """Return all columns of some rows, by their places among those that are there."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RowsInMemory(StudyRows):
+    """Rows as arrays."""
+
+    arrays: Mapping[str, Any]
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(next(iter(self.arrays.values())))
+
+    def column(self, name: str) -> Number:
+        """Return the array of a column."""
+        return np.asarray(self.arrays[name])
+
+    def picked(self, places: Number) -> dict[str, Number]:
+        """Return all columns of some rows."""
+        return {name: array[places] for name, array in self.arrays.items()}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RunStore(ABC, ShortRepr):
+    """Where the rows of a study go. `kept` says to people where those are that a stopped run leaves."""
+
+    plan: StudyPlan
+
+    @abstractmethod
+    def missing(self) -> Iterator[range]:
+        """Yield the rows that are not there yet."""
+
+    @property
+    @abstractmethod
+    def task(self) -> Callable[[range], Any]:
+        """What a worker does with some rows; it can be pickled."""
+
+    @abstractmethod
+    def take(self, rows: range, answer: Any) -> None:
+        """Take what a worker answers."""
+
+    @abstractmethod
+    def finished(self) -> StudyRows:
+        """Return all rows that are there, when nothing is missing any more."""
+
+    @abstractmethod
+    def kept(self) -> str:
+        """Return what a stopped run leaves, in words, and what to do."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MemoryStore(RunStore):
+    """Rows as arrays of all, filled piece by piece."""
+
+    arrays: dict[str, Any] = field(default_factory=dict)
+
+    def missing(self) -> Iterator[range]:
+        """Yield all rows."""
+        yield range(len(self.plan))
+
+    @property
+    def task(self) -> Callable[[range], Any]:
+        """What answers with the rows themselves."""
+        return StudyTask(self.plan)
+
+    def take(self, rows: range, answer: Any) -> None:
+        """Put columns where they belong."""
+        for name, values in answer.items():
+            if name not in self.arrays:
+                self.arrays[name] = np.empty((len(self.plan), *values.shape[1:]), values.dtype)
+            self.arrays[name][rows.start : rows.stop] = values
+
+    def finished(self) -> RowsInMemory:
+        """Return the arrays."""
+        return RowsInMemory(self.plan.columns, self.arrays)
+
+    def kept(self) -> str:
+        """Return that nothing is."""
+        return "nothing of it is kept: give run() a folder, and a second run goes on where the first stopped"
+
+
+# So many studies a worker keeps compiled.
+PROGRAMS_KEPT = 4
+
+
+_LOCK = Lock()
+
+
+@dataclass(frozen=True)
+class StudyTask:
+    """Computes rows of a study. It may be pickled; a worker compiles a study once."""
+
+    plan: StudyPlan
+
+    def __call__(self, rows: range) -> dict[str, Number]:
+        """Return some rows."""
+        return compute_rows(self.plan, rows)
+
+
+def compute_rows(plan: StudyPlan, rows: range) -> dict[str, Number]:
+    """Return some rows of a study."""
+    with suppress_pose_warnings():
+        return cached_program(plan).rows(rows)
+
+
+def cached_program(plan: StudyPlan) -> StudyProgram:
+    """Return the program of a study, compiled once in each process."""
+    with _LOCK:
+        return _programs(plan).program
+
+
+@lru_cache(PROGRAMS_KEPT)
+def _programs(plan: StudyPlan) -> StudyPlan:
+    return plan
+
+
+# So many rows are a piece at most, and so many bytes: what each worker has in memory at a time, a few times over.
+MOST_ROWS, MOST_BYTES = 65_536, 2**23
+
+
+# So many pieces for each worker, so that all are at work until near the end.
+PIECES_EACH = 4
+
+
+_BYTES = 8
+
+
+def piece_size(program: StudyProgram, workers: int, asked: int | None) -> int:
+    """Return how many rows a piece has.
+
+    They are whole blocks, of what is asked or by the number of workers and memory.
+    """
+    width = sum(column.width or 1 for column in program.columns)
+    fitting = min(MOST_ROWS, MOST_BYTES // (_BYTES * width), ceil(program.sample.count / (PIECES_EACH * workers)))
+    rows = asked or fitting
+    return max(1, ceil(rows / program.block)) * program.block
+
+
+def pieces_of(missing: Iterable[range], size: int) -> Iterator[range]:
+    """Return missing rows in pieces that begin and end at multiples of a size.
+
+    >>> list(pieces_of([range(3, 9), range(12, 13)], 4))
+    [range(3, 4), range(4, 8), range(8, 9), range(12, 13)]
+    """
+    for rows in missing:
+        start = rows.start
+        while start < rows.stop:
+            stop = min(rows.stop, (start // size + 1) * size)
+            yield range(start, stop)
+            start = stop
+
+
+def missing_rows(there: Iterable[range], count: int) -> Iterator[range]:
+    """Return which of so many rows are not there.
+
+    >>> list(missing_rows([range(4, 6), range(0, 2), range(5, 8)], 10))
+    [range(2, 4), range(8, 10)]
+    """
+    reached = 0
+    for rows in sorted(there, key=lambda rows: rows.start):
+        if rows.start > reached:
+            yield range(reached, rows.start)
+        reached = max(reached, rows.stop)
+    if reached < count:
+        yield range(reached, count)
