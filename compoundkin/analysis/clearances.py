@@ -28,8 +28,6 @@ from compoundkin.model.outline_shapes import OutlineShape, Points
 
 # The way of a point between two poses is at most so many times its chord: half a circle is 1.57 times its diameter.
 LONGER = 1.6
-
-
 # Origins and orientations of links by their names, (n,).
 Placed: TypeAlias = Mapping[str, tuple[Number, Number]]
 

@@ -16,12 +16,8 @@ from compoundkin.model.units import LENGTHS
 
 # So many steps of Newton are taken to a pose, from so many poses of a motion; steps below this are rounding.
 _STEPS, _STARTS, _STILL = 10, 2, 1e-13
-
-
 # Steps go on while they leave less than this part of the squares: near a pose that is found they leave far less.
 _LESS = 0.9
-
-
 # Of mechanisms whose sizes differ by more than this factor neither is the other, or a part of it.
 _LIKE = 4.0
 

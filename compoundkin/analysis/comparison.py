@@ -142,8 +142,6 @@ _FACTS: Mapping[str, Callable[[Structure], str]] = {
     "class": _class,
     "unit of length": lambda structure: structure.mechanism.unit or "none",
 }
-
-
 # A full turn is compared in steps of two degrees.
 POSES = 181
 

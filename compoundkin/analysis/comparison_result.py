@@ -12,8 +12,6 @@ from compoundkin.structure import Structure
 # Two mechanisms are taken for the same where they move no farther apart than this part of their size: files of other
 # programs have three decimals of numbers up to a hundred or so, and a mechanism enlarges their rounding somewhat.
 TOLERANCE = 1e-4
-
-
 # Distances below this part of the size are rounding.
 ROUNDING = 1e-12
 

@@ -131,8 +131,6 @@ def _values(motion: Motion, pose: int) -> dict[str, float]:
 # Points nearer to each other than this part of the size are in the same place: files of other programs are rounded to
 # three decimals, and drawings may be in numbers of one digit.
 SAME_PLACE = 1e-3
-
-
 # Below this part of the size distances tell points apart no more, names do.
 _ALIKE = 1e-9
 

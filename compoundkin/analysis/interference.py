@@ -239,8 +239,6 @@ def _within(one: LinkTouch, place: float) -> bool:
 
 # Halvings of the distance of two poses, to 1e-8 of it.
 HALVINGS = 27
-
-
 # Steps of golden section, to 1e-9 of the distance of two poses.
 STEPS = 44
 

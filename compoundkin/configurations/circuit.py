@@ -118,11 +118,7 @@ class Toggle:
 
 
 CELLS = 72
-
-
 HALVINGS = 48
-
-
 # A link whose rate is below this (of the size, or radians, a radian of the segment's angle) throughout stands still.
 STILL = 1e-9
 

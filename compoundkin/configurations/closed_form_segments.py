@@ -21,19 +21,11 @@ from compoundkin.kinematics.block import BLOCK, Block
 # Each segment is sampled in so many cells; the curve of a margin between two samples is that of half a turn of the
 # driver or less, divided by it.
 CELLS = 72
-
-
 # A margin whose neighbours exceed it by less than this part of itself does not come near zero between them.
 SHALLOW = 0.25
-
-
 HALVINGS = 52
-
-
 # How far aside of a double zero the margin is looked at: it then has digits enough, and the last time no curvature.
 BESIDE = (1e-3, 1e-5, 1e-5)
-
-
 STEPS = 60
 
 

@@ -27,33 +27,17 @@ from compoundkin.model.pairs.contract import Poses
 
 # Newton has converged when its correction is below this; it is quadratic, so that the next would be rounding.
 CONVERGED = 1e-9
-
-
 CORRECTIONS = 5
-
-
 # The longest step (parts of the size and radians together), and the shortest one that is tried.
 LONGEST = 0.2
-
-
 SHORTEST = 1e-9
-
-
 # A step is good where the tangent turns by less than this (its cosine) and the corrector moves less than this part.
 TURNED = 0.97
-
-
 STRAYED = 0.3
-
-
 MOST_STEPS = 4000
-
-
 # A turning point is found when the tangent's last component is below this; the angle is flat there, and known to the
 # square. False position takes some eight steps.
 FLAT = 1e-13
-
-
 MOST_TRIALS = 40
 
 

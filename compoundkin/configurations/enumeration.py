@@ -38,16 +38,10 @@ from compoundkin.structure.redundancy.finite_motion import resting_motion
 
 # A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.
 CLOSED = 1e-6
-
-
 # More configurations than this of one mechanism are distinguished by nobody; those of more bodies no search finds.
 MOST, MOST_BODIES = 4096, 24
-
-
 # Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
 TRIED = 721
-
-
 HALVINGS = 40
 
 

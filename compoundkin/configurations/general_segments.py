@@ -150,16 +150,10 @@ def _curve(closure: SegmentClosure, piece: CurvePiece, low: float, high: float) 
 
 # Every segment is cut by so many slices.
 STRIPS = 48
-
-
 # An arc arrives at a configuration within this (parts of the size, radians).
 MATCHED = 1e-5
-
-
 # Where two arcs arrive at one port, both are followed again with steps this much shorter.
 FINER = 0.1
-
-
 # Arcs arrive at configurations that the slices lacked, whose ports are new; where they are not isolated, without end.
 ROUNDS = 6
 

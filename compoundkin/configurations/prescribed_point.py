@@ -29,8 +29,6 @@ from compoundkin.model.prescribed_motion import PrescribedMotion
 # What leads the point, and the drivers of it: its coordinates, and the angle of the first link that carries it. No link
 # or point is called so.
 LEADER, TURN_OF = "(led)", "(angle)"
-
-
 ALONG, ACROSS = (f"{LEADER}.{part}" for part in PARTS)
 
 

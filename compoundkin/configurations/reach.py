@@ -1,4 +1,4 @@
-"""How far places are inside the reach of a point: the least margin of the best configuration, in the modes that count."""
+"""How far places are inside the reach of a point: the greatest least margin, in the modes that count."""
 
 from __future__ import annotations
 
@@ -23,23 +23,13 @@ from compoundkin.structure.kinematic_structure import Structure
 
 # So many configurations of places are assembled at once: their arrays stay in the caches.
 BLOCK = 65536
-
-
 # An angle of the point's link is tried at so many places of a turn; then a step to both sides of the best few, or so
 # far about those at two neighbours; in so many parts at once, each time finer.
 ANGLES, PEAKS, PARTS, FINE = 60, 3, 12, 1e-9
-
-
 STEP, BETWEEN = TURN / ANGLES, TURN / 24.0
-
-
 # A place of the boundary is found to a margin of this part, or in so many trials; less where angles are looked for.
 FLAT, TRIALS = 1e-12, 60
-
-
 FLAT_BY_ANGLES, TRIALS_BY_ANGLES = 1e-10, 16
-
-
 # Groups without margins tell no more than whether they close, and take long: to a millionth of a step.
 HALVINGS = 20
 
@@ -190,8 +180,6 @@ def _peaks(values: Number) -> Number:
 
 # A group is in its own mode where it is the same within this part of the size (or radians).
 SAME = 1e-7
-
-
 # A configuration found by driving is at its own place within this margin: rounding at ends of ranges.
 ROUNDING = 1e-9
 

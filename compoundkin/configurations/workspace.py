@@ -37,15 +37,9 @@ from compoundkin.structure.kinematic_structure import Structure
 # Cells along the longer side, beside the boundary: with two drivers each takes a microsecond, with three the angle of
 # the point's link is looked for at each, and groups without a closed form take milliseconds.
 CELLS, CELLS_OF_THREE, CELLS_OF_NUMBERED = 320, 128, 48
-
-
 FEWEST, MOST = 8, 4096
-
-
 # The region is looked for within the places that driving reaches, and this part of their extent around.
 AROUND = 0.06
-
-
 EVERY_MODE = "all"
 
 
@@ -229,12 +223,8 @@ def _box(z: Number, size: float) -> tuple[complex, complex]:
 
 # So many values of each driver are tried to see about where the point gets, with two drivers and with three.
 TRIED = {2: 40, 3: 12}
-
-
 # A full turn is not tried at round angles, where poses are special.
 SEAM = 0.123
-
-
 # So many of the places that they reach are enough to tell configurations and extent.
 ENOUGH = 3000
 

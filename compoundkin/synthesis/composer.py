@@ -25,8 +25,6 @@ from compoundkin.synthesis.chains.joints import REVOLUTE, SLIDE
 from compoundkin.synthesis.chains.skeletons import layout, lettered
 
 _TOWARD = " toward "
-
-
 DYAD_NAMES = tuple(DYADS)
 
 

@@ -28,7 +28,6 @@ from compoundkin.synthesis.chains.joints import Joints
 
 # What the old frame is called while another link is the frame.
 OTHER = "other frame"
-
 Joint = TypeVar("Joint", bound=Pair | Cylinder)
 
 

@@ -32,12 +32,8 @@ from compoundkin.structure import decompose
 from compoundkin.synthesis.driver_places import is_driver, renamed, stays, without_driver
 
 OLD_FRAME = "old frame"
-
-
 # Which of the poses is drawn, as a part of them: links are often in line, and modes meet, at the ends or half way.
 WITHIN = 0.382
-
-
 # Points that keep the axes of an old frame given as drawn: its origin, and one on its x axis.
 _AXES = {"old origin": 0j, "old x": 1 + 0j}
 

@@ -10,12 +10,14 @@ import pytest
 import compoundkin as ck
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.files.shipped_mechanisms import load_named, names
+from tests import catalog
 from tests.configurations.mechanisms import four_bar
 from tests.configurations.test_random import check_counts
 
-# Every second one, and those that are special: change points, several drivers, slides as drivers, gears.
-CHOSEN = sorted({*names()[::2], "parallelogram", "antiparallelogram", "scott-russell", "pantograph", "stephenson-iii",
-                 "hydraulic-digger", "planetary-train", "rack-and-pinion-steering", "class-iii-six-bar"})  # fmt: skip
+# Those that are special too: change points, several drivers, slides as drivers, gears.
+CHOSEN = sorted({*(names()[::2] if catalog.EVERYTHING else catalog.CHOSEN), "parallelogram", "antiparallelogram",
+                 "scott-russell", "pantograph", "stephenson-iii", "hydraulic-digger", "planetary-train",
+                 "rack-and-pinion-steering", "class-iii-six-bar"})  # fmt: skip
 
 
 def of(name: str) -> Circuits:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.configurations.general_segments import _add
 from compoundkin.view.report.configurations_section import configurations_report
 from tests.configurations.mechanisms import four_bar
 
@@ -54,7 +55,7 @@ def test_nearly_the_same_seven_bar_has_none() -> None:
 
 def test_ordinary_configurations_are_not_searched_for_curves(monkeypatch: pytest.MonkeyPatch) -> None:
     module = sys.modules["compoundkin.configurations.enumeration"]
-    monkeypatch.setattr(module, "curve_at", lambda *_: pytest.fail("searched"))
+    monkeypatch.setattr(module, "resting_curve", lambda *_: pytest.fail("searched"))
     assert ck.configurations(four_bar(1, 3, 3, 4), {"crank": 1.0}).curve is None
     assert ck.configurations(ck.catalog.load_named("stephenson-iii"), {}).curve is None
 
@@ -78,3 +79,12 @@ def test_groups_that_no_search_can_cover_are_refused(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(sys.modules["compoundkin.configurations.enumeration"], "MOST_BODIES", 3)
     with pytest.raises(ck.errors.InvalidInput, match="6 bodies in a group are too many"):
         ck.configurations(seven_bar(drawn=True))
+
+
+def test_a_configuration_whose_arcs_are_both_lost_is_no_segment() -> None:
+    """It stopped `circuits` with an error about the shapes of arrays."""
+    pieces: list = []
+    _add(pieces, 0, np.array([[0.0, 0.0, 1.0, 0.5]]), [], False)
+    assert pieces == []
+    _add(pieces, 0, np.array([[0.0, 0.0, 1.0, 0.5], [0.0, 0.0, 1.1, 0.6]]), [], False)
+    assert len(pieces) == 1

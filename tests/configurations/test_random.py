@@ -9,6 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.configurations.circuit_search import Circuits
+from tests.catalog import EVERYTHING
 from tests.configurations.mechanisms import random_six_bodies, random_triad
 from tests.support import KINDS_OF_DYAD, Sketch, random_sketch
 
@@ -16,7 +17,9 @@ FINE = 360
 # of class III, where every value is an elimination of its own
 COARSE = 120
 CHUNK = 25
-CHUNK_III = 10
+CHUNK_III = 5
+# How many random mechanisms of each sort; three times as many where everything is tested.
+TIMES = 3 if EVERYTHING else 1
 
 
 def dyadic(seed: int) -> Sketch:
@@ -74,7 +77,7 @@ def check_way(found: Circuits, first: int, last: int) -> None:
     assert np.max(np.diff(way.along), initial=0.0) < 0.15 * max(way.along[-1], 1.0)
 
 
-@pytest.mark.parametrize("start", range(0, 60, CHUNK))
+@pytest.mark.parametrize("start", range(0, 20 * TIMES, CHUNK))
 def test_dyadic_mechanisms(start: int) -> None:
     for seed in range(start, start + CHUNK):
         found = ck.circuits(dyadic(seed).mechanism())
@@ -83,7 +86,7 @@ def test_dyadic_mechanisms(start: int) -> None:
         check_way(found, found.circuits[0].branches[0].number, found.circuits[0].branches[-1].number)
 
 
-@pytest.mark.parametrize("start", range(1040, 1060, CHUNK_III))
+@pytest.mark.parametrize("start", range(1040, 1045 + 5 * TIMES, CHUNK_III))
 def test_class_iii_mechanisms(start: int) -> None:
     for seed in range(start, start + CHUNK_III):
         found = ck.circuits(class_iii(seed).mechanism())
@@ -93,12 +96,12 @@ def test_class_iii_mechanisms(start: int) -> None:
         check_way(found, longest.branches[0].number, longest.branches[len(longest.branches) // 2].number)
 
 
-@pytest.mark.parametrize("seed", range(2000, 2003))
+@pytest.mark.parametrize("seed", range(2000, 2000 + TIMES))
 def test_class_iii_mechanisms_with_slides(seed: int) -> None:
     check_counts(ck.circuits(with_slides(seed).mechanism()), COARSE)
 
 
-@pytest.mark.parametrize("seed", range(2100, 2104))
+@pytest.mark.parametrize("seed", range(2100, 2101 + TIMES))
 def test_groups_of_six_links(seed: int) -> None:
     check_counts(ck.circuits(random_six_bodies(np.random.default_rng(seed)).mechanism()), COARSE)
 
@@ -113,11 +116,6 @@ def test_at_every_limit_two_configurations_appear_or_vanish(seed: int) -> None:
         close = [one for one in found.limits if abs(np.angle(np.exp(1j * (one.value - limit.value)))) < near]
         assert before - after == sum(2 if one.greatest else -2 for one in close)
         assert found.structure.groups[limit.group].links == limit.links
-
-
-def shape(found: Circuits) -> list[tuple[int, int, bool]]:
-    """What of the circuits does not depend on how they are drawn."""
-    return sorted((len(c.branches), abs(c.winding), c.closed) for c in found.circuits)
 
 
 @pytest.mark.parametrize("make", [dyadic, class_iii])

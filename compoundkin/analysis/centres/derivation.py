@@ -46,12 +46,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 
 # Diagrams kept; each holds a few kilobytes.
 KEPT = 256
-
-
 # The derivation of more takes more than ten seconds, for its work grows with the fourth power.
 MOST_LINKS = 50
-
-
 # Each value adds one to the trial positions; the search grows by a factor of some ten with each.
 MOST_VALUES = 3
 

@@ -23,16 +23,10 @@ from compoundkin.base.arrays import Number
 
 # Where the error of a twist is magnified more than this, other links are taken to carry it through.
 FAIR = 1e5
-
-
 # A twist is tried through every two of so many others, those known best, and so many times at most: each body's twist
 # gets better through those next to it, and with a hundred links every two of all of them would take minutes.
 OTHERS = 14
-
-
 ROUNDS = 14
-
-
 # Other links are taken if they are better by this factor.
 BETTER = 2.0
 
@@ -140,12 +134,8 @@ def or_infinite(spread: Number) -> Number:
 
 # Samples besides the exact one: that both underestimate an error tenfold is rarer than one in a thousand.
 SAMPLES = 2
-
-
 # What a sample is moved by, for an error of one rounding: far above rounding, and linear up to a spread of 1e7.
 MOVED = 1e-9
-
-
 # Samples that differ by more than this part say no more than that the error is large.
 LINEAR = 0.1
 

@@ -128,24 +128,14 @@ def _null(rows: Number) -> Number:
 
 # Where errors are magnified more than this (rounding becomes 1e-11), other lines are tried for the centre.
 FAIR = 1e5
-
-
 # Lines of all poses together that are drawn, in some four seconds, and rounds that are gone whatever they take. Centres
 # that remain poor say so by their conditioning.
 MOST_LINES = 25_000_000
-
-
 ROUNDS = 4
-
-
 # Centres with less than this at all poses are left alone: through them no other gets poor.
 GOOD = 1e2
-
-
 # Where all lines leave errors magnified more than this (rounding becomes 1e-10), the rates are tried.
 ILL_CONDITIONED = 1e6
-
-
 # What is found otherwise is taken if it is better by this factor: less is not worth the change.
 BETTER = 2.0
 

@@ -31,8 +31,6 @@ from compoundkin.model.pairs.contract import Line
 
 # A centre farther away than this many times the mechanism's size is at infinity: rounding hides anything farther.
 INFINITY = 1e13
-
-
 # Below this conditioning fewer than four digits of a centre are left: it is not given.
 NOTHING = 1e-12
 
@@ -380,8 +378,6 @@ def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
 
 # Below this conditioning (rounding becomes 1e-10) a centre is given, but proves nothing to 1e-9.
 LEAST_CONDITIONING = 1e-6
-
-
 # A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
 SLOWEST = 1e-6
 

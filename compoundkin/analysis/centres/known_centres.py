@@ -20,8 +20,6 @@ from compoundkin.base.errors import NotDetermined, Problem
 
 # At random coordinates of order one, what is not zero by the graph itself is far above this, rounding far below.
 GENERIC = 1e-7
-
-
 Vector = tuple[float, float, float]
 
 

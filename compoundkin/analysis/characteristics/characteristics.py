@@ -36,8 +36,6 @@ from compoundkin.model.geometry import FRAME
 
 # A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
 DWELL, STRAIGHT = 0.01, 0.001
-
-
 # A transmission angle below this (radians) is none: where it passes zero its place is known to about so much.
 NOTHING = 1e-8
 

@@ -19,8 +19,6 @@ from compoundkin.model.attributes import derivative_order
 
 # A motion is shown by about so many samples when dwells are looked for.
 SAMPLES = 288
-
-
 # A dwell takes at least this part of the motion.
 SHORTEST = 1.0 / 36.0
 
@@ -101,8 +99,6 @@ class OutputCourse:
 
 # It is slower in a dwell than this part of its mean speed.
 SLOW = 0.7
-
-
 # The ends are right to this part of the tolerance, after so many steps of false position at most.
 FLAT, TRIALS = 1e-12, 60
 

@@ -176,12 +176,8 @@ class MeasuredLoops:
 
 # Lengths whose sums differ by less than this part of the loop are equal: a change point, and not a gap of rounding.
 EQUAL = 1e-9
-
-
 # Three links that rock, before the number of the longest link.
 _ROCKERS = 3 * "R"
-
-
 NAMES = {
     "GCCC": "double-crank (drag link)",
     "GCRR": "crank-rocker",
@@ -196,11 +192,7 @@ NAMES = {
     "S3X": "change-point linkage of four equal links",
     "": "cannot be assembled",
 }
-
-
 _GRASHOF, _CHANGE = ("GCCC", "GCRR", "GRCR", "GRRC"), ("SCCC", "SCRR", "SRCR", "SRRC")
-
-
 # Two pairs of equal links: opposite to each other, or side by side.
 PARALLELOGRAM, KITE = "parallelogram (or antiparallelogram)", "kite (deltoid)"
 

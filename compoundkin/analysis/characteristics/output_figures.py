@@ -164,8 +164,15 @@ class OutputFigures:
     @property
     def _course(self) -> OutputCourse:
         assert self.stroke is not None
-        return OutputCourse(self.motion, self.design, self.output.coordinate, self.cycle, self.stroke.unit,
-                      self.dwell * quantity_number(self.stroke), tuple(one.place for one in self.dead_points))  # fmt: skip
+        return OutputCourse(
+            self.motion,
+            self.design,
+            self.output.coordinate,
+            self.cycle,
+            self.stroke.unit,
+            self.dwell * quantity_number(self.stroke),
+            tuple(one.place for one in self.dead_points),
+        )
 
     @cached_property
     def path(self) -> PathFeatures | None:

@@ -19,12 +19,8 @@ from compoundkin.kinematics import Motion
 
 # A path is a line or a circle where its samples are off by less than this part of its extent: rounding, no feature.
 EXACT = 1e-9
-
-
 # A stretch is straight, or an arc, where it is off by less than this part of the path's extent, if nothing is said.
 TOLERANCE = 1e-3
-
-
 # What lies on itself has as many crossings as samples; a coupler curve of a four-bar, of order six, has three.
 MOST_CROSSINGS = 60
 

@@ -60,20 +60,12 @@ def _simple_part(path: TracedPath) -> tuple[TracedPath, bool]:
 
 # A path is shown by about so many samples: loops and stretches that are shorter are not seen.
 SAMPLES = 360
-
-
 # Two poses are one where they differ by less than this part of the size: rounding of a full turn of many groups.
 SAME = 1e-9
-
-
 # A point stands still where it is slower than this part of its fastest: books print dimensions of cusps to six digits.
 STANDS = 1e-6
-
-
 # Beside a place where it stands still the way from sample to sample is shorter than this part of the longest.
 SLOW = 0.3
-
-
 # Newton from the middle of the shortest way: its error is squared with every step.
 STEPS = 6
 

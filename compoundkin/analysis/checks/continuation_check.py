@@ -36,8 +36,6 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 # Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
 # leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.
 SAME = 1e-7
-
-
 # So many ways are gone at once.
 STEPS_AT_ONCE = 2048
 
@@ -179,8 +177,6 @@ def _by_group(motion: Motion, beyond: Number) -> dict[str, Number]:
 # A drawing chooses by what it shows: of two configurations whose distances from it (parts of the size) differ by less
 # it chooses none, and that of a group without signs it need not choose unless the other is this part as far.
 NEARER, CLEARLY = 1e-6, 0.5
-
-
 # The configurations of larger groups take seconds, and are not looked through.
 MOST_BODIES = 4
 
@@ -264,22 +260,12 @@ def _distance_of_poses(motion: Motion, solver: GroupSolver, world: Mapping[str, 
 
 # A correction times the norm of the inverse Jacobian below this: Newton's limit is the nearest configuration.
 SURE = 0.25
-
-
 # No correction is longer (radians, or parts of the size), however well conditioned a pose is.
 LONGEST = 0.1
-
-
 # Beyond this norm of the inverse Jacobian a pose is a limit position or change point, from which nothing follows.
 SINGULAR = 1e7
-
-
 ORDER = 3
-
-
 NEWTON = 6
-
-
 LENGTHS = StepLengths(first=1.0, longest=1.0, shortest=1e-8, easy=1, most=120)
 
 

@@ -28,8 +28,8 @@ class Pole(ShortRepr):
     """The pole (relative instant centre) of two links at every pose. Arrays of the motion's shape.
 
     `fixed`, `moving`, `world`: complex, in the frame of the observing link, of the moving link and of the mechanism.
-    Where the pole is at infinity (`infinite`) they are inf, and `unit_direction` is the unit vector towards it, up to its
-    sign, in the observing link's frame; elsewhere `unit_direction` is 0. Where `defined` is False all are NaN: the pose is
+    Where the pole is at infinity (`infinite`) they are inf, and `direction` is the unit vector towards it, up to its
+    sign, in the observing link's frame; elsewhere `direction` is 0. Where `defined` is False all are NaN: the pose is
     not assembled, its rates are infinite, or the links stand still relative to each other.
     """
 

@@ -51,7 +51,7 @@ class Displacement(ShortRepr):
 
     `angle` is that of the rotation, between -pi and pi; `translation` the way of the point by which the positions are
     given; `pole` the one point that comes back to its place. Where the link is only translated (`infinite`) the pole is
-    inf and `unit_direction` the unit vector towards it, up to its sign; elsewhere `unit_direction` is 0. Where the pole is not
+    inf and `direction` the unit vector towards it, up to its sign; elsewhere `direction` is 0. Where the pole is not
     `defined` both are NaN: the positions are not known, or are one and the same.
     """
 

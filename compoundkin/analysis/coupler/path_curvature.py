@@ -253,9 +253,9 @@ class CanonicalFrame(ShortRepr):
 class BresseCircle(ShortRepr):
     """A circle, or a line, by a point it runs through. Arrays of the motion's shape.
 
-    `through` is the pole, or a point of the line where the pole is at infinity; `unit_direction` the unit vector from there
+    `through` is the pole, or a point of the line where the pole is at infinity; `direction` the unit vector from there
     to the centre, which for a line is its normal; `diameter` is inf for a line and 0 for a pin, where the circle is the
-    point itself and `unit_direction` is 0. Where `defined` is False all are NaN.
+    point itself and `direction` is 0. Where `defined` is False all are NaN.
     """
 
     through: Number

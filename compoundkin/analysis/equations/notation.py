@@ -64,14 +64,8 @@ def _vector(term: Term, how: Notation) -> str:
 
 # A constant below this is rounding; a factor nearer to one than this is one.
 ROUNDING = 1e-9
-
-
 _LETTERS = {**LETTERS, "direction": r"\varphi"}
-
-
 _DOTS = ("", r"\dot", r"\ddot")
-
-
 _PRIMES = ("", "'", "''")
 
 
@@ -226,8 +220,6 @@ class LatexNotation:
 
 
 Notation: TypeAlias = type[TextNotation] | type[LatexNotation]
-
-
 TEXT, LATEX = TextNotation, LatexNotation
 
 

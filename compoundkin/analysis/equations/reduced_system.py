@@ -37,8 +37,6 @@ from compoundkin.structure import Structure
 
 # A factor nearer to one than this is one: of angles that a slide ties, factors are one and nothing else.
 ONE = 1e-12
-
-
 NOTHING = Sum()
 
 

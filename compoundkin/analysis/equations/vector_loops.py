@@ -61,12 +61,8 @@ class DriverEquation:
 
 
 Equation: TypeAlias = VectorLoop | Auxiliary | Implicit | DriverEquation
-
-
 # A point of a pair on a link, and what it is called.
 Side: TypeAlias = tuple[Number, str]
-
-
 # An angle nearer than this to 0 or a half turn is one.
 STRAIGHT = 1e-9
 

@@ -21,15 +21,9 @@ from compoundkin.structure.cycles import find
 
 # Cells of vertices, each cell the bits of an integer; an ordering of the vertices where all cells are single.
 Cells: TypeAlias = list[int]
-
-
 Permutation: TypeAlias = tuple[int, ...]
-
-
 # graph6 writes numbers of up to six bits as printable characters (B. D. McKay, the formats graph6 and sparse6).
 _SIX, _PRINTABLE = 6, 63
-
-
 _ORDINALS = ("", "singular", "binary", "ternary", "quaternary", "quinary", "senary", "septenary", "octonary")
 
 

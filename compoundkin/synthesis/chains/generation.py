@@ -29,7 +29,6 @@ from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Permutation, canonical, is_connected
 
 MOST_MADE = {0: 11, 1: 11, 2: 11, 3: 10}  # links, by mobility: what is made within some ten seconds
-
 Integers = npt.NDArray[np.int64]
 
 

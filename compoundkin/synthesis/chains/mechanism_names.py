@@ -38,16 +38,10 @@ if TYPE_CHECKING:
     import networkx as nx
 
 _PINS = {2: "double pin", 3: "triple pin"}
-
-
 # The fewest links that slides alone can join into a loop that moves.
 _WEDGE = 3
-
-
 # More names than these are counted instead of written out.
 _MANY = 4
-
-
 # Half a second; the work grows with about the cube of the links.
 MOST_COMPARED = 120
 
@@ -239,11 +233,7 @@ def _counted(number: int, word: str) -> str:
 
 
 FOUR = 4
-
-
 SLIDER_CRANK, INVERTED = "slider-crank", "inverted slider-crank"
-
-
 # By the letters around the loop, then by those of the frame: the slide's own link, or the pins' link.
 _NAMES = {
     ("RRRP", "RP"): SLIDER_CRANK,
@@ -253,8 +243,6 @@ _NAMES = {
     ("RRPP", "RP"): "Scotch yoke",
     ("RPRP", "RP"): "Rapson slide",
 }
-
-
 _CHAINS = {"RRRP": "slider-crank chain", "RRPP": "double slider chain", "RPRP": "crossed slider chain"}
 
 

@@ -27,7 +27,6 @@ from compoundkin.synthesis.chains.chain_names import chain_name
 
 # A driver: a link that is driven on the frame, or two links, the second one driven on the first.
 Driver: TypeAlias = int | tuple[int, int]
-
 # The angle that spreads points evenly over a disc: none is on a line with the others, none on a circle.
 GOLDEN = np.pi * (3.0 - 5.0**0.5)
 # Enough for layouts of some dozens of pins to settle; nothing depends on how well they have.

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compoundkin.synthesis.chains import Chain, Coloured, canonical, chains_of
+import compoundkin as ck
+from compoundkin.synthesis.chains import Chain, Coloured, canonical, chains, chains_of, generation, inversions, trusses
 from tests.synthesis.chains.counts import COUNTS
 
 # E. R. Tuttle, Mechanism and Machine Theory 31 (1996) 729: chains that are not fractionated, by mobility and links.
@@ -131,3 +132,26 @@ def test_a_rigid_part_is_found():
     triangle = Chain.of(5, [(0, 1), (1, 2), (2, 0), (2, 3), (3, 4), (4, 0)])
     assert triangle.has_rigid_part
     assert not any(chain.has_rigid_part for chain in chains_of(8))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: trusses(13),
+        lambda: chains(12),
+        lambda: chains(100),
+        lambda: inversions(14),
+        lambda: chains_of(13, mobility=0),
+        lambda: chains_of(20, mobility=5),
+    ],
+)
+def test_more_chains_than_are_made_in_seconds_are_refused(call) -> None:
+    with pytest.raises(ck.errors.InvalidInput, match=r"take half a minute to hours; ask for 1[01], or be patient=True"):
+        call()
+
+
+def test_the_patient_get_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(generation, "MOST_MADE", {1: 6})
+    with pytest.raises(ck.errors.InvalidInput, match="ask for 6"):
+        chains_of(8)
+    assert len(chains_of(8, patient=True)) == 16
