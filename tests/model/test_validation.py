@@ -1,6 +1,6 @@
 """Every mistake has its place, what is wrong, and how to mend it; and all are found at once."""
 
-# ruff: noqa: E501  (one line for each mistake)
+# ruff: noqa: E501, RUF100  (one line for each mistake)
 
 from __future__ import annotations
 
