@@ -40,7 +40,7 @@ VERBS = {
     "completion": "The script that completes commands in your shell.",
 }
 
-# Verbs whose file has another name: that of a word of Python, or of a file in the room of what they ask for.
+# Verbs whose file has another name.
 _FILES = {
     **{"compare": "comparison_command", "forces": "mechanism_forces", "import": "import_command"},
     **{"open": "report", "study": "study_command", "tolerance": "tolerance_command"},
@@ -81,7 +81,7 @@ class Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command that the arguments name; an unknown one is told the nearest."""
+        """Return the command that the arguments name. Raises UsageError with the nearest one for an unknown name."""
         if args and args[0] not in VERBS and not args[0].startswith("-"):
             from compoundkin.base.errors import suggestion
 
@@ -89,12 +89,12 @@ class Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of verbs, none of them loaded."""
+        """Write the list of verbs without loading them."""
         with formatter.section("Commands"):
             formatter.write_dl(list(VERBS.items()))
 
     def main(self, *args: Any, **extra: Any) -> Any:
-        """Run, and turn whatever goes wrong into a message and an exit code."""
+        """Run, and turn errors into a message and an exit code."""
         if extra.get("standalone_mode") is False:
             return super().main(*args, **extra)
         given = _with_units(args[0] if args else extra.pop("args", None) or sys.argv[1:])
@@ -102,7 +102,7 @@ class Verbs(click.Group):
 
 
 def _with_units(args: Sequence[str]) -> list[str]:
-    """Join rates and units that a shell took apart: ``--speed 300 rpm``."""
+    """Join rates and units that a shell separated: ``--speed 300 rpm``."""
     joined: list[str] = []
     for word in args:
         if word in ("rpm", "deg", "deg/s", "rad/s", "1/min") and joined[-2:-1] in (["--speed"], ["--acceleration"]):

@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives
-from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, solve_motion_at
+from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, explain_gaps, solve_motion_at
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
 from compoundkin.cli.shell import counting, put, say
-from compoundkin.cli.solve import explain_gaps
 
 if TYPE_CHECKING:
     from compoundkin.base.arrays import Number
     from compoundkin.structure import Structure
 
-# What says where drivers go; without any of these they go through their own range.
+# Options that set the drivers' values; without them drivers go through their own ranges.
 DRIVEN_BY = ("at", "start", "stop", "step", "drives", "time")
-# What `animate` of Python takes as it stands, by the names of the values of the options.
+# Options that `animate` of Python takes as they are.
 PASSED_ON = ("paths", "vectors", "centres", "labels", "seconds", "fps", "back", "size", "design")
 
 
@@ -47,7 +46,7 @@ Examples:
 @click.option("--back/--no-back", default=None, help="Go back the way it came; else where it does not end as it began.")
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
 @to_file(f"Write a {alternatives('animation')} file; else SVG to stdout.")
-def command(file: str, path: str | None, **asked: Any) -> int:
+def command(file: str, path: str | None, **options: Any) -> int:
     """Animate the motion of a mechanism.
 
     GIF needs CairoSVG and Pillow, MP4 the program ffmpeg too; SVG needs nothing and moves by itself in a browser. Poses
@@ -60,25 +59,25 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     if path is not None:
         ready_for(path)
     structure = decompose(load_mechanism(file))
-    order = 2 if asked["order"] is None else asked["order"]
-    motion = solve_motion_at(structure, _driver_values(structure, asked), {**asked, "order": order})
-    animation = animate(motion, **{key: asked[key] for key in PASSED_ON})
+    order = 2 if options["order"] is None else options["order"]
+    motion = solve_motion_at(structure, _driver_values(structure, options), {**options, "order": order})
+    animation = animate(motion, **{key: options[key] for key in PASSED_ON})
     if path is None:
         put(animation.svg)
     else:
         with counting("drawing", "frames") as progress:
             animation.save(path, progress)
         say(f"Wrote {path}.")
-    return 0 if motion.assembled.all() else explain_gaps(motion)
+    return explain_gaps(motion)
 
 
-def _driver_values(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
-    """The values of the drivers that are asked for, else the mechanism's own range, finely enough to be shown."""
+def _driver_values(structure: Structure, options: Mapping[str, Any]) -> dict[str, Number]:
+    """Return the drivers' values that the options set, else those of their own ranges, refined."""
     from compoundkin.cli import typed_values
     from compoundkin.view.animation.animation import finer_values
     from compoundkin.view.sketch.picture_options import solved_over
 
-    if any(asked[key] not in (None, ()) for key in DRIVEN_BY):
-        return typed_values.read_driver_values(structure, asked)
+    if any(options[key] not in (None, ()) for key in DRIVEN_BY):
+        return typed_values.read_driver_values(structure, options)
     own = solved_over(structure)
     return (finer_values(own) if own is not None else None) or {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from compoundkin.cli.file_options import put_report, report_options
+from compoundkin.cli.shell import working
 
 
 @click.command(
@@ -29,7 +30,6 @@ def command(
 
     Each has its number, name, links by their numbers of pairs, symmetries, inversions, graph6 and pairs.
     """
-    from compoundkin.cli.shell import working
     from compoundkin.view.report.atlas_sections import atlas_report
 
     with working("listing chains"):

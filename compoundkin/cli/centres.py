@@ -8,9 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.cli.drive_options import AT, pose_options, solve_motion_at
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
-from compoundkin.cli.shell import NOT_ASSEMBLED
-from compoundkin.cli.structure import report_unsolvable
+from compoundkin.cli.file_options import (
+    exit_code,
+    mechanism_argument,
+    put_report,
+    report_options,
+    solvable_structure,
+)
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -32,7 +36,7 @@ Examples:
 @click.option("--derivation", is_flag=True, help="The steps in order, for any pose; without --at nothing else.")
 @report_options
 def command(
-    file: str, at: tuple[str, ...], design: int, derivation: bool, form: str | None, path: str | None, **asked: Any
+    file: str, at: tuple[str, ...], design: int, derivation: bool, form: str | None, path: str | None, **options: Any
 ) -> int:
     """Print the instant centres of every two links at one pose. The velocities that follow from them are added.
 
@@ -41,28 +45,24 @@ def command(
     """
     from dataclasses import replace
 
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import Report, report
+    from compoundkin.view.report import Report
     from compoundkin.view.report.centres_section import derivation_section
     from compoundkin.view.report.motion_report import centres_report
     from compoundkin.view.report.report_data import NOT_SOLVED
 
-    structure = decompose(load_mechanism(file))
-    if structure.faults:
-        put_report(report(structure), form, path)
-        return report_unsolvable(len(structure.faults))
-    made = Report(structure.mechanism.title, (), NOT_SOLVED, structure)
+    structure = solvable_structure(file, form, path)
+    result = Report(structure.mechanism.title, (), NOT_SOLVED, structure)
     if at or not derivation:
-        made = centres_report(solve_pose(structure, at, asked), design)
+        result = centres_report(solve_pose(structure, at, options), design)
     if derivation:
-        made = replace(made, sections=(derivation_section(structure), *made.sections))
-    put_report(made, form, path)
-    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
+        result = replace(result, sections=(derivation_section(structure), *result.sections))
+    put_report(result, form, path)
+    return exit_code(result)
 
 
-def solve_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
+def solve_pose(structure: Structure, at: Sequence[str], options: Mapping[str, Any], option: str = "--at") -> Motion:
     """Return the motion at one pose, with velocities. Raises InvalidInput for values that do not fit the drivers."""
     from compoundkin.cli import typed_values
 
     driven = typed_values.read_pose(structure, at, option)
-    return solve_motion_at(structure, driven, {"accelerations": (), "outputs": (), "order": 1, **asked})
+    return solve_motion_at(structure, driven, {"accelerations": (), "outputs": (), "order": 1, **options})

@@ -7,9 +7,14 @@ from typing import Any
 import click
 
 from compoundkin.cli.drive_options import DESIGN, drive_options, solve_motion
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
-from compoundkin.cli.shell import NOT_ASSEMBLED
-from compoundkin.cli.structure import report_unsolvable
+from compoundkin.cli.file_options import (
+    exit_code,
+    mechanism_argument,
+    put_report,
+    report_options,
+    solvable_structure,
+)
+from compoundkin.cli.shell import working
 
 
 @click.command(
@@ -36,7 +41,7 @@ def command(
     straight: float | None,
     form: str | None,
     path: str | None,
-    **asked: Any,
+    **options: Any,
 ) -> int:
     """Print the figures of a motion that engineers ask for.
 
@@ -44,17 +49,11 @@ def command(
     between the poses too. Outputs are those of --output, or of the file. Exit code 3: some poses cannot be assembled;
     the figures are then of those that can.
     """
-    from compoundkin.cli.shell import working
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import report
     from compoundkin.view.report.performance_section import characteristics_report
 
-    structure = decompose(load_mechanism(file))
-    if structure.faults:
-        put_report(report(structure), form, path)
-        return report_unsolvable(len(structure.faults))
-    motion = solve_motion(structure, asked)
+    structure = solvable_structure(file, form, path)
+    motion = solve_motion(structure, options)
     with working("finding extremes"):
-        made = characteristics_report(motion, asked["outputs"], design, dwell, straight)
-    put_report(made, form, path)
-    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
+        result = characteristics_report(motion, options["outputs"], design, dwell, straight)
+    put_report(result, form, path)
+    return exit_code(result)

@@ -7,9 +7,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.cli.drive_options import drive_options, solve_motion
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
-from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
-from compoundkin.cli.structure import report_unsolvable
+from compoundkin.cli.file_options import (
+    exit_code,
+    mechanism_argument,
+    put_report,
+    report_options,
+    solvable_structure,
+)
+from compoundkin.cli.shell import FAILED, say, working
 
 if TYPE_CHECKING:
     from compoundkin.view.report import Report
@@ -26,33 +31,27 @@ Examples:
 @mechanism_argument
 @drive_options
 @report_options
-def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
-    """Verify a motion and print a table of all findings. It uses ways without the formulas that solved it.
+def command(file: str, form: str | None, path: str | None, **options: Any) -> int:
+    """Verify a motion and print a table of all findings. It is independent of the formulas that solved it.
 
     Outlines of links are compared too. Exit code 3: some poses cannot be assembled; 4: a check failed, or links touch
     by their outlines, and the pair or link, its group and the pose where it is worst are named.
     """
-    from compoundkin.cli.shell import working
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import report
     from compoundkin.view.report.motion_report import check_report
 
-    structure = decompose(load_mechanism(file))
-    if structure.faults:
-        put_report(report(structure), form, path)
-        return report_unsolvable(len(structure.faults))
-    motion = solve_motion(structure, asked)
+    structure = solvable_structure(file, form, path)
+    motion = solve_motion(structure, options)
     with working("checking"):
-        made = check_report(motion)
-    put_report(made, form, path)
-    return _verdict(made)
+        result = check_report(motion)
+    put_report(result, form, path)
+    return _verdict(result)
 
 
-def _verdict(made: Report) -> int:
-    """The exit code of a check; what failed is said on stderr too."""
-    failed = made.section("failed")
+def _verdict(result: Report) -> int:
+    """Write what failed to stderr, and return the exit code."""
+    failed = result.section("failed")
     if failed is not None:
         for alert in failed.blocks:
             say(f"FAILED: {getattr(alert, 'text', '')}")
         return FAILED
-    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
+    return exit_code(result)

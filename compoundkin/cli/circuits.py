@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
+from compoundkin.cli.shell import working
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -31,7 +33,7 @@ Examples:
     metavar="NAME=VALUE",
     help="Where another driver stands, degrees or length; as drawn, or the first of its range, if left out.",
 )
-@click.option("--from", "start", type=float, metavar="VALUE", help="The least value of the driver that is looked at.")
+@click.option("--from", "start", type=float, metavar="VALUE", help="The least value of the driver.")
 @click.option("--to", "stop", type=float, metavar="VALUE", help="The greatest one.")
 @report_options
 def command(
@@ -45,10 +47,9 @@ def command(
 ) -> int:
     """Find all circuits that a driver moves a mechanism through. Print branches, limits, whether it turns fully.
 
-    On a circuit the mechanism gets from any configuration to any other without being taken apart. Limit positions are
-    told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.
+    On a circuit the mechanism gets from any configuration to any other without being taken apart. A limit position
+    comes with the group that reaches its limit there. Exit code 3: the mechanism cannot be assembled.
     """
-    from compoundkin.cli.shell import working
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.kinematics.solution import solving_order_of
     from compoundkin.view.report.configurations_section import circuits_report
@@ -56,13 +57,15 @@ def command(
     structure = solving_order_of(load_mechanism(file)).structure
     fixed = _fixed(structure, at)
     with working("following all circuits"):
-        made = circuits_report(circuits(structure, driver, fixed, between=driver_range(structure, driver, start, stop)))
-    put_report(made, form, path)
+        result = circuits_report(
+            circuits(structure, driver, fixed, between=driver_range(structure, driver, start, stop))
+        )
+    put_report(result, form, path)
     return 0
 
 
 def _fixed(structure: Structure, at: Sequence[str]) -> dict[str, float]:
-    """The values given for other drivers."""
+    """Return the values given for other drivers."""
     from compoundkin.cli import typed_values
 
     named = {text.rpartition("=")[0] for text in at}
@@ -74,8 +77,6 @@ def driver_range(
 ) -> tuple[float, float] | None:
     """Return the range of the driver, in radians or lengths."""
     import numpy as np
-
-    from compoundkin.base.errors import InvalidInput, Problem
 
     if start is None and stop is None:
         return None

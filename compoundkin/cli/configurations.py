@@ -6,8 +6,10 @@ import warnings
 
 import click
 
+from compoundkin.base.errors import UnassembledPoses
 from compoundkin.cli.drive_options import AT
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
+from compoundkin.cli.shell import working
 
 
 @click.command(
@@ -28,9 +30,7 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
     """
     from dataclasses import replace
 
-    from compoundkin.base.errors import UnassembledPoses
     from compoundkin.cli import typed_values
-    from compoundkin.cli.shell import working
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.solution import solving_order_of
@@ -39,10 +39,10 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
     structure = solving_order_of(load_mechanism(file)).structure
     driven = typed_values.read_pose(structure, at)
     with working("finding all configurations"):
-        made = configurations_report(configurations(structure, driven))
+        result = configurations_report(configurations(structure, driven))
     with warnings.catch_warnings():
         # where there is no configuration, the report says so
         warnings.simplefilter("ignore", UnassembledPoses)
         motion = solve(structure, driven)
-    put_report(replace(made, subject=motion), form, path)
+    put_report(replace(result, subject=motion), form, path)
     return 0

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import alternatives, file_format
 from compoundkin.cli.drive_options import (
     ARROWS,
@@ -20,8 +21,7 @@ from compoundkin.cli.drive_options import (
     pose_options,
     solve_motion_at,
 )
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
-from compoundkin.cli.shell import put, say
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_picture, to_file
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from compoundkin.view.sketch import Picture
 
 VIEWS = ("groups", "loops", "graph", "circle")
-# What belongs to the sketch only, by the names of the values of the options.
+# Options of the sketch alone.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels", "dimensions")
-# What is drawn instead of the sketch: options, and the names of their values.
+# Pictures instead of the sketch: the options and the names of their values.
 ASSEMBLED = ("configurations", "circuits")
 INSTEAD = {
     "structure": "view",
@@ -94,7 +94,7 @@ Examples:
 @LABELS
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
 @to_file(f"Write an {alternatives('picture')} file; else SVG to stdout.")
-def command(file: str, path: str | None, **asked: Any) -> None:
+def command(file: str, path: str | None, **options: Any) -> None:
     """Draw a mechanism in the conventions of textbooks, at one pose.
 
     A mechanism that cannot be solved is shown as drawn.
@@ -103,42 +103,37 @@ def command(file: str, path: str | None, **asked: Any) -> None:
 
     if path is not None:
         file_format("picture", path)
-    picture = _picture(decompose(load_mechanism(file)), asked)
-    if path is None:
-        put(picture.svg)
-    else:
-        picture.save(path)
-        say(f"Wrote {path}.")
+    put_picture(_picture(decompose(load_mechanism(file)), options), path)
 
 
-def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
-    """The picture asked for; raises InvalidInput for options that do not go together."""
+def _picture(structure: Structure, options: Mapping[str, Any]) -> Picture:
+    """Return the picture that the options describe. Raises InvalidInput for options that exclude each other."""
     from compoundkin.view.sketch import draw
 
-    _check_options(asked)
-    if asked["view"]:
-        return draw(structure, kind=asked["view"], size=asked["size"])
-    for kind in (kind for kind in ASSEMBLED if asked[kind]):
+    _check_options(options)
+    if options["view"]:
+        return draw(structure, kind=options["view"], size=options["size"])
+    for kind in (kind for kind in ASSEMBLED if options[kind]):
         return draw(
-            structure, _values(structure, asked["at"], kind), kind=kind, **_chosen_options(asked, "labels", "size")
+            structure, _values(structure, options["at"], kind), kind=kind, **_chosen_options(options, "labels", "size")
         )
-    shown, at = _motion(structure, asked)
-    words = _chosen_options(asked, "design", "size")
-    if has_force_picture(asked):
-        return force_picture(shown, at, asked, words)
-    if asked["polygon"]:
-        return draw(shown, at, kind="polygon", vectors=asked["polygon"], **words)
-    if asked["construction"] is not None:
-        return draw(shown, at, kind="construction", link=asked["construction"], **words)
-    return draw(shown, at, **words, **_chosen_options(asked, *OF_SKETCH))
+    motion, at = _motion(structure, options)
+    words = _chosen_options(options, "design", "size")
+    if has_force_picture(options):
+        return force_picture(motion, at, options, words)
+    if options["polygon"]:
+        return draw(motion, at, kind="polygon", vectors=options["polygon"], **words)
+    if options["construction"] is not None:
+        return draw(motion, at, kind="construction", link=options["construction"], **words)
+    return draw(motion, at, **words, **_chosen_options(options, *OF_SKETCH))
 
 
-def _chosen_options(asked: Mapping[str, Any], *names: str) -> dict[str, Any]:
-    return {name: asked[name] for name in names}
+def _chosen_options(options: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    return {name: options[name] for name in names}
 
 
 def _values(structure: Structure, given: Sequence[str], kind: str) -> dict[str, float] | None:
-    """Driver values: all of them for configurations, those that are named for circuits; None where none is given."""
+    """Return drivers' values: all for configurations, the given ones for circuits; None where none is given."""
     from compoundkin.cli import typed_values
 
     if not given:
@@ -148,30 +143,29 @@ def _values(structure: Structure, given: Sequence[str], kind: str) -> dict[str, 
     return found if kind == "configurations" else {name: value for name, value in found.items() if name in named}
 
 
-def _check_options(asked: Mapping[str, Any]) -> None:
-    from compoundkin.base.errors import InvalidInput, Problem
-
-    instead = [option for option, name in INSTEAD.items() if asked[name] not in (None, False)]
-    how = [option for option in ("statics", "holding") if asked[option]]
+def _check_options(options: Mapping[str, Any]) -> None:
+    """Raise InvalidInput for options that exclude each other."""
+    instead = [option for option, name in INSTEAD.items() if options[name] not in (None, False)]
+    how = [option for option in ("statics", "holding") if options[option]]
     if how and not any(option in FORCE_PICTURES for option in instead):
-        raise InvalidInput(Problem(f"--{how[0]}", "it tells how forces are found", "give --forces too"))
-    unfit = instead[1:] + [key for key in OF_SKETCH if key != "labels" and asked[key]]
-    if asked["view"]:
-        unfit += [key for key in ("at", "speeds", "modes") if asked[key]]
-    if any(asked[kind] for kind in ASSEMBLED):
-        unfit += [key for key in ("speeds", "modes", "design") if asked[key]]
+        raise InvalidInput(Problem(f"--{how[0]}", "it concerns forces", "give --forces too"))
+    unfit = instead[1:] + [key for key in OF_SKETCH if key != "labels" and options[key]]
+    if options["view"]:
+        unfit += [key for key in ("at", "speeds", "modes") if options[key]]
+    if any(options[kind] for kind in ASSEMBLED):
+        unfit += [key for key in ("speeds", "modes", "design") if options[key]]
     if instead and unfit:
         option = unfit[0][:-1] if unfit[0] in ("paths", "speeds", "modes") else unfit[0]
         raise InvalidInput(Problem(f"--{option}", f"it does not go with --{instead[0]}", "leave one of them out"))
 
 
-def _motion(structure: Structure, asked: Mapping[str, Any]) -> tuple[Motion | Structure, dict[str, float] | None]:
-    """The motion over the drivers' own ranges, and the pose in it; the structure where it cannot be solved."""
+def _motion(structure: Structure, options: Mapping[str, Any]) -> tuple[Motion | Structure, dict[str, float] | None]:
+    """Return the motion over the drivers' own ranges, or the structure if it cannot be solved, and the pose."""
     from compoundkin.cli import typed_values
     from compoundkin.view.sketch.picture_options import solved_over
 
-    at = typed_values.read_pose(structure, asked["at"]) if asked["at"] else None
+    at = typed_values.read_pose(structure, options["at"]) if options["at"] else None
     own = solved_over(structure.mechanism)
-    if own is None or not (asked["speeds"] or asked["modes"]):
+    if own is None or not (options["speeds"] or options["modes"]):
         return (structure if own is None else own), at
-    return solve_motion_at(own.structure, {}, {"accelerations": (), "outputs": (), "order": 2, **asked}), at
+    return solve_motion_at(own.structure, {}, {"accelerations": (), "outputs": (), "order": 2, **options}), at

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from compoundkin.cli.shell import say
+from compoundkin.base.errors import (
+    ChangePointWarning,
+    DrawnBeyondEnd,
+    FewDigits,
+    InvalidInput,
+    Problem,
+    UnassembledPoses,
+    suggestion,
+)
+from compoundkin.cli.shell import NOT_ASSEMBLED, say, working
 from compoundkin.model.attributes import ACCELERATION, VELOCITY
 
 if TYPE_CHECKING:
@@ -20,32 +29,35 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+def names_option(flag: str, name: str, metavar: str, text: str) -> Callable[[F], F]:
+    """Return an option of names, each given by itself or several with commas between them."""
+    return click.option(flag, name, multiple=True, metavar=metavar, callback=lambda _c, _p, given: split_names(given),
+                        help=text)  # fmt: skip
+
+
+def split_names(given: Sequence[str]) -> tuple[str, ...]:
+    """Return names given one by one or with commas between them.
+
+    >>> split_names(["G.x,G.y", "bar"])
+    ('G.x', 'G.y', 'bar')
+    """
+    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
+
+
 SPEED = click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
                      help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).")  # fmt: skip
-
-
 SECOND_RATE = click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
                            help="Its second rate in rad/s^2 or length/s^2.")  # fmt: skip
-
-
 MODE = click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
                     help="Assembly mode, +1 or -1, of the group with this link.")  # fmt: skip
-
-
 DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
                       help="Which one, where dimensions are arrays.")  # fmt: skip
-
-
 AT = click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
                   help="The pose: a driver's value, degrees or length; the first of its range "
                   "if left out.")  # fmt: skip
-
-
 ORDER = click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
                      "otherwise what the outputs need, at least 2.")  # fmt: skip
-
-
-# How the options are called on the command line, by the names of their values.
+# The options of a motion but for its order.
 OPTIONS: tuple[Any, ...] = (
     click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
     click.option("--from", "start", type=float, metavar="VALUE", help="First value of the only driver."),
@@ -59,18 +71,36 @@ OPTIONS: tuple[Any, ...] = (
     SPEED,
     SECOND_RATE,
     MODE,
-    click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: split_names(given),
-                 help="Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
+    names_option("--output", "outputs", "QUANTITY",
+                 "Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
 )  # fmt: skip
-
-
+# Options of sketches.
 VECTORS = (VELOCITY, ACCELERATION)
-
-
 ARROWS = click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
-
-
 LABELS = click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
+PATHS = names_option("--path", "paths", "POINT",
+                     "Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip
+# Options of forces.
+STATICS = click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
+HOLDING = click.option("--holding", default="", metavar="PAIR",
+                       help="A pair, pin or driver that holds in the drivers' place.")  # fmt: skip
+# Pictures of forces: the options and the names of their values.
+FORCE_PICTURES = {
+    "forces": "forces",
+    "free-bodies": "free_bodies",
+    "free-body": "free_body",
+    "force-polygons": "force_polygons",
+    "force-polygon": "force_polygon",
+}
+FORCE_OPTIONS: tuple[Any, ...] = (
+    click.option("--forces", is_flag=True, help="Draw the forces in pairs, of drivers, loads and inertia."),
+    click.option("--free-bodies", is_flag=True, help="Draw every link on its own with all that acts on it."),
+    click.option("--free-body", metavar="LINK", help="The same of one link."),
+    click.option("--force-polygons", is_flag=True, help="Draw the forces on every link head to tail."),
+    click.option("--force-polygon", metavar="LINK", help="The same of one link."),
+    STATICS,
+    HOLDING,
+)
 
 
 def drive_options(command: F) -> F:
@@ -79,63 +109,74 @@ def drive_options(command: F) -> F:
 
 
 def motion_options(command: F) -> F:
-    """Add the same options without the order, which follows from what is asked."""
-    for option in reversed(OPTIONS):
-        command = option(command)
-    return command
+    """Add the options of a motion without its order, which follows from the outputs."""
+    return _with_options(command, OPTIONS)
 
 
 def pose_options(command: F) -> F:
     """Add the options of a command that shows one pose: rates, modes, which design."""
-    for option in (DESIGN, MODE, SPEED):
+    return _with_options(command, (SPEED, MODE, DESIGN))
+
+
+def force_options(command: F) -> F:
+    """Add the options of pictures with forces."""
+    return _with_options(command, FORCE_OPTIONS)
+
+
+def _with_options(command: F, options: Sequence[Any]) -> F:
+    for option in reversed(options):
         command = option(command)
     return command
 
 
-def split_names(given: Sequence[str]) -> tuple[str, ...]:
-    """Return names given one by one or with commas between them.
-
-    >>> split_names(["G.x,G.y", "bar"])
-    ('G.x', 'G.y', 'bar')
-    """
-    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
-
-
-def solve_motion(structure: Structure, asked: Mapping[str, Any]) -> Motion:
-    """Return the motion that the options ask for. What cannot be assembled is said on stderr.
+def solve_motion(structure: Structure, options: Mapping[str, Any]) -> Motion:
+    """Return the motion that the options describe; a warning on stderr counts poses that cannot be assembled.
 
     Raises InvalidInput for options that do not fit the mechanism, and whatever `solve` raises.
     """
     from compoundkin.cli import typed_values
 
-    return solve_motion_at(structure, typed_values.read_driver_values(structure, asked), asked)
+    return solve_motion_at(structure, typed_values.read_driver_values(structure, options), options)
 
 
-def solve_motion_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
+def solve_motion_at(structure: Structure, driven: Mapping[str, Any], options: Mapping[str, Any]) -> Motion:
     """Solve as `solve_motion`, at these values of the drivers."""
-    from compoundkin.base.errors import ChangePointWarning, FewDigits, UnassembledPoses
     from compoundkin.cli import typed_values
-    from compoundkin.cli.shell import working
     from compoundkin.kinematics import solve
     from compoundkin.model.attributes import RATES
 
-    rates = {what: typed_values.read_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]}
-    modes = read_assembly_modes(structure, asked["modes"])
-    time = typed_values.read_times(asked.get("time"))
+    rates = {what: typed_values.read_rates(structure, f"--{what}", options[f"{what}s"]) for what in RATES[:2]}
+    modes = read_assembly_modes(structure, options["modes"])
+    time = typed_values.read_times(options.get("time"))
     with working("solving"), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UnassembledPoses)
         warnings.simplefilter("always", ChangePointWarning)
         warnings.simplefilter("always", FewDigits)
-        motion = solve(structure, driven, time=time, **rates, order=_order(structure, asked), modes=modes)
+        motion = solve(structure, driven, time=time, **rates, order=_order(structure, options), modes=modes)
     for warning in caught:
         _repeat_warning(warning, motion)
     return motion
 
 
-def read_assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
-    """Return assembly modes by link. Raises InvalidInput for links that are not there and for other signs."""
-    from compoundkin.base.errors import InvalidInput, Problem, suggestion
+def explain_gaps(motion: Motion) -> int:
+    """Write to stderr which poses cannot be assembled and why, and return the exit code: 0 where there are none."""
+    if motion.assembled.all():
+        return 0
+    from compoundkin.kinematics.gaps import gaps
+    from compoundkin.view.report.pose_sample import Sample
+    from compoundkin.view.report.verification_sections import MOST_GAPS, gap_sentence
 
+    found, sample = gaps(motion), Sample(motion)
+    for gap in found[:MOST_GAPS]:
+        design = f"Design {', '.join(map(str, gap.design))}: " if gap.design else ""
+        say(f"  {design}{gap_sentence(sample, gap)}")
+    if len(found) > MOST_GAPS:
+        say(f"  ... and {len(found) - MOST_GAPS:,} more.")
+    return NOT_ASSEMBLED
+
+
+def read_assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
+    """Return assembly modes by link. Raises InvalidInput for unknown links and other signs."""
     signs = {"+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
     found = {}
     for text in given:
@@ -150,15 +191,14 @@ def read_assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str,
     return found
 
 
-def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
-    """The order asked for, or the highest that an output needs; raises InvalidInput where they disagree."""
-    from compoundkin.base.errors import InvalidInput, Problem
+def _order(structure: Structure, options: Mapping[str, Any]) -> int:
+    """Return the order given, or the highest that an output needs. Raises InvalidInput where they disagree."""
     from compoundkin.model.attributes import derivative_order
 
-    order = asked["order"]
+    order = options["order"]
     if order is None:
-        return max([2, *(derivative_order(name) for name in asked["outputs"] or structure.mechanism.outputs)])
-    for name in asked["outputs"]:
+        return max([2, *(derivative_order(name) for name in options["outputs"] or structure.mechanism.outputs)])
+    for name in options["outputs"]:
         if derivative_order(name) > order:
             remedy = f"leave --order out, or give --order {derivative_order(name)}"
             raise InvalidInput(Problem(f"--order {order}", f"{name} needs a higher order", remedy))
@@ -166,9 +206,7 @@ def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
 
 
 def _repeat_warning(warning: warnings.WarningMessage, motion: Motion) -> None:
-    """The sentence on poses that cannot be assembled; any other warning as it is."""
-    from compoundkin.base.errors import ChangePointWarning, DrawnBeyondEnd, FewDigits, UnassembledPoses
-
+    """Write the number of poses that cannot be assembled, or any other warning as it is."""
     if issubclass(warning.category, UnassembledPoses):
         missing = int((motion.failed != 0).sum())
         say(f"Warning: {missing:,} of {motion.failed.size:,} poses cannot be assembled.")
@@ -178,26 +216,21 @@ def _repeat_warning(warning: warnings.WarningMessage, motion: Motion) -> None:
         warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
-PATHS = click.option("--path", "paths", multiple=True, metavar="POINT", callback=lambda _c, _p, given: split_names(given),
-                     help="Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip
-
-
 def read_estimates(unknowns: Mapping[str, bool], given: Sequence[str]) -> dict[str, float]:
-    """Return estimates of unknowns, radians or lengths. It is told of each whether it is an angle.
+    """Return estimates of unknowns in radians or lengths; `unknowns` holds whether each is an angle.
 
     >>> read_estimates({"rod": True, "s(stroke)": False}, ["s(stroke)=0.2"])
     {'s(stroke)': 0.2}
     """
     from math import radians
 
-    from compoundkin.base.errors import InvalidInput, Problem, suggestion
     from compoundkin.cli.typed_values import read_number
 
     found = {}
     for text in given:
         where, (name, _, value) = f"--estimate {text}", text.rpartition("=")
         if name not in unknowns:
-            what = f"there is no unknown {name!r}" if name else "it is not said of what"
+            what = f"there is no unknown {name!r}" if name else "the unknown is not named"
             raise InvalidInput(Problem(where, what, suggestion(name, list(unknowns)) if name else "write NAME=VALUE"))
         if name in found:
             raise InvalidInput(Problem(where, "the unknown is estimated twice", "leave one of them out"))
@@ -206,62 +239,26 @@ def read_estimates(unknowns: Mapping[str, bool], given: Sequence[str]) -> dict[s
     return found
 
 
-STATICS = click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
-
-
-HOLDING = click.option("--holding", default="", metavar="PAIR",
-                       help="A pair, pin or driver that holds in the drivers' place.")  # fmt: skip
-
-
-# What is drawn with forces: options, and the names of their values.
-FORCE_PICTURES = {
-    "forces": "forces",
-    "free-bodies": "free_bodies",
-    "free-body": "free_body",
-    "force-polygons": "force_polygons",
-    "force-polygon": "force_polygon",
-}
-
-
-_OPTIONS = (
-    click.option("--forces", is_flag=True, help="Draw the forces in pairs, of drivers, loads and inertia."),
-    click.option("--free-bodies", is_flag=True, help="Draw every link on its own with all that acts on it."),
-    click.option("--free-body", metavar="LINK", help="The same of one link."),
-    click.option("--force-polygons", is_flag=True, help="Draw the forces on every link head to tail."),
-    click.option("--force-polygon", metavar="LINK", help="The same of one link."),
-    STATICS,
-    HOLDING,
-)
-
-
-def force_options(command: F) -> F:
-    """Add the options of pictures with forces."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
-
-
-def has_force_picture(asked: Mapping[str, Any]) -> bool:
-    """Tell whether a picture with forces is asked for."""
-    return any(asked[name] for name in FORCE_PICTURES.values())
+def has_force_picture(options: Mapping[str, Any]) -> bool:
+    """Return whether an option of a picture with forces is given."""
+    return any(options[name] for name in FORCE_PICTURES.values())
 
 
 def force_picture(
-    shown: Motion | Structure, at: Mapping[str, float] | None, asked: Mapping[str, Any], words: Mapping[str, Any]
+    motion: Motion | Structure, at: Mapping[str, float] | None, options: Mapping[str, Any], words: Mapping[str, Any]
 ) -> Picture:
-    """Return the picture with forces that is asked for, at a pose."""
+    """Return the picture with forces that the options describe, at a pose."""
     from compoundkin.view.sketch import draw
 
-    forces = find_forces(shown, asked["statics"], asked["holding"])
-    if asked["forces"]:
-        return draw(forces, at, labels=asked["labels"], **words)
-    kind = "free-bodies" if asked["free_bodies"] or asked["free_body"] else "force-polygon"
-    return draw(forces, at, kind=kind, link=asked["free_body"] or asked["force_polygon"], **words)
+    forces = find_forces(motion, options["statics"], options["holding"])
+    if options["forces"]:
+        return draw(forces, at, labels=options["labels"], **words)
+    kind = "free-bodies" if options["free_bodies"] or options["free_body"] else "force-polygon"
+    return draw(forces, at, kind=kind, link=options["free_body"] or options["force_polygon"], **words)
 
 
 def find_forces(what: Motion | Structure, statics: bool, holding: str = "") -> Forces:
-    """Return the forces of a motion, or of a structure over its range."""
-    from compoundkin.cli.shell import working
+    """Return the forces of a motion, or of a structure over its drivers' ranges."""
     from compoundkin.dynamics.force_analysis import force_analysis
     from compoundkin.kinematics import Motion, solve
 

@@ -11,25 +11,26 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, NotDetermined, Problem
 from compoundkin.base.suffixes import SUFFIXES, alternatives, file_format, suffix_for, suffix_of
-from compoundkin.cli.shell import has_colour, put, report_width, say
+from compoundkin.cli.shell import NOT_ASSEMBLED, has_colour, put, report_width, say, working
 
 if TYPE_CHECKING:
     from compoundkin.files.exchange.exchanged import Imported
     from compoundkin.kinematics.table import Table
     from compoundkin.model.mechanism import Mechanism
+    from compoundkin.structure import Structure
     from compoundkin.view.page import Page
+    from compoundkin.view.plot import Plot
     from compoundkin.view.report import Report
-
-# Under this name a command's context tells whether all of a report is to be printed.
-WHOLE = "whole report"
-
+    from compoundkin.view.sketch import Picture
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-
-# What people and scripts call standard output where a file is wanted.
+FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
+# The key of a command's context under which --whole is stored.
+WHOLE = "whole report"
+# Names of standard output where a file is expected.
 STDOUT = ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
 
 
@@ -43,29 +44,20 @@ class Destination(click.ParamType[Any]):
         return None if value in STDOUT else str(value)
 
 
-TO_FILE = Destination()
-
-
 def to_file(text: str) -> Callable[[F], F]:
-    """Return the option of where results go.
-
-    Standard output by any of its names is as if it were left out.
-    """
-    return click.option("-o", "--to-file", "path", type=TO_FILE, metavar="PATH", help=text)
-
-
-FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
+    """Return the option for the file of results; any name of standard output means no file."""
+    return click.option("-o", "--to-file", "path", type=Destination(), metavar="PATH", help=text)
 
 
 def complete_name(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Return the names of the catalog that begin so."""
+    """Return the names of the catalog that complete a word."""
     from compoundkin.files.shipped_mechanisms import names
 
     return [CompletionItem(name) for name in names() if name.startswith(incomplete)]
 
 
 def complete_mechanism(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Return the names that begin so, and files."""
+    """Return the names of the catalog that complete a word, and files."""
     return [*complete_name(ctx, param, incomplete), CompletionItem(incomplete, type="file")]
 
 
@@ -75,25 +67,24 @@ def mechanism_argument(command: F) -> F:
 
 
 def load_mechanism(file: str) -> Mechanism:
-    """Load the mechanism of a file or of a name. Raises what is wrong with it.
+    """Return the mechanism of a file, of a name of the catalog, of another program's file, or of a link that holds one.
 
-    Files of other programs, and links that hold a mechanism, are files too.
+    Raises InvalidInput and its kinds for what cannot be read.
     """
-    pass  # joined
     from compoundkin.files import load
     from compoundkin.files.shipped_mechanisms import resolve
 
-    # unlike those of paths these answer for pasted texts, which are longer than names of files may be
+    # functions of os.path accept a pasted text longer than a file name may be
     if isdir(file):
         raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
     if is_foreign_file(file):
         return import_with_notes(file).mechanism
-    # what is there but is no regular file, such as a pipe, is for `load` to judge
+    # `load` judges what is no regular file, such as a pipe
     return load(file if exists(file) else resolve(file))
 
 
 def write_new(path: Path, content: bytes, force: bool) -> None:
-    """Write a file. Raises InvalidInput where there is one already, unless forced, or it cannot be written."""
+    """Write a file. Raises InvalidInput where it exists, unless forced, or cannot be written."""
     from compoundkin.files.atomic import write_atomically
 
     if path.exists() and not force:
@@ -104,40 +95,78 @@ def write_new(path: Path, content: bytes, force: bool) -> None:
 def report_options(command: F) -> F:
     """Add the options --format, -o and --whole to a command that prints a report."""
     here = "Write the report here instead of printing it."
-    file = click.option("-o", "--to-file", "path", type=TO_FILE, metavar="PATH", callback=_checked_path, help=here)
-    return _with_format(file(whole_option(command)))
+    file = click.option(
+        "-o", "--to-file", "path", type=Destination(), metavar="PATH", callback=_checked_path, help=here
+    )
+    return _with_format(file(_with_whole(command)))
 
 
 def report_or_table_options(command: F) -> F:
-    """Add the options of a report, or of a table instead.
-
-    The command judges the suffix itself.
-    """
+    """Add the options of a report or a table; the command decides by the suffix."""
     here = f"Write the report here, or a table: {alternatives('table')}."
-    return _with_format(to_file(here)(whole_option(command)))
+    return _with_format(to_file(here)(_with_whole(command)))
 
 
 def _with_format(command: F) -> F:
-    told = "Text unless PATH ends in .md, .json or .html."
-    # it is read first: a form that is given rules, whatever the suffix
-    return click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=told)(command)
+    text = "Text unless PATH ends in .md, .json or .html."
+    # read first, as it overrules the suffix
+    return click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=text)(command)
 
 
-def whole_option(command: F) -> F:
-    """Add the option --whole. It is kept in the context until a report is put."""
+def _with_whole(command: F) -> F:
+    """Add the option --whole, which the context holds until a report is printed."""
+
+    def store(context: click.Context, _: click.Parameter, value: bool) -> None:
+        context.meta[WHOLE] = value
+
     text = "Print all links and groups, where there are hundreds of them. Files have them all."
-    return click.option("--whole", is_flag=True, expose_value=False, callback=_store_whole, help=text)(command)
-
-
-def _store_whole(context: click.Context, param: click.Parameter, value: bool) -> None:
-    context.meta[WHOLE] = value
+    return click.option("--whole", is_flag=True, expose_value=False, callback=store, help=text)(command)
 
 
 def _checked_path(context: click.Context, _: click.Parameter, path: str | None) -> str | None:
-    """The path, once its suffix is known to tell a form; nothing is solved for one that does not."""
+    """Check that the suffix of a path determines a form before anything is solved."""
     if path is not None and context.params.get("form") is None:
         file_format("report", path)
     return path
+
+
+def solvable_structure(file: str, form: str | None, path: str | None) -> Structure:
+    """Return the structure of a file. One with faults is reported, and the command exits."""
+    from compoundkin.structure import decompose
+    from compoundkin.view.report import report
+
+    structure = decompose(load_mechanism(file))
+    if structure.faults:
+        put_report(report(structure), form, path)
+        raise click.exceptions.Exit(report_unsolvable(len(structure.faults)))
+    return structure
+
+
+def report_unsolvable(faults: int) -> int:
+    """Write to stderr that a structure cannot be solved, and return the exit code."""
+    say(f"The mechanism cannot be solved: {faults:,} fault{'' if faults == 1 else 's'}, explained in the report.")
+    return NotDetermined.exit_code
+
+
+def exit_code(report: Report) -> int:
+    """Return the exit code of a report: not zero where poses cannot be assembled."""
+    return NOT_ASSEMBLED if report.outcome.assembled < report.outcome.poses else 0
+
+
+def is_table(path: str | None, form: str | None, table: str = "", report: str = "") -> bool:
+    """Return whether a table is asked for instead of a report: by an option, or by a suffix that only tables have.
+
+    `table` and `report` name the given options that ask for either. Raises InvalidInput for options that exclude each
+    other and for unknown suffixes.
+    """
+    report = f"--format {form}" if form else report
+    only_table = path is not None and suffix_of(path) in SUFFIXES["table"].keys() - SUFFIXES["report"].keys()
+    tabulated = bool(table) or (only_table and not report)
+    if table and report:
+        raise InvalidInput(Problem(report, f"it does not go with {table}, which is a table", "leave one of them out"))
+    if path is not None and (tabulated or form is None):
+        file_format("table" if tabulated else "report", path)
+    return tabulated
 
 
 def put_report(report: Report, form: str | None, path: str | None) -> None:
@@ -167,10 +196,17 @@ def put_table(table: Table, path: str | None) -> None:
     say(f"Wrote {rows} of {len(table.columns)} columns to {path}.")
 
 
+def put_picture(picture: Picture | Plot, path: str | None) -> None:
+    """Print a picture as SVG, or write it to a file."""
+    if path is None:
+        put(picture.content("svg"))
+    else:
+        picture.save(path)
+        say(f"Wrote {path}.")
+
+
 def draw_page(report: Report) -> Page:
     """Return the page of a report."""
-    from compoundkin.cli.shell import working
-
     with working("drawing"):
         return report.page()
 
@@ -183,32 +219,31 @@ def _report_text(report: Report, form: str) -> str:
     return {"markdown": report.markdown, "json": report.json}[form]()
 
 
-# Of mechanisms with more pairs only the links are counted: finding out what holds what twice may take minutes.
+# Mechanisms with more pairs are not decomposed for a summary: finding redundant constraints may take minutes.
 _MOST_PAIRS = 100
 
 
 def is_foreign_file(source: str) -> bool:
-    """Tell whether a link or a file is to be read as another program's. Nothing is said of what is neither."""
+    """Return whether a source is a link that holds a mechanism, or a file of another program."""
     from compoundkin.files.exchange.content import content_of, is_itself
 
     if is_itself(source):
         return True
     if suffix_of(source) == suffix_for("mechanism", "toml") or not isfile(source):
         return False
-    from compoundkin.base.errors import InvalidInput
     from compoundkin.files.exchange.known_formats import readable_formats
     from compoundkin.files.exchange.recognition import recognised
 
     try:
         recognised(content_of(Path(source)), readable_formats())
     except InvalidInput:
-        # what is no file of ours either by its suffix is told what it is
+        # a suffix that is not ours either: the reader's error explains it
         return suffix_of(source) not in SUFFIXES["mechanism"]
     return True
 
 
 def import_with_notes(source: str, form: str = "") -> Imported:
-    """Return what a file, a link or standard input holds. What does not come across is said."""
+    """Return the mechanism of a file, a link or standard input; what is not converted is noted on stderr."""
     from compoundkin.files.exchange.conversion import read
 
     found = read(_standard_input() if source == "-" else source, form)
@@ -219,7 +254,7 @@ def import_with_notes(source: str, form: str = "") -> Imported:
 
 
 def _summary(found: Imported) -> str:
-    """What it is made of; where something keeps it from being solved, that."""
+    """Links, pairs, mobility and groups in a line, and what keeps the mechanism from being solved."""
     from compoundkin.structure import decompose
 
     if len(found.mechanism.pins) + len(found.mechanism.written_pairs) > _MOST_PAIRS:
@@ -227,14 +262,13 @@ def _summary(found: Imported) -> str:
     structure = decompose(found.mechanism)
     groups = ", ".join(group.name for group in structure.groups)
     faults = "; ".join(fault.text for fault in structure.faults)
-    told = f"groups {groups}" if groups else "no groups"
-    said = f"{found.mechanism.in_numbers}, mobility {structure.mobility.freedoms}, {told}"
-    return f"{said}; it cannot be solved as it is: {faults}" if faults else said
+    parts = f"groups {groups}" if groups else "no groups"
+    text = f"{found.mechanism.in_numbers}, mobility {structure.mobility.freedoms}, {parts}"
+    return f"{text}; it cannot be solved as it is: {faults}" if faults else text
 
 
 def _standard_input() -> str:
-    """Return what is piped in; a line end tells it from a path."""
-    from compoundkin.base.errors import InvalidInput, Problem
+    """Return the text of standard input; a line end distinguishes it from a path."""
     from compoundkin.files.exchange.content import MOST_BYTES, as_utf8
 
     raw = sys.stdin.buffer.read(MOST_BYTES + 1)

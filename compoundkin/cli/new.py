@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.cli.shell import say
 
 TEMPLATE = """\
@@ -77,7 +78,6 @@ Examples:
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def command(path: str, force: bool) -> int:
     """Write a commented mechanism file to PATH, to be changed into your own. It has a four-bar linkage."""
-    from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.base.suffixes import suffix_for, suffix_of
     from compoundkin.cli.file_options import write_new
 

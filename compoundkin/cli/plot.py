@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import alternatives, file_format
-from compoundkin.cli.drive_options import drive_options, solve_motion
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
-from compoundkin.cli.shell import put, say
-from compoundkin.cli.solve import explain_gaps
+from compoundkin.cli.drive_options import drive_options, explain_gaps, solve_motion
+from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_picture, to_file
+from compoundkin.cli.shell import working
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from compoundkin.view.plot import Plot
 
 
-# What says how a motion is solved, which circuits are not: options by the names of their values.
+# Options of how a motion is solved, which circuits do not have, by the names of their values.
 OF_MOTIONS = {
     "at": "--at",
     "step": "--step",
@@ -31,12 +31,12 @@ OF_MOTIONS = {
     "modes": "--mode",
 }
 
-# What is for plots of quantities over something only.
+# Options of plots of quantities over something.
 OF_QUANTITIES = {"against": "--against", "together": "--together", "others": "--with", "log": "--log",
                  "xlim": "--x-limits", "ylim": "--y-limits"}  # fmt: skip
 LOG = ("x", "y", "xy")
 
-# What is not drawn of a motion, and what to say instead.
+# Plots of no motion, and the options that they have instead.
 UNSOLVED = {
     "--circuits": "the range of the driver: --from and --to; where others stand: --drive NAME=VALUE",
     "--timing": "the range is that of the laws, or of the mechanism's times",
@@ -91,7 +91,7 @@ Examples:
 @click.option("--every", type=click.IntRange(1), metavar="POSES", help="Distance of the marks along curves in a plane.")
 @click.option("--title", help="Instead of the mechanism's own.")
 @to_file(f"Write a {alternatives('plot')} file; SVG on stdout if left out.")
-def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: Any) -> int:
+def command(file: str, quantities: tuple[str, ...], path: str | None, **options: Any) -> int:
     """Draw quantities of a motion. They go over its driver, over time, against each other, or as curves in the plane.
 
     QUANTITY is such as G.velocity, G.velocity.x, bar.angle, slot.rate; with --path a point. Without any, the file's own
@@ -103,78 +103,67 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
     if path is not None:
         file_format("plot", path)
     require_matplotlib()
-    _check_options(asked)
-    if "timing_chart" in asked["kinds"]:
-        _write_plot(_timing_plot(load_mechanism(file), (*quantities, *asked["outputs"]), asked), path)
+    _check_options(options)
+    if "timing_chart" in options["kinds"]:
+        put_picture(_timing_plot(load_mechanism(file), (*quantities, *options["outputs"]), options), path)
         return 0
-    structures = [decompose(load_mechanism(one)) for one in (file, *asked["others"])]
-    names = (*quantities, *asked["outputs"])
-    if "circuits" in asked["kinds"]:
-        _write_plot(_circuits_plot(structures[0], names, asked), path)
+    structures = [decompose(load_mechanism(one)) for one in (file, *options["others"])]
+    names = (*quantities, *options["outputs"])
+    if "circuits" in options["kinds"]:
+        put_picture(_circuits_plot(structures[0], names, options), path)
         return 0
-    order = _order(asked, names or structures[0].mechanism.outputs)
-    motions = [solve_motion(structure, {**asked, "outputs": (), "order": order}) for structure in structures]
-    _write_plot(_plot_of_motions(motions, names, {**asked, "files": (file, *asked["others"])}), path)
-    return next((explain_gaps(motion) for motion in motions if not motion.assembled.all()), 0)
+    order = _order(options, names or structures[0].mechanism.outputs)
+    motions = [solve_motion(structure, {**options, "outputs": (), "order": order}) for structure in structures]
+    put_picture(_plot_of_motions(motions, names, {**options, "files": (file, *options["others"])}), path)
+    return next((code for motion in motions if (code := explain_gaps(motion))), 0)
 
 
-def _write_plot(picture: Plot, path: str | None) -> None:
-    if path is None:
-        put(picture.content("svg"))
-    else:
-        picture.save(path)
-        say(f"Wrote {path}.")
-
-
-def _check_options(asked: Mapping[str, Any]) -> None:
+def _check_options(options: Mapping[str, Any]) -> None:
     """Raise InvalidInput for options that do not go together."""
-    from compoundkin.base.errors import InvalidInput, Problem
-
     called = {"paths": "path", "timing_chart": "timing", "bearing_loads": "bearing"}
-    kinds = [f"--{called.get(kind, kind)}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
+    kinds = [f"--{called.get(kind, kind)}" for kind in options["kinds"]] + ["--centrodes"] * bool(options["centrodes"])
     if len(kinds) > 1:
         raise InvalidInput(Problem(" ".join(kinds), "a plot is of one kind", "leave all but one out"))
     for key, option in OF_QUANTITIES.items():
-        if kinds and asked[key]:
+        if kinds and options[key]:
             raise InvalidInput(Problem(option, f"it does not go with {kinds[0]}", "leave one of them out"))
-    if asked["every"] and kinds in ([], ["--polar"], ["--circuits"], ["--timing"]):
+    if options["every"] and kinds in ([], ["--polar"], ["--circuits"], ["--timing"]):
         raise InvalidInput(Problem("--every", "it marks curves in a plane", "give --path, --phase or --hodograph too"))
-    if asked["driver"] and kinds != ["--circuits"]:
-        raise InvalidInput(Problem("--driver", "it tells which driver --circuits follow", "give --circuits too"))
-    unfit = [key for key in OF_MOTIONS if asked[key] not in (None, ())] if (kinds or [""])[0] in UNSOLVED else []
+    if options["driver"] and kinds != ["--circuits"]:
+        raise InvalidInput(Problem("--driver", "it selects the driver of --circuits", "give --circuits too"))
+    unfit = [key for key in OF_MOTIONS if options[key] not in (None, ())] if (kinds or [""])[0] in UNSOLVED else []
     if unfit:
         raise InvalidInput(Problem(OF_MOTIONS[unfit[0]], f"it does not go with {kinds[0]}", UNSOLVED[kinds[0]]))
 
 
-def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
-    """The order asked for, or what the quantities need: one more for the rates of phase plots, 2 at least."""
+def _order(options: Mapping[str, Any], names: tuple[str, ...]) -> int:
+    """Return the order given, or the one that the quantities need: at least 2, one more for rates of phase plots."""
     from compoundkin.model.attributes import HIGHEST_ORDER, derivative_order
 
-    if asked["order"] is not None:
-        return int(asked["order"])
-    against = () if asked["against"] is None else (asked["against"],)
+    if options["order"] is not None:
+        return int(options["order"])
+    against = () if options["against"] is None else (options["against"],)
     highest = max((derivative_order(name) for name in (*names, *against)), default=0)
-    return min(max(2, highest + ("phase" in asked["kinds"])), HIGHEST_ORDER)
+    return min(max(2, highest + ("phase" in options["kinds"])), HIGHEST_ORDER)
 
 
-def _plot_of_motions(motions: list[Motion], names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
-    from compoundkin.base.errors import InvalidInput, Problem
+def _plot_of_motions(motions: list[Motion], names: tuple[str, ...], options: Mapping[str, Any]) -> Plot:
     from compoundkin.view import plot
 
-    title, every, motion = asked["title"], asked["every"], motions[0]
-    if asked["centrodes"]:
+    title, every, motion = options["title"], options["every"], motions[0]
+    if options["centrodes"]:
         if names:
             raise InvalidInput(Problem(names[0], "centrodes take no quantities", "leave it out"))
-        return plot.centrodes(motion, *asked["centrodes"], every=every, title=title)
-    if not asked["kinds"]:
-        axes: dict[str, Any] = {key: asked[key] for key in ("against", "xlim", "ylim", "log", "title")}
-        called = asked["files"] if len(motions) > 1 else ()
-        return plot.plot(motions, *names, stacked=not asked["together"], designs=called, **axes)
-    kind = asked["kinds"][0]
+        return plot.centrodes(motion, *options["centrodes"], every=every, title=title)
+    if not options["kinds"]:
+        axes: dict[str, Any] = {key: options[key] for key in ("against", "xlim", "ylim", "log", "title")}
+        called = options["files"] if len(motions) > 1 else ()
+        return plot.plot(motions, *names, stacked=not options["together"], designs=called, **axes)
+    kind = options["kinds"][0]
     if kind == "phase":
         if not 1 <= len(names) <= 2:
-            told = f"there are {len(names)} quantities"
-            raise InvalidInput(Problem("--phase", told, "name one, or two to be drawn against each other"))
+            what = f"there are {len(names)} quantities"
+            raise InvalidInput(Problem("--phase", what, "name one, or two to be drawn against each other"))
         return plot.phase(motion, *names, every=every, title=title)
     if kind == "polar":
         return plot.polar(motion, *names, title=title)
@@ -183,33 +172,30 @@ def _plot_of_motions(motions: list[Motion], names: tuple[str, ...], asked: Mappi
     return picture
 
 
-def _timing_plot(mechanism: Mechanism, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
-    from compoundkin.base.errors import InvalidInput, Problem
+def _timing_plot(mechanism: Mechanism, names: tuple[str, ...], options: Mapping[str, Any]) -> Plot:
     from compoundkin.view import plot
 
     if names:
         raise InvalidInput(Problem(names[0], "a timing chart takes no quantities", "leave it out"))
-    ranges = {"--from": asked["start"], "--to": asked["stop"], "--drive": asked["drives"] or None}
+    ranges = {"--from": options["start"], "--to": options["stop"], "--drive": options["drives"] or None}
     for option in (option for option, given in ranges.items() if given is not None):
         raise InvalidInput(Problem(option, "it does not go with --timing", UNSOLVED["--timing"]))
-    return plot.timing_chart(mechanism, title=asked["title"])
+    return plot.timing_chart(mechanism, title=options["title"])
 
 
-def _circuits_plot(structure: Structure, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
-    from compoundkin.base.errors import InvalidInput, Problem
+def _circuits_plot(structure: Structure, names: tuple[str, ...], options: Mapping[str, Any]) -> Plot:
     from compoundkin.cli import typed_values
     from compoundkin.cli.circuits import driver_range
-    from compoundkin.cli.shell import working
     from compoundkin.view import plot
 
-    given = {text.rpartition("=")[0] for text in asked["drives"]}
+    given = {text.rpartition("=")[0] for text in options["drives"]}
     drivers = [drive.name for drive in structure.mechanism.drives]
-    if given & {"", asked["driver"] or "", *(drivers if len(drivers) == 1 else [])}:
-        told = "the driver that moves takes all its values"
-        raise InvalidInput(Problem("--drive", told, "for a part of them: --from and --to"))
-    fixed = {k: v for k, v in typed_values.read_pose(structure, asked["drives"], "--drive").items() if k in given}
-    between = driver_range(structure, asked["driver"], asked["start"], asked["stop"])
+    if given & {"", options["driver"] or "", *(drivers if len(drivers) == 1 else [])}:
+        what = "the driver that moves takes all its values"
+        raise InvalidInput(Problem("--drive", what, "for a part of them: --from and --to"))
+    fixed = {k: v for k, v in typed_values.read_pose(structure, options["drives"], "--drive").items() if k in given}
+    between = driver_range(structure, options["driver"], options["start"], options["stop"])
     with working("following all circuits"):
         return plot.circuits(
-            structure, *names, driver=asked["driver"], values=fixed, between=between, title=asked["title"]
+            structure, *names, driver=options["driver"], values=fixed, between=between, title=options["title"]
         )

@@ -8,10 +8,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from compoundkin.cli.drive_options import drive_options, solve_motion
-from compoundkin.cli.file_options import draw_page, load_mechanism, mechanism_argument, put_report, report_options
-from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
-from compoundkin.cli.structure import report_unsolvable
+from compoundkin.cli.drive_options import DESIGN, drive_options, solve_motion
+from compoundkin.cli.file_options import (
+    draw_page,
+    load_mechanism,
+    mechanism_argument,
+    put_report,
+    report_options,
+    report_unsolvable,
+)
+from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say, working
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -21,52 +27,11 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def reporting_options(command: F) -> F:
-    """Add the options that say what is reported of a mechanism."""
+    """Add the options that select what is reported."""
     centres = click.option(
         "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
     )
-    text = "Which one, where dimensions are arrays."
-    design = click.option("--design", default=0, show_default=True, metavar="INDEX", help=text)
-    return drive_options(design(centres(command)))
-
-
-def mechanism_report(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
-    """Return the report of a mechanism, and whether every asked pose is assembled."""
-    from dataclasses import replace
-
-    from compoundkin.cli.shell import working
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import report
-
-    structure, design = decompose(load_mechanism(file)), asked["design"]
-    if structure.faults or structure.mechanism.unplaced:
-        return report(structure), True
-    motion = solve_motion(structure, asked)
-    with working("checking and reporting"):
-        parts = [report(motion, asked["outputs"], design)]
-        if asked["centres"] is not None:
-            parts.append(_of_centres(structure, asked["centres"].split(","), design, asked))
-    closed = all(part.outcome.assembled == part.outcome.poses for part in parts)
-    return replace(parts[0], sections=tuple(section for part in parts for section in part.sections)), closed
-
-
-def exit_code(made: Report, closed: bool) -> int:
-    """Return the exit code of a report; what failed is said on stderr too."""
-    if (faults := made.section("faults")) is not None:
-        return report_unsolvable(len(faults.blocks) - 1)
-    if not made.outcome.passed and (made.outcome.assembled or not made.outcome.poses):
-        say("A check or a published number FAILED, or links touch; the report says which.")
-        return FAILED
-    return 0 if closed else NOT_ASSEMBLED
-
-
-def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:
-    """The instant centres at a pose, with the rates and modes of the motion."""
-    from compoundkin.cli.centres import solve_pose
-    from compoundkin.view.report.motion_report import centres_report
-
-    rates = {key: asked[key] for key in ("speeds", "modes")}
-    return centres_report(solve_pose(structure, at, rates, "--centres"), design)
+    return drive_options(DESIGN(centres(command)))
 
 
 @click.command(
@@ -82,15 +47,15 @@ Examples:
 @mechanism_argument
 @reporting_options
 @report_options
-def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
+def command(file: str, form: str | None, path: str | None, **options: Any) -> int:
     """Report a mechanism. It covers its structure, motion over the cycle, the checks, and published numbers.
 
     Angles are in degrees and lengths in the unit of the file. An .html file is a page with the moving sketch and plots.
     Exit code 3: some poses cannot be assembled; 4: a check failed or a published number was not reproduced.
     """
-    made, closed = mechanism_report(file, asked)
-    put_report(made, form, path)
-    return exit_code(made, closed)
+    report, assembled = mechanism_report(file, options)
+    put_report(report, form, path)
+    return report_exit_code(report, assembled)
 
 
 @click.command(
@@ -104,19 +69,57 @@ Examples:
 @mechanism_argument
 @reporting_options
 @click.option("-o", "--to-file", "path", metavar="PATH", help="Write the page here; else to a temporary file.")
-def open_command(file: str, path: str | None, **asked: Any) -> int:
+def open_command(file: str, path: str | None, **options: Any) -> int:
     """Show the report of a mechanism in the browser. It is one page with the moving sketch, plots and tables.
 
     The page is a file that needs no network and no server. Exit codes are those of `report`.
     """
     from compoundkin.view.page.report_page import open_in_browser, temporary_page
 
-    made, closed = mechanism_report(file, asked)
-    page = draw_page(made)
+    report, assembled = mechanism_report(file, options)
+    page = draw_page(report)
     target = Path(path) if path else temporary_page()
     page.save(target)
     if open_in_browser(target):
         say(f"Opened {target}.")
     else:
         say(f"No browser can be opened here; the page is in {target}.")
-    return exit_code(made, closed)
+    return report_exit_code(report, assembled)
+
+
+def mechanism_report(file: str, options: Mapping[str, Any]) -> tuple[Report, bool]:
+    """Return the report of a mechanism, and whether every pose is assembled."""
+    from dataclasses import replace
+
+    from compoundkin.structure import decompose
+    from compoundkin.view.report import report
+
+    structure, design = decompose(load_mechanism(file)), options["design"]
+    if structure.faults or structure.mechanism.unplaced:
+        return report(structure), True
+    motion = solve_motion(structure, options)
+    with working("checking and reporting"):
+        parts = [report(motion, options["outputs"], design)]
+        if options["centres"] is not None:
+            parts.append(_of_centres(structure, options["centres"].split(","), design, options))
+    assembled = all(part.outcome.assembled == part.outcome.poses for part in parts)
+    return replace(parts[0], sections=tuple(section for part in parts for section in part.sections)), assembled
+
+
+def report_exit_code(report: Report, assembled: bool) -> int:
+    """Write what failed to stderr, and return the exit code."""
+    if (faults := report.section("faults")) is not None:
+        return report_unsolvable(len(faults.blocks) - 1)
+    if not report.outcome.passed and (report.outcome.assembled or not report.outcome.poses):
+        say("A check or a published number FAILED, or links touch; the report says which.")
+        return FAILED
+    return 0 if assembled else NOT_ASSEMBLED
+
+
+def _of_centres(structure: Structure, at: Sequence[str], design: int, options: Mapping[str, Any]) -> Report:
+    """Return the instant centres at a pose, with the rates and modes of the motion."""
+    from compoundkin.cli.centres import solve_pose
+    from compoundkin.view.report.motion_report import centres_report
+
+    rates = {key: options[key] for key in ("speeds", "modes")}
+    return centres_report(solve_pose(structure, at, rates, "--centres"), design)

@@ -24,6 +24,6 @@ def command(kind: str) -> int:
     from compoundkin.files import schema
     from compoundkin.studies.study_document import study_schema
 
-    made = {"mechanism": schema, "study": study_schema}[kind]()
-    put(json.dumps(made, indent=2, ensure_ascii=False) + "\n")
+    result = {"mechanism": schema, "study": study_schema}[kind]()
+    put(json.dumps(result, indent=2, ensure_ascii=False) + "\n")
     return 0

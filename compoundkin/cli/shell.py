@@ -18,14 +18,12 @@ from compoundkin.base.display import escaped_text
 from compoundkin.base.errors import CompoundkinError, Problem
 
 BAD_INPUT, NOT_ASSEMBLED, FAILED = 2, 3, 4
-
-
 # As if ended by the signal: what shells expect of a filter whose reader has gone, and of Ctrl-C.
 READER_GONE, INTERRUPTED = 141, 130
-
-
 # Reports are made for 80 columns; a wider terminal is used up to where lines become hard to read.
 WIDTH, WIDEST, NARROWEST = 80, 100, 60
+# Work of fewer seconds needs no message; a message is renewed this often.
+PATIENCE, REFRESH = 2.0, 0.5
 
 
 class NotWritten(CompoundkinError):
@@ -33,7 +31,7 @@ class NotWritten(CompoundkinError):
 
 
 def guarded(run: Callable[[], Any]) -> NoReturn:
-    """Run a command and exit. Exit with its code, or with a message and the code of what went wrong."""
+    """Run a command and exit with its code, or with a message and the code of the error."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, _ended)
     try:
@@ -58,27 +56,27 @@ def guarded(run: Callable[[], Any]) -> NoReturn:
 
 
 def _ended(number: int, _: object) -> NoReturn:
-    """End as when Ctrl-C is pressed, so that what is half done is cleaned up."""
+    """Exit as after Ctrl-C, so that unfinished work is cleaned up."""
     sys.exit(128 + number)
 
 
 def _warned(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Say a warning in a line of its own: where it was given is of no use to who typed the command."""
+    """Print a warning in a line of its own; its place in the code is of no use on the command line."""
     say(f"Warning: {message}")
 
 
 def put(text: str | bytes) -> None:
-    """Write results to stdout; where nobody reads them any more, end quietly."""
+    """Write results to stdout; exit without a message where the reader has gone."""
     if sys.stdout is None:
         raise NotWritten(Problem("", "standard output is closed", "write to a file with -o"))
     if isinstance(text, bytes) and b"\0" in text and sys.stdout.isatty():
-        raise NotWritten(Problem("", "this is no text for a terminal", "write to a file with -o"))
+        raise NotWritten(Problem("", "binary data cannot be shown on a terminal", "write to a file with -o"))
     try:
         # a name that the terminal's encoding lacks becomes a question mark, not an accident
         rest = memoryview(text if isinstance(text, bytes) else text.encode(sys.stdout.encoding or "utf-8", "replace"))
         sys.stdout.flush()
         while rest:
-            # unbuffered streams (python -u) may take a part only, and say so by nothing but the count
+            # unbuffered streams (python -u) may take a part only, which only the returned count shows
             rest = rest[sys.stdout.buffer.write(rest) :]
         sys.stdout.flush()
     except BrokenPipeError:
@@ -90,12 +88,12 @@ def put(text: str | bytes) -> None:
 
 
 def say(text: str) -> None:
-    """Write a diagnostic line to stderr, if it takes one."""
+    """Write a line to stderr, if it is open."""
     _write_to_stderr(lambda: click.echo(text, err=True))
 
 
 def _write_to_stderr(write: Callable[[], None]) -> None:
-    """Write to stderr. Where it is closed or takes no more, the results and the exit code are what is left."""
+    """Write to stderr; where it is closed or full, results and exit code must do."""
     if sys.stderr is not None:
         try:
             write()
@@ -104,7 +102,7 @@ def _write_to_stderr(write: Callable[[], None]) -> None:
 
 
 def show_error(error: CompoundkinError) -> None:
-    """Tell an error on stderr: what, where, and how to mend it."""
+    """Write an error to stderr: what, where, and the remedy."""
     several = len(error.problems) > 1 or error.heading
     if several:
         say(f"{_red('Error:')} {error.heading or f'{len(error.problems)} problems'}")
@@ -118,7 +116,7 @@ def show_error(error: CompoundkinError) -> None:
 
 
 def has_colour(stream: Any) -> bool:
-    """Tell whether a stream takes colour: a terminal that is not told otherwise (https://no-color.org).
+    """Return whether a stream takes colour: a terminal without NO_COLOR (https://no-color.org) that is not dumb.
 
     >>> import io
     >>> has_colour(io.StringIO())
@@ -133,7 +131,7 @@ def has_colour(stream: Any) -> bool:
 
 
 def report_width() -> int:
-    """Return the width of a report. It is the terminal's within bounds, 80 where there is none."""
+    """Return the width of a report in columns: the terminal's within bounds, 80 without one."""
     if sys.stdout is None or not sys.stdout.isatty():
         return WIDTH
     import shutil  # late: few commands need it
@@ -146,20 +144,13 @@ def _red(text: str) -> str:
 
 
 def _discard_stream(stream: Any) -> None:
-    """Keep the interpreter from complaining about a stream once more when it ends."""
+    """Keep the interpreter from flushing a broken stream when it exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-# Work done before this many seconds needs no comment.
-PATIENCE = 2.0
-
-
-REFRESH = 0.5
 
 
 @contextmanager
 def working(what: str, patience: float = PATIENCE) -> Iterator[None]:
-    """Say what is being done and for how long, on stderr. It says so once it takes long and if that is a terminal.
+    """Show on stderr what is being done and for how long, once it takes long and if stderr is a terminal.
 
     >>> with working("counting"):
     ...     sum(range(3))
@@ -179,7 +170,7 @@ def working(what: str, patience: float = PATIENCE) -> Iterator[None]:
 
 
 def _is_terminal() -> bool:
-    """Tell whether somebody sees stderr: it is a terminal, and not closed."""
+    """Return whether stderr is an open terminal."""
     return sys.stderr is not None and sys.stderr.isatty()
 
 
@@ -199,22 +190,22 @@ def _show_elapsed(what: str, patience: float, done: threading.Event) -> None:
 
 @contextmanager
 def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function to be told how much is done, of how much. It shows a bar on stderr as `working` shows a line.
+    """Yield a function of the number done and the total, which shows a bar on stderr as `working` shows a line.
 
     >>> with counting("drawing", "frames") as progress:
     ...     progress(1, 2)
     """
-    start, shown = monotonic(), ExitStack()
+    start, stack = monotonic(), ExitStack()
     update: list[Callable[[int, int], None]] = []
 
-    def told(done: int, total: int) -> None:
+    def report(done: int, total: int) -> None:
         if not update and monotonic() - start >= patience and _is_terminal():
-            update.append(shown.enter_context(_progress_bar(what, things)))
-        for tell in update:
-            tell(done, total)
+            update.append(stack.enter_context(_progress_bar(what, things)))
+        for show in update:
+            show(done, total)
 
-    with shown:
-        yield told
+    with stack:
+        yield report
 
 
 @contextmanager

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import SUFFIXES, Kind, alternatives, file_format, suffix_of
-from compoundkin.cli.drive_options import read_assembly_modes, split_names
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, to_file
-from compoundkin.cli.shell import say
-from compoundkin.cli.structure import report_unsolvable
+from compoundkin.cli.drive_options import MODE, names_option, read_assembly_modes
+from compoundkin.cli.file_options import mechanism_argument, put_report, solvable_structure, to_file
+from compoundkin.cli.shell import counting, say, working
 from compoundkin.model.attributes import SPEED
 
 if TYPE_CHECKING:
     from compoundkin.dynamics.simulation.simulation import Simulation
     from compoundkin.structure import Structure
 
-# What a simulation is written as, by the suffix of the file; the first that has it.
+# What a simulation is written as: the first kind that has the suffix of the file.
 KINDS: tuple[Kind, ...] = ("table", "animation", "page", "report")
-# After the name of a driver whose speed is given.
+# The ending of a driver's name before a given speed.
 OF_SPEED = f".{SPEED}"
 
 
@@ -40,27 +40,22 @@ Examples:
               help="Where a driver begins, degrees or length; NAME.speed=5 or 300rpm its speed, zero if left out. "
               "Without any it rests as drawn.")  # fmt: skip
 @click.option("--hold", "held", multiple=True, metavar="NAME=VALUE", help="A driver that is held there.")
-@click.option("--step", type=float, metavar="SECONDS", help="From one pose told to the next.")
+@click.option("--step", type=float, metavar="SECONDS", help="From one pose of the results to the next.")
 @click.option("--tolerance", type=float, default=1e-10, show_default=True, help="The error of a step.")
-@click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN", help="Assembly mode, +1 or -1.")
-@click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: split_names(given),
-              help="Columns of a table, such as G.velocity, A.force; repeat it, or write commas.")  # fmt: skip
+@MODE
+@names_option("--output", "outputs", "QUANTITY",
+              "Columns of a table, such as G.velocity, A.force; repeat it, or write commas.")  # fmt: skip
 @to_file(f"Write {alternatives('table')}, {alternatives('animation')}, or the report as .html, .md or .txt.")
-def command(file: str, path: str | None, outputs: tuple[str, ...], **asked: Any) -> int:
+def command(file: str, path: str | None, outputs: tuple[str, ...], **options: Any) -> int:
     """Let a mechanism go under its masses and loads, and follow it in time.
 
-    Its drivers do not drive: their coordinates are found. Those with a law keep it. The energy error is told.
+    Its drivers do not drive: their coordinates are computed. Those with a law follow it. The energy error is reported.
     """
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import report
     from compoundkin.view.report.motion_report import simulation_report
 
     kind = output_kind(path)
-    structure = decompose(load_mechanism(file))
-    if structure.faults:
-        put_report(report(structure), None, None)
-        return report_unsolvable(len(structure.faults))
-    found = run_simulation(structure, asked)
+    structure = solvable_structure(file, None, None)
+    found = run_simulation(structure, options)
     if path is None or kind == "report":
         put_report(simulation_report(found), None, path)
     else:
@@ -69,7 +64,7 @@ def command(file: str, path: str | None, outputs: tuple[str, ...], **asked: Any)
 
 
 def output_kind(path: str | None) -> Kind:
-    """Return as what a path is written. Raises InvalidInput for a suffix of none."""
+    """Return the kind of file of a path. Raises InvalidInput for an unknown suffix."""
     if path is None:
         return "report"
     found = next((kind for kind in KINDS if suffix_of(path) in SUFFIXES[kind]), KINDS[0])
@@ -77,22 +72,23 @@ def output_kind(path: str | None) -> Kind:
     return found
 
 
-def run_simulation(structure: Structure, asked: dict[str, Any]) -> Simulation:
-    """Return the simulation that the options ask for."""
+def run_simulation(structure: Structure, options: dict[str, Any]) -> Simulation:
+    """Return the simulation that the options describe."""
     import numpy as np
 
-    from compoundkin.cli.shell import counting
     from compoundkin.dynamics.simulation.forward_dynamics import simulate
     from compoundkin.files.written_quantities import spaced
 
-    step, until = asked["step"], asked["until"]
+    step, until = options["step"], options["until"]
     times = None if step is None else spaced(0.0, until, step)
-    held = {name: _value(structure, "--hold", f"{name}={value}") for name, value in map(_name_and_value, asked["held"])}
-    modes = read_assembly_modes(structure, asked["modes"]) or None
+    held = {
+        name: _value(structure, "--hold", f"{name}={value}") for name, value in map(_name_and_value, options["held"])
+    }
+    modes = read_assembly_modes(structure, options["modes"]) or None
     with counting("simulating", "steps") as progress, np.errstate(all="ignore"):
         return simulate(
-            structure.mechanism, start=_start(structure, asked["start"]), until=until, prescribed=held or None,
-            times=times, tolerance=asked["tolerance"], modes=modes, progress=progress,
+            structure.mechanism, start=_start(structure, options["start"]), until=until, prescribed=held or None,
+            times=times, tolerance=options["tolerance"], modes=modes, progress=progress,
         )  # fmt: skip
 
 
@@ -102,7 +98,7 @@ def _name_and_value(text: str) -> tuple[str, str]:
 
 
 def _value(structure: Structure, option: str, text: str) -> float:
-    """The value of one driver, radians or a length."""
+    """Return the value of one driver, radians or a length."""
     from compoundkin.cli.typed_values import read_pose
 
     name = _name_and_value(text)[0] or structure.mechanism.drives[0].name
@@ -110,8 +106,7 @@ def _value(structure: Structure, option: str, text: str) -> float:
 
 
 def _start(structure: Structure, given: Sequence[str]) -> dict[str, Any] | None:
-    """Where drivers begin and how fast. Raises InvalidInput for a speed without a value."""
-    from compoundkin.base.errors import InvalidInput, Problem
+    """Return initial values and speeds of drivers. Raises InvalidInput for a speed without a value."""
     from compoundkin.cli.typed_values import read_rates
 
     fast = [text for text in given if _name_and_value(text)[0].endswith(OF_SPEED)]
@@ -122,14 +117,13 @@ def _start(structure: Structure, given: Sequence[str]) -> dict[str, Any] | None:
     speeds = read_rates(structure, "--speed", named) or {}
     for name in speeds:
         if name not in values:
-            what = f"where {name} begins is not told"
+            what = f"the initial value of {name} is missing"
             raise InvalidInput(Problem(f"--start {name}{OF_SPEED}", what, f"give --start {name}=VALUE too"))
     return {name: (value, speeds.get(name, 0.0)) for name, value in values.items()} or None
 
 
 def write_simulation(found: Simulation, kind: Kind, path: str, outputs: Sequence[str]) -> None:
     """Write a simulation as a table, an animation or a page."""
-    from compoundkin.cli.shell import counting, working
     from compoundkin.files import save
 
     if kind == "table":

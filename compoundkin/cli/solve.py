@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives, file_format
-from compoundkin.cli.drive_options import drive_options, solve_motion, split_names
+from compoundkin.cli.drive_options import drive_options, explain_gaps, names_option, solve_motion
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_table, to_file
-from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
+from compoundkin.cli.shell import put, say
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -29,16 +29,14 @@ Examples:
 @mechanism_argument
 @drive_options
 @to_file(f"Write a table here: {alternatives('table')}.")
-@click.option(
+@names_option(
     "--forward",
     "forward",
-    multiple=True,
-    metavar="LINK",
-    callback=lambda _c, _p, given: split_names(given),
-    help="Write the mechanism driven at these links by the laws found, LINK/ON against another than the frame. "
-    "Repeat it, or write commas.",
+    "LINK",
+    "Write the mechanism driven at these links by the laws of this motion, LINK/ON relative to a link other than the "
+    "frame. Repeat it, or write commas.",
 )
-def command(file: str, path: str | None, forward: tuple[str, ...], **asked: Any) -> int:
+def command(file: str, path: str | None, forward: tuple[str, ...], **options: Any) -> int:
     """Solve a mechanism and print a table (CSV). It has a row per pose, a column per quantity.
 
     Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
@@ -49,41 +47,25 @@ def command(file: str, path: str | None, forward: tuple[str, ...], **asked: Any)
     if path is not None:
         file_format("mechanism" if forward else "table", path)
     structure = decompose(load_mechanism(file))
-    motion = solve_motion(structure, asked)
+    motion = solve_motion(structure, options)
     if forward:
         return _write_driven(motion, forward, path)
-    put_table(motion.table(*asked["outputs"]), path)
-    return 0 if motion.assembled.all() else explain_gaps(motion)
+    put_table(motion.table(*options["outputs"]), path)
+    return explain_gaps(motion)
 
 
 def _write_driven(motion: Motion, links: tuple[str, ...], path: str | None) -> int:
-    """Write the mechanism driven at some links by the laws found for a motion, or print it as TOML."""
+    """Write the mechanism driven at some links by laws taken from a motion, or print it as TOML."""
     from compoundkin.files import dumps, save
     from compoundkin.model.elements import Drive
     from compoundkin.model.geometry import FRAME
     from compoundkin.synthesis.inversion import driven_forward
 
     ends = [(link, on or FRAME) for link, _, on in (name.partition("/") for name in links)]
-    made = driven_forward(motion, *(Drive(link, link, on) for link, on in ends))
+    result = driven_forward(motion, *(Drive(link, link, on) for link, on in ends))
     if path is None:
-        put(dumps(made).encode("utf-8"))
+        put(dumps(result).encode("utf-8"))
     else:
-        save(made, path)
-        say(f"Wrote {made.title!r}, driven at {', '.join(links)}, to {path}.")
+        save(result, path)
+        say(f"Wrote {result.title!r}, driven at {', '.join(links)}, to {path}.")
     return 0
-
-
-def explain_gaps(motion: Motion) -> int:
-    """Say which poses cannot be assembled, and why; the exit code for that."""
-    from compoundkin.kinematics.gaps import gaps
-    from compoundkin.view.report.pose_sample import Sample
-    from compoundkin.view.report.verification_sections import MOST_GAPS, gap_sentence
-
-    found = gaps(motion)
-    sample = Sample(motion)
-    for gap in found[:MOST_GAPS]:
-        design = f"Design {', '.join(map(str, gap.design))}: " if gap.design else ""
-        say(f"  {design}{gap_sentence(sample, gap)}")
-    if len(found) > MOST_GAPS:
-        say(f"  ... and {len(found) - MOST_GAPS:,} more.")
-    return NOT_ASSEMBLED

@@ -6,16 +6,23 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.drive_options import AT, SECOND_RATE, pose_options
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_report, report_options
-from compoundkin.cli.shell import NOT_ASSEMBLED, say
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.cli.drive_options import AT, SECOND_RATE, pose_options, read_estimates, solve_motion_at
+from compoundkin.cli.file_options import (
+    load_mechanism,
+    mechanism_argument,
+    put_report,
+    report_options,
+    report_unsolvable,
+)
+from compoundkin.cli.shell import NOT_ASSEMBLED, working
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
     from compoundkin.structure import Structure
     from compoundkin.view.report.report_data import Section
 
-# The options that ask for more of the equations, by the names of their values; all but the first ask for a pose.
+# Options of the equations, by the names of their values; all but the first need a pose.
 OF_EQUATIONS = {
     "order": "--order",
     "at": "--at",
@@ -51,86 +58,81 @@ Examples:
 @click.option("--estimate", "estimates", multiple=True, metavar="NAME=VALUE",
               help="Where they start: an unknown, degrees or length; as drawn if left out.")  # fmt: skip
 @report_options
-def command(file: str, alternatives: bool, equations: bool, form: str | None, path: str | None, **asked: Any) -> int:
+def command(file: str, alternatives: bool, equations: bool, form: str | None, path: str | None, **options: Any) -> int:
     """Take a mechanism apart: links, pairs, mobility, loops, Assur groups in solving order.
 
-    Nothing is solved, unless equations are asked for in numbers. What keeps a mechanism from being solved is named with
+    Nothing is solved, unless equations are evaluated at a pose. What keeps a mechanism from being solved is listed with
     its remedies (exit code 2); exit code 3: the pose cannot be assembled.
     """
     from dataclasses import replace
 
-    from compoundkin.cli.shell import working
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
-    _check_options(equations, asked)
+    _check_options(equations, options)
     with working("taking the mechanism apart"):
         structure = decompose(load_mechanism(file))
-        made = report(structure)
+        result = report(structure)
     code = 0
     if equations:
-        sections, code = _equations(structure, asked)
-        made = replace(made, sections=(*made.sections, *sections))
+        sections, code = _equations(structure, options)
+        result = replace(result, sections=(*result.sections, *sections))
     if alternatives:
         from compoundkin.view.report.atlas_sections import alternatives_section
 
-        made = replace(made, sections=(*made.sections, alternatives_section(structure)))
-    put_report(made, form, path)
+        result = replace(result, sections=(*result.sections, alternatives_section(structure)))
+    put_report(result, form, path)
     return report_unsolvable(len(structure.faults)) if structure.faults else code
 
 
-def _check_options(equations: bool, asked: dict[str, Any]) -> None:
+def _check_options(equations: bool, options: dict[str, Any]) -> None:
     """Raise InvalidInput for options that need others."""
-    from compoundkin.base.errors import InvalidInput, Problem
-
-    given = [option for name, option in OF_EQUATIONS.items() if asked[name]]
+    given = [option for name, option in OF_EQUATIONS.items() if options[name]]
     if given and not equations:
         raise InvalidInput(Problem(given[0], "it goes with the equations", "add --equations"))
     for name, order in (("speeds", 1), ("accelerations", 2)):
-        if asked[name] and asked["order"] < order:
-            what = f"without --order {order} there is nothing that it changes"
+        if options[name] and options["order"] < order:
+            what = f"without --order {order} it has no effect"
             raise InvalidInput(Problem(OF_EQUATIONS[name], what, f"add --order {order}"))
-    if asked["estimates"] and not asked["newton"]:
-        raise InvalidInput(Problem("--estimate", "nothing is estimated without iterations", "add --newton"))
+    if options["estimates"] and not options["newton"]:
+        raise InvalidInput(Problem("--estimate", "estimates are for Newton's iterations", "add --newton"))
 
 
-def _equations(structure: Structure, asked: dict[str, Any]) -> tuple[list[Section], int]:
-    """The sections of the equations, and the exit code."""
+def _equations(structure: Structure, options: dict[str, Any]) -> tuple[list[Section], int]:
+    """Return the sections of the equations, and the exit code."""
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.view.report.equations_sections import constants_section, equations_section, rates_section
 
-    found = loop_equations(structure, asked["order"])
+    found = loop_equations(structure, options["order"])
     sections = [equations_section(found), constants_section(found), rates_section(found) if found.rates else None]
     code = 0
-    if any(asked[name] for name in OF_EQUATIONS if name != "order") and not structure.faults:
+    if any(options[name] for name in OF_EQUATIONS if name != "order") and not structure.faults:
         from compoundkin.view.report.equations_sections import pose_section
 
-        driven, motion = _solved(structure, asked)
-        sections.append(pose_section(found, motion, asked["design"]))
-        if asked["newton"]:
-            sections.append(_newton(structure, driven, motion, asked["estimates"]))
+        driven, motion = _solved(structure, options)
+        sections.append(pose_section(found, motion, options["design"]))
+        if options["newton"]:
+            sections.append(_newton(structure, driven, motion, options["estimates"]))
         code = 0 if motion.assembled.all() else NOT_ASSEMBLED
     return [section for section in sections if section is not None], code
 
 
-def _solved(structure: Structure, asked: dict[str, Any]) -> tuple[dict[str, float], Motion]:
-    """The values of the drivers at the pose, and the motion there."""
+def _solved(structure: Structure, options: dict[str, Any]) -> tuple[dict[str, float], Motion]:
+    """Return the drivers' values at the pose, and the motion there."""
     from compoundkin.cli import typed_values
-    from compoundkin.cli.drive_options import solve_motion_at
 
-    driven = typed_values.read_pose(structure, asked["at"])
-    rest = {name: asked[name] for name in ("speeds", "accelerations", "modes")}
-    return driven, solve_motion_at(structure, driven, {**rest, "outputs": (), "order": max(asked["order"], 1)})
+    driven = typed_values.read_pose(structure, options["at"])
+    rest = {name: options[name] for name in ("speeds", "accelerations", "modes")}
+    return driven, solve_motion_at(structure, driven, {**rest, "outputs": (), "order": max(options["order"], 1)})
 
 
 def _newton(structure: Structure, driven: dict[str, float], motion: Motion, estimates: tuple[str, ...]) -> Section:
-    """The section on Newton's iterations."""
+    """Return the section on Newton's iterations."""
     import numpy as np
 
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.analysis.equations.newton_iterations import newton_iterations
     from compoundkin.analysis.equations.reduced_system import pose_values
-    from compoundkin.cli.drive_options import read_estimates
     from compoundkin.view.report.equations_sections import newton_section
 
     unknowns = loop_equations(structure).system.unknowns
@@ -140,12 +142,3 @@ def _newton(structure: Structure, driven: dict[str, float], motion: Motion, esti
     found = newton_iterations(structure, values, start)
     mechanism = structure.mechanism
     return newton_section(found, mechanism.unit, mechanism.geometry.size, solved if motion.assembled.all() else None)
-
-
-def report_unsolvable(faults: int) -> int:
-    """Say on stderr that a structure cannot be solved; the exit code for that."""
-    from compoundkin.base.errors import NotDetermined
-    from compoundkin.view.report.wording import counted
-
-    say(f"The mechanism cannot be solved: {counted(faults, 'fault')}, explained in the report.")
-    return NotDetermined.exit_code

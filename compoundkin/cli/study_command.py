@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.drive_options import split_names
+from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.cli.drive_options import names_option
 from compoundkin.cli.file_options import FORMATS, put_report
-from compoundkin.cli.shell import NOT_ASSEMBLED, say
+from compoundkin.cli.shell import NOT_ASSEMBLED, counting, say
 
 if TYPE_CHECKING:
     from compoundkin.studies.study import Study
@@ -30,10 +31,8 @@ Examples:
               "are there already, the others are computed.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), metavar="NUMBER", help="Processes instead of threads of one.")
 @click.option("--chunk", type=click.IntRange(1), metavar="ROWS", help="How many designs a worker computes at a time.")
-@click.option("--least", multiple=True, metavar="NAME", callback=lambda _c, _p, given: split_names(given),
-              help="List the designs with the least of a figure. Repeat it, or write commas.")  # fmt: skip
-@click.option("--greatest", multiple=True, metavar="NAME", callback=lambda _c, _p, given: split_names(given),
-              help="The same with the greatest.")  # fmt: skip
+@names_option("--least", "least", "NAME", "List the designs with the least of a figure. Repeat it, or write commas.")
+@names_option("--greatest", "greatest", "NAME", "The same with the greatest.")
 @click.option("--best", type=click.IntRange(1), default=1, show_default=True, metavar="NUMBER", help="So many of each.")
 @click.option("--format", "form", type=click.Choice(FORMATS), help="Of the summary.")
 def command(
@@ -47,7 +46,7 @@ def command(
 ) -> int:
     """Compute the designs of a study file, and sum up their figures.
 
-    Ctrl-C stops it: with -o what is written stays, and the same command goes on from there.
+    Ctrl-C stops it: with -o the rows computed remain, and the same command goes on from there.
     Exit code 3: no design assembles.
     """
     from compoundkin.studies.study import load_study
@@ -62,39 +61,31 @@ def command(
     return 0 if found.assembled.any() else NOT_ASSEMBLED
 
 
-def check_figures(studied: Study, asked: tuple[str, ...]) -> None:
-    """Raise UnknownName where the best are asked of what is no figure."""
-    from compoundkin.base.errors import Problem, UnknownName, suggestion
-
+def check_figures(studied: Study, names: tuple[str, ...]) -> None:
+    """Raise UnknownName for names that are no figures of a study."""
     known = [one.name for one in studied.columns if one.is_figure]
-    for name in asked:
+    for name in names:
         if name not in known:
             raise UnknownName(Problem(name, "it is no figure or dimension of the study", suggestion(name, known)))
 
 
 def run_with_progress(studied: Study, folder: str | None, workers: int | None, chunk: int | None) -> StudyResult:
-    """Run a study with a line of progress.
-
-    On Ctrl-C it is said what stays.
-    """
+    """Run a study with a line of progress; after Ctrl-C a message names the folder of the rows computed."""
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
     from signal import SIG_IGN, SIGINT, signal
-
-    from compoundkin.cli.shell import counting
 
     where: dict[str, Any] = {} if folder is None else {"folder": folder}
     with ExitStack() as stack:
         on = None
         if workers is not None:
-            # processes that are made anew do not inherit locks that threads of this one hold
-            # and Ctrl-C is heard by this one alone, which lets them finish what they are at
-            hear = signal, (SIGINT, SIG_IGN)
-            on = stack.enter_context(ProcessPoolExecutor(workers, get_context("spawn"), *hear))
+            # spawned processes do not inherit locks of this one's threads; they leave Ctrl-C to this process
+            ignore = signal, (SIGINT, SIG_IGN)
+            on = stack.enter_context(ProcessPoolExecutor(workers, get_context("spawn"), *ignore))
         progress = stack.enter_context(counting("computing", "designs"))
         try:
             return studied.run(**where, on=on, chunk=chunk, progress=progress)
         except KeyboardInterrupt:
             if folder is not None:
-                say(f"What is written stays in {folder}: run it again to go on.")
+                say(f"The rows computed are in {folder}: run it again to go on.")
             raise

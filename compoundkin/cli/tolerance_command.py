@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_of
-from compoundkin.cli.drive_options import motion_options
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.cli.drive_options import explain_gaps, motion_options, read_assembly_modes, split_names
 from compoundkin.cli.file_options import (
-    load_mechanism,
+    is_table,
     mechanism_argument,
     put_report,
     put_table,
     report_or_table_options,
+    solvable_structure,
 )
-from compoundkin.cli.solve import explain_gaps
-from compoundkin.cli.structure import report_unsolvable
+from compoundkin.cli.shell import working
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.table import Table
@@ -48,96 +48,71 @@ Examples:
 @click.option("--bands", is_flag=True, help="A table with the bands of the outputs at every pose.")
 @motion_options
 @report_or_table_options
-def command(file: str, bands: bool, form: str | None, path: str | None, **asked: Any) -> int:
-    """Tell what tolerances do to the outputs: worst case, deviation, who contributes what.
+def command(file: str, bands: bool, form: str | None, path: str | None, **options: Any) -> int:
+    """Report what tolerances do to the outputs: worst case, deviation, contributions.
 
-    It is found from exact slopes, and beside it in random designs. -o PATH.csv is the table of contributions, with
+    They follow from exact slopes, percentiles from random designs. -o PATH.csv is the table of contributions, with
     --bands that of all poses.
     """
-    from compoundkin.structure import decompose
-    from compoundkin.view.report import report
     from compoundkin.view.report.study_reports import tolerance_report
 
-    tabulated = is_tolerance_table(bands, form, path)
-    structure = decompose(load_mechanism(file))
-    if structure.faults:
-        put_report(report(structure), form, path if not tabulated else None)
-        return report_unsolvable(len(structure.faults))
-    found = analyse(structure, asked)
+    tabulated = is_table(path, form, "--bands" if bands else "")
+    structure = solvable_structure(file, form, path if not tabulated else None)
+    found = analyse(structure, options)
     if tabulated:
         put_table(bands_table(found) if bands else found.table(), path)
     else:
         put_report(tolerance_report(found), form, path)
-    return 0 if found.motion.assembled.all() else explain_gaps(found.motion)
-
-
-def is_tolerance_table(bands: bool, form: str | None, path: str | None) -> bool:
-    """Tell whether a table is asked for. Raises InvalidInput for suffixes that do not fit."""
-    from compoundkin.base.errors import InvalidInput, Problem
-
-    if bands and form is not None:
-        raise InvalidInput(Problem(f"--format {form}", "--bands is a table", "leave one of them out"))
-    only_table = path is not None and suffix_of(path) in SUFFIXES["table"].keys() - SUFFIXES["report"].keys()
-    tabulated = bands or (only_table and form is None)
-    if path is not None and form is None:
-        file_format("table" if tabulated else "report", path)
-    return tabulated
+    return explain_gaps(found.motion)
 
 
 def bands_table(found: ToleranceAnalysis) -> Table:
-    """Return the bands of all outputs that have some."""
-    from compoundkin.base.errors import InvalidInput, Problem
-
+    """Return the bands of all outputs. Raises InvalidInput where no output has a value at every pose."""
     if not any(one.is_course for one in found.values()):
         what = "the outputs are figures of the whole motion"
         raise InvalidInput(Problem("--bands", what, "name an output that has a value at every pose"))
     return found.bands()
 
 
-def analyse(structure: Structure, asked: dict[str, Any]) -> ToleranceAnalysis:
-    """Return the analysis that the options ask for."""
-    from compoundkin.base.errors import InvalidInput, Problem
+def analyse(structure: Structure, options: dict[str, Any]) -> ToleranceAnalysis:
+    """Return the analysis that the options describe."""
     from compoundkin.cli import typed_values
-    from compoundkin.cli.drive_options import read_assembly_modes
-    from compoundkin.cli.shell import working
     from compoundkin.model.attributes import RATES
     from compoundkin.studies.tolerances.tolerance import tolerance
 
-    outputs = asked["outputs"] or structure.mechanism.outputs
+    outputs = options["outputs"] or structure.mechanism.outputs
     if not outputs:
         raise InvalidInput(Problem("--output", "no output is named", "such as --output G.x.stroke"))
-    given = dict(read_errors(structure, "--tolerance", asked["tolerances"]))
+    given = dict(read_errors(structure, "--tolerance", options["tolerances"]))
+    values, time = typed_values.read_driver_values(structure, options) or None, typed_values.read_times(options["time"])
     rates: dict[str, Any] = {
-        what: typed_values.read_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]
+        rate: typed_values.read_rates(structure, f"--{rate}", options[f"{rate}s"]) for rate in RATES[:2]
     }
-    with working("finding what tolerances do"):
+    with working("computing tolerances"):
         return tolerance(
             structure.mechanism, given, outputs,
-            clearance=dict(read_errors(structure, "--clearance", asked["clearances"])),
-            values=typed_values.read_driver_values(structure, asked) or None, time=typed_values.read_times(asked["time"]),
-            modes=read_assembly_modes(structure, asked["modes"]) or None, **rates,
-            **{word: asked[word] for word in ("count", "seed", "sigmas")},
+            clearance=dict(read_errors(structure, "--clearance", options["clearances"])),
+            values=values, time=time, modes=read_assembly_modes(structure, options["modes"]) or None, **rates,
+            **{word: options[word] for word in ("count", "seed", "sigmas")},
         )  # fmt: skip
 
 
 def read_errors(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, Any]]:
-    """Yield names with their errors, radians or lengths: one number, or two. Raises InvalidInput."""
+    """Yield names with their errors in radians or lengths, one number or two. Raises InvalidInput."""
     from math import radians
 
-    from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.cli.drive_options import split_names
     from compoundkin.cli.typed_values import read_number
     from compoundkin.studies.study_document import is_angle_dimension
 
-    told = set()
+    read = set()
     for text in split_names(given):
         name, _, value = text.rpartition("=")
         where, parts = f"{option} {text}", value.split(":")
         if not name or len(parts) > 2:
             raise InvalidInput(Problem(where, "this is no tolerance", HOW))
-        if name in told:
+        if name in read:
             raise InvalidInput(Problem(where, f"{name} is given twice", "leave one of them out"))
-        told.add(name)
+        read.add(name)
         is_angle = is_angle_dimension(structure.mechanism, structure.driven_angles, name)
         numbers = [read_number(part, where, HOW) for part in parts]
         numbers = [radians(one) if is_angle else one for one in numbers]

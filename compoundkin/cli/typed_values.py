@@ -19,7 +19,7 @@ from compoundkin.structure import Structure
 HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
 TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
 
-# By the option, and whether the driver drives an angle.
+# By the option, and whether the driver's coordinate is an angle.
 HOW_RATES = {
     ("--speed", True): "write 10 (rad/s), 300rpm or 90deg (a second)",
     ("--speed", False): "write 0.5 (lengths a second)",
@@ -28,18 +28,18 @@ HOW_RATES = {
 }
 
 
-def read_driver_values(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
-    """Return the values asked for, by driver, as `solve` takes them: radians or lengths.
+def read_driver_values(structure: Structure, options: Mapping[str, Any]) -> dict[str, Number]:
+    """Return the values given by driver, as `solve` takes them: radians or lengths.
 
-    Raises InvalidInput for what cannot be read, for drivers that do not exist, and for ranges of different lengths.
+    Raises InvalidInput for invalid numbers, for unknown drivers, and for ranges of different lengths.
     """
     texts: dict[str, str] = {}
-    for name, text in _by_driver(structure, "--drive", asked["drives"]):
+    for name, text in _by_driver(structure, "--drive", options["drives"]):
         if name in texts:
             raise _invalid(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
         texts[name] = text
     shown = {name: read_numbers(text, f"--drive {name}") for name, text in texts.items()}
-    span = {key: asked[key] for key in ("at", "start", "stop", "step") if asked[key] is not None}
+    span = {key: options[key] for key in ("at", "start", "stop", "step") if options[key] is not None}
     if span:
         name = _only_driver(structure, "--at" if "at" in span else "--from, --to, --step")
         if name in shown:
@@ -49,13 +49,13 @@ def read_driver_values(structure: Structure, asked: Mapping[str, Any]) -> dict[s
     for name, v in ((name, v) for name, v in shown.items() if angles[name]):
         warn_of_radians(f"--drive {name}", v[0], written_end(texts.get(name, span.get("at")), span.get("stop", v[-1])))
     values = {name: np.deg2rad(v) if angles[name] else v for name, v in shown.items()}
-    if asked.get("time") is None:
+    if options.get("time") is None:
         _of_one_length(structure, values)
     return {name: float(v[0]) if len(v) == 1 else v for name, v in values.items()}
 
 
 def read_times(text: str | None) -> Number | None:
-    """Return the times asked for, in seconds; None where none are.
+    """Return the times given, in seconds; None where none are.
 
     >>> read_times("0:1:0.5").tolist()
     [0.0, 0.5, 1.0]
@@ -64,7 +64,7 @@ def read_times(text: str | None) -> Number | None:
 
 
 def read_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
-    """Return one value of every driver, radians or lengths. It is the one given, else the first of its own range."""
+    """Return one value of every driver, radians or lengths: the one given, else the first of its own range."""
     names = [drive.name for drive in structure.mechanism.drives]
     if len(names) > 1 and any("=" not in text for text in given):
         raise _invalid(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
@@ -78,13 +78,13 @@ def read_pose(structure: Structure, given: Sequence[str], option: str = "--at") 
 
 
 def _first(structure: Structure) -> dict[str, float]:
-    """The first value of every driver that has values, a law, or turns a full turn."""
+    """Return the first value of every driver that has values, a law, or a full turn."""
     own = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
     return {name: float(first_entry(values)) for name, values in own.items() if values is not None}
 
 
 def _values_of(structure: Structure, drive: Drive) -> Number | None:
-    """The values of a driver that it has itself; one that has a law, its first one."""
+    """Return a driver's own values; of a law the first one."""
     if drive.law is not None:
         time = structure.mechanism.time
         first = float(first_entry(time)) if time is not None else (drive.law.span or (0.0,))[0]
@@ -148,16 +148,16 @@ def read_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[
 
 def _rate(text: str, option: str, name: str, is_angle: bool) -> float:
     where, how = f"{option} {name}", HOW_RATES[option, is_angle]
-    said = worded_rate(text)
-    if said is text:
+    worded = worded_rate(text)
+    if worded is text:
         return read_number(text, where, how)
     if not is_angle:
-        raise _invalid(where, f"{text!r} is no rate of a length", "write lengths a second")
-    return float(rate(said, where, True))
+        raise _invalid(where, f"{text!r} is not a valid speed", "write lengths a second")
+    return float(rate(worded, where, True))
 
 
 def _by_driver(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Pairs of a driver and what is given for it; the only driver need not be named."""
+    """Yield drivers with the texts of their values; the only driver need not be named."""
     drivers = [drive.name for drive in structure.mechanism.drives]
     for text in given:
         name, equals, value = text.rpartition("=")
@@ -168,7 +168,7 @@ def _by_driver(structure: Structure, option: str, given: Sequence[str]) -> Itera
 
 
 def _only_driver(structure: Structure, where: str, how: str = "name one with --drive: ") -> str:
-    """The only driver; else it is said how to name one of several."""
+    """Return the only driver. Raises InvalidInput where there is none, or several."""
     drivers = [drive.name for drive in structure.mechanism.drives]
     if len(drivers) == 1:
         return drivers[0]
@@ -178,7 +178,7 @@ def _only_driver(structure: Structure, where: str, how: str = "name one with --d
 
 
 def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number:
-    """The values of --at, or those of --from, --to and --step; what is left out is the driver's own."""
+    """Return the values of --at, or of --from, --to and --step, completed from the driver's own range."""
     if "at" in span:
         if len(span) > 1:
             raise _invalid("--at", "it does not go with --from, --to and --step", "leave one of them out")
@@ -193,7 +193,7 @@ def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number
 
 
 def _own_range(structure: Structure, name: str) -> tuple[float, float, float] | None:
-    """First value, last value and step of a driver as the mechanism has it; the first design's of several."""
+    """Return first value, last value and step of a driver's own range, in the first design."""
     drive = next(drive for drive in structure.mechanism.drives if drive.name == name)
     is_angle = structure.driven_angles[name]
     if drive.values is None and not is_angle:
@@ -210,8 +210,8 @@ def _of_one_length(structure: Structure, values: Mapping[str, Number]) -> None:
     full = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
     lengths = {name: np.shape(v)[-1] for name, v in {**full, **values}.items() if v is not None and np.shape(v)}
     if len({length for length in lengths.values() if length > 1}) > 1:
-        told = ", ".join(f"{name} has {length}" for name, length in lengths.items())
-        what = f"the drivers have different numbers of values: {told}"
+        counts = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        what = f"the drivers have different numbers of values: {counts}"
         raise _invalid("--drive", what, "give every driver as many values, or a single one")
 
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import alternatives, file_format
 from compoundkin.cli.drive_options import MODE, read_assembly_modes
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
-from compoundkin.cli.shell import put, say
+from compoundkin.cli.shell import put, say, working
 
 if TYPE_CHECKING:
     from compoundkin.configurations.workspace import Workspace
@@ -38,33 +39,31 @@ Examples:
 @click.option("--title", help="Instead of the mechanism's own.")
 @to_file(f"Draw it in a {alternatives('plot')} file.")
 def command(
-    file: str, point: str, drives: tuple[str, ...], modes: tuple[str, ...], path: str | None, **asked: Any
+    file: str, point: str, drives: tuple[str, ...], modes: tuple[str, ...], path: str | None, **options: Any
 ) -> int:
-    """Print the region that a point reaches by two or three drivers. Its area, extent and boundary are told.
+    """Print the region that a point reaches by two or three drivers: its area, extent and boundary.
 
-    With -o it is drawn: the outer and inner boundary, the curves where the drivers lose their hold, the mechanism.
+    With -o it is drawn: the outer and inner boundary, singular curves, the mechanism.
     """
     from math import radians
 
-    from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.cli.shell import working
     from compoundkin.configurations.workspace import EVERY_MODE, workspace
     from compoundkin.kinematics.solution import solving_order_of
 
     if path is not None:
         file_format("plot", path)
-    if asked["every_mode"] and modes:
+    if options["every_mode"] and modes:
         raise InvalidInput(Problem("--every-mode", "--mode says which one", "leave one of them out"))
     structure = solving_order_of(load_mechanism(file)).structure
-    chosen = EVERY_MODE if asked["every_mode"] else read_assembly_modes(structure, modes)
-    turned = None if asked["orientation"] is None else radians(asked["orientation"])
+    chosen = EVERY_MODE if options["every_mode"] else read_assembly_modes(structure, modes)
+    turned = None if options["orientation"] is None else radians(options["orientation"])
     ranges = driver_ranges(structure, drives)
-    with working("looking for the workspace"):
-        found = workspace(structure, point, ranges, orientation=turned, modes=chosen, cells=asked["cells"])
+    with working("computing the workspace"):
+        found = workspace(structure, point, ranges, orientation=turned, modes=chosen, cells=options["cells"])
     put("\n".join(workspace_lines(found)) + "\n")
     if path is not None:
         with working("drawing"):
-            found.plot(colour="condition" if asked["condition"] else None, title=asked["title"]).save(path)
+            found.plot(colour="condition" if options["condition"] else None, title=options["title"]).save(path)
         say(f"Wrote {path}.")
     return 0
 
@@ -73,7 +72,6 @@ def driver_ranges(structure: Structure, given: Sequence[str]) -> dict[str, tuple
     """Return the ranges of drivers, radians or lengths, from texts NAME=LOW:HIGH."""
     from math import radians
 
-    from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.cli import typed_values
 
     found = {}
@@ -89,7 +87,7 @@ def driver_ranges(structure: Structure, given: Sequence[str]) -> dict[str, tuple
 
 
 def workspace_lines(found: Workspace) -> list[str]:
-    """Return what is told of a workspace, line by line."""
+    """Return the description of a workspace, line by line."""
     from math import degrees
 
     import numpy as np

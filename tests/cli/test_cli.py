@@ -438,7 +438,7 @@ def test_new_writes_toml_only(run: Run) -> None:
         (("solve", "excavator-arm", "--at", "2"), "there are 3 drivers"),
         (("solve", "excavator-arm", "--speed", "2"), "there are 3 drivers"),
         (("solve", "excavator-arm", "--drive", "boom-cylinder=2.6:2.7:0.05"), "boom-cylinder has 3, stick"),
-        (("solve", "hydraulic-crane", "--speed", "5rpm"), "is no rate of a length"),
+        (("solve", "hydraulic-crane", "--speed", "5rpm"), "is not a valid speed"),
         (("catalog", "show", "nothing-like-it"), "the catalog has no such mechanism"),
         (("catalog", "nothing"), "No such command"),
         (("completion", "tcsh"), "'tcsh' is not one of"),

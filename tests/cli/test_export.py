@@ -57,7 +57,7 @@ def test_a_mode_is_kept() -> None:
 
 
 @pytest.mark.parametrize(("args", "told"), [
-    (["six-bar"], "it is not said as what"),
+    (["six-bar"], "the form is missing"),
     (["six-bar", "-o", "a.f90"], "give --to, or end it in .c, "),
     (["six-bar", "--to", "fortran"], "'fortran' is not one of"),
     (["six-bar", "--to", "c", "--output", "Q.position"], "Q.position"),

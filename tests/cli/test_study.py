@@ -128,7 +128,7 @@ def test_ctrl_c_leaves_what_is_written_and_a_second_run_goes_on() -> None:
     assert (stopped.returncode, out) == (130, b"")
     # what click writes before it tells of Ctrl-C is an empty line
     assert told.decode().split("\n") == [
-        "What is written stays in rows: run it again to go on.",
+        "The rows computed are in rows: run it again to go on.",
         "",
         "Interrupted.",
         "",

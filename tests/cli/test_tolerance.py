@@ -74,7 +74,10 @@ def test_angles_are_in_degrees() -> None:
         (["--tolerance", "crank.D=0.1", "--output", "H.x"], "'H'"),
         (["--output", "G.x"], "nothing has a tolerance"),
         (["--tolerance", "crank.D=0.1", "--output", "G.x.stroke", "--bands"], "every pose"),
-        (["--tolerance", "crank.D=0.1", "--output", "G.x", "--bands", "--format", "json"], "--bands is a table"),
+        (
+            ["--tolerance", "crank.D=0.1", "--output", "G.x", "--bands", "--format", "json"],
+            "it does not go with --bands, which is a table",
+        ),
         (["--tolerance", "crank.D=0.1", "--output", "G.x", "-o", "a.png"], ".png"),
     ],
 )
