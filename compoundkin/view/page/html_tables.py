@@ -140,7 +140,8 @@ def _heading(column: Column, shown: HtmlTable) -> str:
     button = element("button", f"{name}{unit}", type="button", class_="sort")
     kind = "number" if column.is_number else None
     quantity = f' data-quantity="{safe(column.name)}"' if shown.poses else ""
-    return f'<th scope="col"{class_attribute(kind)}{_links_attribute(shown.names.about(column.name))}{quantity}>{button}</th>'
+    links = _links_attribute(shown.names.about(column.name))
+    return f'<th scope="col"{class_attribute(kind)}{links}{quantity}>{button}</th>'
 
 
 def _body(shown: HtmlTable) -> str:

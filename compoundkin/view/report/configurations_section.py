@@ -32,7 +32,7 @@ MISSING = "The numbers of configurations and of branches do not agree everywhere
 
 def configurations_report(found: Configurations) -> Report:
     """Return all configurations at the first driver values."""
-    outcome = Outcome(True, 1, int(any(True for _ in found)), 0, 0, 0, 0)
+    outcome = Outcome(True, 1, int(any(True for _ in found)))
     return Report(found.structure.mechanism.title, (configurations_section(found),), outcome, found.structure)
 
 

@@ -34,12 +34,11 @@ from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outc
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.structure_sections import about_section, counted_sections
 from compoundkin.view.report.verification_sections import (
-    Comparison,
     comparisons,
     finding_sentence,
     findings_table,
-    gaps_of,
-    gaps_section,
+    gaps_sections,
+    outcome_of,
     published_section,
     with_force_findings,
 )
@@ -71,7 +70,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
     # outputs first: an unknown name is said before the slower work is done
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
-    check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
+    check, published = verify(motion), comparisons(structure)
     forces, touching = loaded_forces(motion), interference_or_error(motion)
     outcome = with_interference(outcome_of(motion, with_force_findings(check, forces), published), touching)
     sections = (
@@ -85,26 +84,11 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
         performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
         *([forces_section(forces)] if forces is not None else []),
         *interference_sections(sample, touching),
-        *([gaps_section(sample, missing)] if missing else []),
+        *gaps_sections(sample),
         checks_section(sample, check),
         *([published_section(structure, published)] if published else []),
     )
     return Report(motion.mechanism.title, sections, outcome, motion, outputs)
-
-
-def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] = ()) -> Outcome:
-    """Tell what the findings and the published numbers come to."""
-    return Outcome(
-        solvable=True,
-        poses=int(motion.failed.size),
-        assembled=int(np.count_nonzero(motion.failed == 0)),
-        checks=len(check.findings),
-        checks_passed=len(check.findings) - len(check.failed),
-        published=len(published),
-        published_passed=sum(one.passed for one in published),
-        verified=check.passed,
-        verdict=check.verdict,
-    )
 
 
 def motion_summary(outcome: Outcome) -> str:
@@ -142,7 +126,7 @@ def check_report(motion: Motion) -> Report:
     about = Section("about", "", (Paragraph(motion_summary(outcome)),))
     of_forces = force_checks_sections(sample, forces)
     outlines = interference_sections(sample, touching)
-    sections = (about, *_gap_sections(sample), checks_section(sample, check), *of_forces, *outlines, *failed)
+    sections = (about, *gaps_sections(sample), checks_section(sample, check), *of_forces, *outlines, *failed)
     return Report(motion.mechanism.title, sections, outcome, motion)
 
 
@@ -152,15 +136,9 @@ def centres_report(motion: Motion, design: int = 0) -> Report:
     motion = motion_of_design(motion, design)
     sample = Sample(motion)
     closed = bool(sample.assembled[0])
-    # in a report on the whole motion the section of its own gaps has that key
-    missing = tuple(replace(section, key="centres") for section in _gap_sections(sample))
-    sections = centres_sections(sample) if closed else missing
-    return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed), 0, 0, 0, 0), motion)
-
-
-def _gap_sections(sample: Sample) -> tuple[Section, ...]:
-    missing = gaps_of(sample)
-    return (gaps_section(sample, missing),) if missing else ()
+    # in a report on the whole motion the section of its own gaps has the key "gaps"
+    sections = centres_sections(sample) if closed else gaps_sections(sample, "centres")
+    return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed)), motion)
 
 
 # An energy below this part of the greatest is rounding.
@@ -170,9 +148,7 @@ ENERGY_ROUNDING = 1e-12
 def simulation_report(found: Simulation) -> Report:
     """Report a simulation."""
     motion = found.motion
-    poses, closed = motion.failed.size, np.count_nonzero(motion.failed == 0)
-    outcome = Outcome(True, int(poses), int(closed), 0, 0, 0, 0)
-    return Report(motion.mechanism.title, (_simulation_section(found),), outcome, motion)
+    return Report(motion.mechanism.title, (_simulation_section(found),), outcome_of(motion), motion)
 
 
 def whole_simulation_report(found: Simulation, outputs: Sequence[str] = ()) -> Report:

@@ -284,8 +284,9 @@ def _cam_blocks(
     sample: Sample, cam: CamAnalysis, measures: Sequence[Measure], found: Sequence[Extremes]
 ) -> Iterator[Block]:
     pair = cam.pair
-    said = f"{pair.name}: {cam.follower} {FOLLOWER_MOTIONS[cam.oscillates]}. The pressure angle is customarily not greater than"
-    yield Paragraph(f"{said} {number_text(float(np.rad2deg(cam.allowed_pressure_angle)))} degrees.")
+    allowed = number_text(float(np.rad2deg(cam.allowed_pressure_angle)))
+    follower = f"{pair.name}: {cam.follower} {FOLLOWER_MOTIONS[cam.oscillates]}"
+    yield Paragraph(f"{follower}. The pressure angle is customarily not greater than {allowed} degrees.")
     rows = tuple(_cam_row(sample, one, found[k] if found else None) for k, one in enumerate(measures))
     yield TableBlock(_table_columns(sample, "quantity"), rows, keys=1)
     yield from (Alert(warning) for warning in cam.warnings)

@@ -27,11 +27,27 @@ from compoundkin.model.attributes import (
     VELOCITY_RATIO,
 )
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.verification_sections import gaps_of, gaps_section
-from compoundkin.view.report.wording import counted, listed
-from compoundkin.view.report.wording import number_text as written
+from compoundkin.view.report.verification_sections import gaps_sections, outcome_of
+from compoundkin.view.report.wording import counted, listed, number_text
+
+# Only dwells of at least this part of the motion are listed: a slider-crank stays at its dead points for less.
+LONG = 0.125
+# Only straight stretches and arcs of at least this part of the path's extent are listed.
+STRETCH = 0.25
+# An arc of a greater radius, in parts of the path's extent, counts as straight.
+FLAT = 10.0
+# So many loops of four links are listed.
+MOST_LOOPS = 12
+# Keys of rows, by which a live page computes them again: dead points, and ranges of a quantity.
+DEAD, VARIED = "dead", "varied"
+NO_LIMIT = "no limit"
+# Places are exact to about this part of the greatest: nearer to zero they are shown as zero.
+NEARLY = 1e-8
+# A value below this part of the other end is zero, and ends nearer than this are one: lengths of vectors that pass
+# zero have the accuracy of their places.
+FLOOR = 1e-8
 
 
 def characteristics_report(
@@ -51,50 +67,26 @@ def characteristics_report(
         motion, chosen, 0, DWELL if dwell is None else dwell, STRAIGHT if straight is None else straight
     )
     section = performance_section(sample, figures, (), named)
-    found = gaps_of(sample)
-    missing = (gaps_section(sample, found),) if found else ()
-    closed = int(np.count_nonzero(motion.failed == 0))
-    outcome = Outcome(True, int(motion.failed.size), closed, 0, 0, 0, 0)
-    return Report(motion.mechanism.title, (*missing, section), outcome, motion, outputs)
-
-
-# Dwells are told that take at least this part of the motion: a slider-crank stays at its dead points for less.
-LONG = 0.125
-
-
-# A straight stretch, or an arc, is told that is at least this part of the path's extent.
-STRETCH = 0.25
-
-
-# An arc of a greater radius, by the path's extent, is told as straight.
-FLAT = 10.0
-
-
-# What rows of dead points are, as figures of the motion.
-DEAD = "dead"
-
-
-# So many loops of four links are told one by one.
-MOST_LOOPS = 12
+    return Report(motion.mechanism.title, (*gaps_sections(sample), section), outcome_of(motion), motion, outputs)
 
 
 def performance_section(
-    sample: Sample, found: Characteristics, told: Sequence[str] = (), named: bool = True
+    sample: Sample, found: Characteristics, reported: Sequence[str] = (), named: bool = True
 ) -> Section:
-    """Return the figures of a motion.
+    """Return the figures of a motion without extremes of quantities already `reported`.
 
-    Extremes of quantities that are told elsewhere are left out. Warnings are of outputs that somebody named.
+    Warnings appear only if the outputs are `named` by the user or the mechanism.
     """
-    return Section("performance", "Performance", tuple(_performance_blocks(sample, found, told, named)))
+    return Section("performance", "Performance", tuple(_blocks(sample, found, reported, named)))
 
 
-def _performance_blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: bool) -> Iterator[Block]:
+def _blocks(sample: Sample, found: Characteristics, reported: Sequence[str], named: bool) -> Iterator[Block]:
     yield from (Paragraph(note) for note in found.notes)
     yield from (Alert(f"{warning}.") for warning in found.warnings if named)
     yield from _strokes(found)
     yield from _piece_blocks(found)
     yield from _dead_points(sample, found)
-    yield from ranges_blocks(sample, found, told)
+    yield from ranges_blocks(sample, found, reported)
     yield from _dwells(found)
     yield from _paths(found)
     yield from _types(found)
@@ -102,7 +94,7 @@ def _performance_blocks(sample: Sample, found: Characteristics, told: Sequence[s
 
 
 def _strokes(found: Characteristics) -> Iterator[Block]:
-    """How far each output goes, and how much longer one way takes than the other."""
+    """Yield the strokes of outputs, and their quick returns."""
     rows, figures = [], []
     for one in found.outputs:
         if not one.output.is_point and one.stroke is not None:
@@ -119,17 +111,17 @@ def _strokes(found: Characteristics) -> Iterator[Block]:
 
 
 def _piece_blocks(found: Characteristics) -> Iterator[Block]:
-    """How far each output goes in each part of the motion that can be assembled."""
+    """Yield the stroke of each output in each part of the motion that can be assembled."""
     for one in found.outputs:
         for piece in one.pieces if len(one.pieces) > 1 else ():
             (name, begin), end = next(iter(piece.begin.items())), next(iter(piece.end.values()))
-            way = f"from {name} {written(display_value(begin))} to {written(display_value(end))} {display_unit(end)}".rstrip()
-            ends = f"{written(display_value(piece.least))} to {written(display_value(piece.greatest))} {display_unit(piece.least)}".rstrip()
-            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {written(display_value(piece.stroke))}.")
+            way, ends = f"from {name} {_span_text(begin, end)}", _span_text(piece.least, piece.greatest)
+            stroke = number_text(display_value(piece.stroke))
+            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {stroke}.")
 
 
 def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
-    """Where outputs turn back, and where the driver cannot go on."""
+    """Yield dead points of outputs, and those of the driver."""
     place = sample.places[0]
     points = [(one, point) for one in found.outputs for point in one.dead_points]
     rows = [
@@ -140,30 +132,26 @@ def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
         figures = tuple((DEAD, *one.output.names[:2]) for one, _ in points)
         yield TableBlock(columns, tuple(rows), figures=figures)
     for limit in found.dead_points:
-        told = f"{place.name} {written(first_value(limit.at))} {place.unit}".rstrip()
-        values = [
-            f"{name} {written(display_value(value))} {display_unit(value)}".rstrip()
-            for name, value in limit.values.items()
-        ]
+        where = f"{place.name} {number_text(first_value(limit.at))} {place.unit}".rstrip()
+        values = [f"{name} {_quantity_text(value)}" for name, value in limit.values.items()]
         reason = f", where {limit.reason}" if limit.reason else ""
-        yield Paragraph(f"A dead point of the driver is at {told}{reason}{': ' + listed(values) if values else ''}.")
+        yield Paragraph(f"A dead point of the driver is at {where}{reason}{': ' + listed(values) if values else ''}.")
 
 
 def _dwells(found: Characteristics) -> Iterator[Block]:
-    """Where outputs rest for long."""
+    """Yield long dwells of outputs."""
     for one in found.outputs:
         if one.may_dwell(LONG):
             far = LONG * (one.motion.inputs.poses - 1)
             for dwell in (dwell for dwell in one.dwells if dwell.poses >= far):
                 (name, begin), (_, end) = next(iter(dwell.begin.items())), next(iter(dwell.end.items()))
-                way = f"from {name} {written(display_value(begin))} to {written(display_value(end))} {display_unit(begin)}".rstrip()
-                span = f"{written(display_value(dwell.span))} {display_unit(dwell.span)}".rstrip()
-                value = f"{written(display_value(dwell.value))} {display_unit(dwell.value)}".rstrip()
-                yield Paragraph(f"{one.name} dwells at {value} within {one.dwell:.3g} of its stroke {way}, for {span}.")
+                way = f"within {one.dwell:.3g} of its stroke from {name} {_span_text(begin, end)}"
+                value, span = _quantity_text(dwell.value), _quantity_text(dwell.span)
+                yield Paragraph(f"{one.name} dwells at {value} {way}, for {span}.")
 
 
 def _paths(found: Characteristics) -> Iterator[Block]:
-    """What the curves of points have: straight stretches, arcs, cusps, points passed twice."""
+    """Yield features of coupler curves: straight stretches, arcs, cusps, double points."""
     points = [one for one in found.outputs if one.output.is_point and not one.is_constant]
     for one in points:
         if not simple_shape(found.motion, one.output.owner, found.design) and one.path is not None:
@@ -172,23 +160,23 @@ def _paths(found: Characteristics) -> Iterator[Block]:
 
 
 def _features(one: OutputFigures, path: PathFeatures, unit: str) -> Iterator[str]:
-    yield f"{'a closed' if path.closed else 'an open'} curve, {written(path.length)}{unit} long"
-    # an arc is looked for only where no stretch is straight
+    yield f"{'a closed' if path.closed else 'an open'} curve, {number_text(path.length)}{unit} long"
+    # arcs count only where no stretch is straight
     straight = path.straight
     stretch = straight if straight.length >= STRETCH * path.size else path.arc
     if stretch.length >= STRETCH * path.size and (stretch.is_straight or stretch.radius <= FLAT * path.size):
-        kind = "straight" if stretch.is_straight else f"an arc of radius {written(stretch.radius)}"
+        kind = "straight" if stretch.is_straight else f"an arc of radius {number_text(stretch.radius)}"
         (name, a), b = next(iter(stretch.begin.items())), next(iter(stretch.end.values()))
         turned = one.motion.drives[name].is_angle
-        begin, end = (written(float(np.rad2deg(v)) if turned else v) for v in (a, b))
-        far = f"{written(stretch.length)}{unit}, {name} {begin} to {end}"
+        begin, end = (number_text(float(np.rad2deg(v)) if turned else v) for v in (a, b))
+        far = f"{number_text(stretch.length)}{unit}, {name} {begin} to {end}"
         yield f"{kind} within {stretch.deviation:.2g} over {far}"
     yield from (counted(len(what), name) for what, name in
                 ((path.cusps, "cusp"), (path.double_points, "double point")) if what)  # fmt: skip
 
 
 def _types(found: Characteristics) -> Iterator[Block]:
-    """What four-bars and slider-cranks there are."""
+    """Yield the types of the loops of four links."""
     loops = found.types[:MOST_LOOPS]
     rows = tuple(
         (", ".join(one.links), f"{one.name} ({one.code})" if one.code else one.name, ", ".join(one.turns) or "none")
@@ -201,35 +189,16 @@ def _types(found: Characteristics) -> Iterator[Block]:
 
 
 def _full_turns(found: Characteristics) -> Iterator[Block]:
-    """Which links turn fully over a closed cycle, and how often."""
+    """Yield the links that turn fully over a closed cycle, and how often."""
     turning = [f"{name} {'once' if abs(k) == 1 else f'{abs(k)} times'}" for name, k in found.full_turns.items() if k]
     if 0 < len(turning) <= MOST_LOOPS:
         others = "" if len(turning) == len(found.full_turns) else "; no other link"
         yield Paragraph(f"Full turns over the cycle: {listed(turning)}{others}.")
 
 
-NO_LIMIT = "no limit"
-
-
-# A range of a quantity by its name, as a figure of the motion: what differs by less than rounding of places is one.
-VARIED = "varied"
-
-
-# Places are found to about this part of the greatest: nearer to zero they are shown as zero.
-NEARLY = 1e-8
-
-
-# What is below this part of the other end is zero, and ends nearer than this are one: lengths of vectors that pass
-# zero are known to so much, as their places are.
-FLOOR = 1e-8
-
-
-def ranges_blocks(sample: Sample, found: Characteristics, told: Sequence[str]) -> Iterator[Block]:
-    """Yield rates, transmission, Coriolis accelerations and ratios, from the least to the greatest.
-
-    Those that are told elsewhere are left out.
-    """
-    known = {*told, *(f"{name}.{LENGTH}" for name in told)}
+def ranges_blocks(sample: Sample, found: Characteristics, reported: Sequence[str]) -> Iterator[Block]:
+    """Yield the ranges of rates, transmission, Coriolis accelerations and ratios that are not `reported` elsewhere."""
+    known = {*reported, *(f"{name}.{LENGTH}" for name in reported)}
     named = [(name, one) for name, one in _named_ranges(found) if name not in known]
     rows, figures = [_range_row(name, one) for name, one in named], [_figure_key(found, name) for name, _ in named]
     rates = _output_rates(found)
@@ -246,12 +215,12 @@ def ranges_blocks(sample: Sample, found: Characteristics, told: Sequence[str]) -
 
 
 def _output_rates(found: Characteristics) -> dict[str, str]:
-    """The rates of outputs by their owners."""
+    """Return the rates of outputs by their owners."""
     return {one.output.owner: one.output.rate for one in found.outputs}
 
 
 def _figure_key(found: Characteristics, name: str) -> tuple[str, ...]:
-    """What a range is of, and how it follows from that."""
+    """Return the kind of a range and the quantity that it follows from."""
     owner, _, word = name.rpartition(".")
     if word == TRANSMISSION_ANGLE:
         return TRANSMISSION_ANGLE, f"{owner}.{TRANSMISSION_INDEX}"
@@ -277,7 +246,7 @@ def _range_row(name: str, one: Range) -> tuple[Cell, ...]:
     floor = FLOOR * size if np.isfinite(size) else 0.0
     far = greatest.number - least.number
     if one.is_constant or far <= floor:
-        value = 0.0 if far > floor else optional_value(least.value)  # what varies by rounding alone is zero
+        value = 0.0 if far > floor else optional_value(least.value)  # rounding alone
         return name, display_unit(least.value), value, "always", value, "always"
     low, high = (0.0 if abs(end.number) <= floor else optional_value(end.value) for end in (least, greatest))
     return name, display_unit(least.value), low, place_of(least), high, place_of(greatest)
@@ -291,15 +260,12 @@ def place_column(sample: Sample, word: str) -> Column:
 
 
 def place_of(figure: PlacedFigure) -> float:
-    """Return where a figure is.
-
-    It is the time, the driver's value, or the number of the pose where several drivers move.
-    """
+    """Return the place of a figure: the time, the driver's value, or the number of the pose for several drivers."""
     return figure.place if len(figure.at) > 1 and TIME not in figure.at else first_value(figure.at)
 
 
 def first_value(at: Mapping[str, Quantity]) -> float:
-    """Return the first of some values as it is shown."""
+    """Return the first of several values in its display unit."""
     return display_value(next(iter(at.values())))
 
 
@@ -309,10 +275,18 @@ def display_value(one: Quantity) -> float:
 
 
 def optional_value(one: Quantity | None) -> float | None:
-    """Return the same of what may be none."""
+    """Return the display value, None for None."""
     return None if one is None else display_value(one)
 
 
 def display_unit(one: Quantity) -> str:
     """Return the unit in which a quantity is shown."""
     return DEGREES if one.unit == RADIANS else one.unit
+
+
+def _quantity_text(one: Quantity) -> str:
+    return f"{number_text(display_value(one))} {display_unit(one)}".rstrip()
+
+
+def _span_text(begin: Quantity, end: Quantity) -> str:
+    return f"{number_text(display_value(begin))} to {_quantity_text(end)}"

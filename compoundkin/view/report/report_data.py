@@ -160,12 +160,12 @@ class Outcome:
     """
 
     solvable: bool
-    poses: int
-    assembled: int
-    checks: int
-    checks_passed: int
-    published: int
-    published_passed: int
+    poses: int = 0
+    assembled: int = 0
+    checks: int = 0
+    checks_passed: int = 0
+    published: int = 0
+    published_passed: int = 0
     verified: bool | None = None
     verdict: str = ""
     touching: int | None = None
@@ -178,4 +178,4 @@ class Outcome:
 
 
 # What a report comes to that solves nothing.
-NOT_SOLVED = Outcome(True, 0, 0, 0, 0, 0, 0)
+NOT_SOLVED = Outcome(True)

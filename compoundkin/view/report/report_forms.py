@@ -42,7 +42,7 @@ def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
     A table has `columns` (name and unit) and `rows`; what is not assembled is null, a vector is [x, y].
 
     >>> sections = [Section("about", "", (Paragraph("Watch B."),))]
-    >>> json.loads(json_text("Crank", sections, Outcome(True, 0, 0, 0, 0, 0, 0)))["sections"]["about"]["blocks"]
+    >>> json.loads(json_text("Crank", sections, Outcome(True)))["sections"]["about"]["blocks"]
     [{'kind': 'paragraph', 'text': 'Watch B.'}]
     """
     parts = {s.key: {"title": s.title, "blocks": [_as_data(block) for block in s.blocks]} for s in sections}

@@ -34,7 +34,7 @@ from compoundkin.view.report.report_data import (
     TableBlock,
 )
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.verification_sections import findings_table
+from compoundkin.view.report.verification_sections import findings_table, outcome_of
 from compoundkin.view.report.wording import brief, counted, listed, number_text, objective_quantity, objective_text
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
@@ -64,10 +64,9 @@ def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequen
         Section("best", "Best designs", tuple(tables)) if tables else None,
     ]
     reference = found.reference
-    poses, courses = int(reference.failed.size), tuple(one.name for one in found.columns if one.width)
-    outcome = Outcome(True, poses, int(np.count_nonzero(reference.failed == 0)), 0, 0, 0, 0)
+    courses = tuple(one.name for one in found.columns if one.width)
     shown = tuple(one for one in sections if one and one.blocks)
-    return Report(found.study.mechanism.title, shown, outcome, reference, courses, studied=found)
+    return Report(found.study.mechanism.title, shown, outcome_of(reference), reference, courses, studied=found)
 
 
 def _study_about(found: StudyResult, closed: int) -> Iterator[Block]:
@@ -170,9 +169,8 @@ def tolerance_report(found: ToleranceAnalysis, outputs: Sequence[str] = ()) -> R
         Section("contributions", "What contributes", tuple(_contribution_blocks(found, chosen))),
         *([Section("bands", "Over the motion", tuple(_band_blocks(found, courses)))] if courses else []),
     )
-    outcome = Outcome(True, int(motion.failed.size), int(np.count_nonzero(motion.failed == 0)), 0, 0, 0, 0)
     names = tuple(one.name for one in courses)
-    return Report(found.mechanism.title, sections, outcome, motion, names, studied=found)
+    return Report(found.mechanism.title, sections, outcome_of(motion), motion, names, studied=found)
 
 
 def _tolerance_about(found: ToleranceAnalysis) -> Iterator[Block]:
@@ -281,10 +279,7 @@ def optimum_report(found: Optimum, outputs: Sequence[str] = ()) -> Report:
         Section("minima", "How sure", tuple(_minima_blocks(found))),
         Section("checks", "Checks of the answer", (findings_table(Sample(motion), check),)),
     )
-    passed = len(check.findings) - len(check.failed)
-    poses = int(motion.failed.size), int(np.count_nonzero(motion.failed == 0))
-    outcome = Outcome(True, *poses, len(check.findings), passed, 0, 0, check.passed, check.verdict)
-    return Report(found.mechanism.title, sections, outcome, motion, outputs, studied=found)
+    return Report(found.mechanism.title, sections, outcome_of(motion, check), motion, outputs, studied=found)
 
 
 def _optimum_about(found: Optimum) -> Iterator[Block]:
@@ -387,7 +382,7 @@ def comparison_report(found: MechanismComparison) -> Report:
         *([Section("drivers", "Drivers", tuple(_driver_blocks(found)))] if found.drivers else []),
         *([Section("dimensions", "Dimensions", tuple(_dimension_blocks(found)))] if found.lengths else []),
     )
-    outcome = Outcome(not any(s.faults for s in found.structures), found.poses + found.apart, found.poses, 0, 0, 0, 0)
+    outcome = Outcome(not any(s.faults for s in found.structures), found.poses + found.apart, found.poses)
     # of the structure a page has the sketch alone, not the dimensions to be changed, which belong to the first only
     return Report(f"{one.title} / {other.title}", sections, outcome, found.structures[0], studied=found)
 

@@ -7,7 +7,7 @@ names the interval of the drivers, the group that does not close, and the reason
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees, isfinite
@@ -26,8 +26,24 @@ from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME, motion_figu
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import brief, counted, listed, number_text
+
+
+def outcome_of(motion: Motion, check: Check | None = None, published: Sequence[Comparison] = ()) -> Outcome:
+    """Return the outcome of a motion, its findings and published numbers."""
+    outcome = Outcome(True, int(motion.failed.size), int(np.count_nonzero(motion.failed == 0)))
+    if check is None:
+        return outcome
+    return replace(
+        outcome,
+        checks=len(check.findings),
+        checks_passed=len(check.findings) - len(check.failed),
+        published=len(published),
+        published_passed=sum(one.passed for one in published),
+        verified=check.passed,
+        verdict=check.verdict,
+    )
 
 
 def findings_table(sample: Sample, check: Check) -> TableBlock:
@@ -75,13 +91,16 @@ def _group_of(structure: Structure, name: str) -> str:
 MOST_GAPS = 10
 
 
-def gaps_section(sample: Sample, found: tuple[Gap, ...]) -> Section:
-    """Return the poses that cannot be assembled. Between which driver values, which group, and why."""
+def gaps_sections(sample: Sample, key: str = "gaps") -> tuple[Section, ...]:
+    """Return a section on the poses that cannot be assembled: the drivers' intervals, the groups, the reasons."""
+    found = gaps_of(sample)
+    if not found:
+        return ()
     missing = int(np.count_nonzero(~sample.assembled))
     text = f"{missing:,} of {counted(sample.poses, 'pose')} cannot be assembled."
     alerts = [Alert(gap_sentence(sample, gap)) for gap in found[:MOST_GAPS]]
     more = [Paragraph(f"... and {counted(len(found) - MOST_GAPS, 'gap')} more.")] if len(found) > MOST_GAPS else []
-    return Section("gaps", "Poses that cannot be assembled", (Paragraph(text), *alerts, *more))
+    return (Section(key, "Poses that cannot be assembled", (Paragraph(text), *alerts, *more)),)
 
 
 def gap_sentence(sample: Sample, gap: Gap) -> str:

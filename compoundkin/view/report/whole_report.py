@@ -134,7 +134,7 @@ def _solved_design(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
 
 def _structure_report(structure: Structure) -> Report:
     """Report a structure before it is solved, one with faults included."""
-    outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
+    outcome = Outcome(not structure.faults)
     about = about_section(structure)
     faults = [faults_section(structure)] if structure.faults else []
     solving = solving_section(structure, None), drivers_section(structure, None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from math import floor, isfinite, log10
+from typing import Any
 
 import numpy as np
 
@@ -107,6 +108,34 @@ def _fixed(values: list[float]) -> Callable[[float], str]:
     most = max(0, SIGNIFICANT - 1 - floor(log10(largest))) if largest else 0
     decimals = max((len(f"{v:.{most}f}".rstrip("0").partition(".")[2]) for v in values), default=0) if most else 0
     return lambda value: f"{round(value, decimals) + 0.0:.{decimals}f}"
+
+
+def range_text(values: Any) -> str:
+    """Return a number, or of an array the least and the greatest.
+
+    >>> range_text(2.0), range_text([1.0, 2.5])
+    ('2', '1 to 2.5')
+    """
+    low, high = float(np.min(values)), float(np.max(values))
+    return number_text(low) if low == high else f"{number_text(low)} to {number_text(high)}"
+
+
+def point_text(at: complex) -> str:
+    """Return a point by its coordinates.
+
+    >>> point_text(1 - 0.5j)
+    '(1, -0.5)'
+    """
+    return f"({number_text(at.real)}, {number_text(at.imag)})"
+
+
+def sentence(text: str) -> str:
+    """Return a clause as a sentence.
+
+    >>> sentence("it turns")
+    'It turns.'
+    """
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def listed(names: Iterable[str]) -> str:

@@ -20,7 +20,7 @@ FORMS = (Report.text, Report.markdown, Report.json)
 
 
 def made_of(*blocks: Any) -> Report:
-    return Report("Title", (Section("key", "Section", blocks),), Outcome(True, 0, 0, 0, 0, 0, 0))
+    return Report("Title", (Section("key", "Section", blocks),), Outcome(True))
 
 
 # --- text -----------------------------------------------------------------------------------------------

@@ -71,8 +71,8 @@ def mechanism_template(
 
     A piece is text, or what the file says of one link or pair: `own` unless one of the dimensions `of` it has changed,
     any of all where `of` is null; then `changed`, whose numbers are indices of dimensions, and whose lists of one
-    number those that are written in degrees. Together they say what `mechanism_with` makes, in these `modes`; `drawn` as it
-    stands on the page, where modes have no signs.
+    number those that are written in degrees. Together they describe what `mechanism_with` makes, in these `modes`;
+    `drawn` as it stands on the page, where modes have no signs.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
