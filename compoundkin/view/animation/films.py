@@ -36,8 +36,6 @@ CLOCK = 90_000
 QUALITY = 18
 # The last lines of what ffmpeg says tell why it fails.
 TOLD = 4
-
-
 # What is told of progress: how many frames are done, of how many.
 Progress: TypeAlias = Callable[[int, int], None]
 

@@ -22,20 +22,12 @@ from compoundkin.view.sketch.svg import elements, svg_document
 
 # A point stands still if it moves no farther, picture units.
 STILL = 0.005
-
-
 # A way of fewer letters than this is short enough.
 SHORT = 400
-
-
 # A link turns evenly if so few keyframes say how; only then is leading round it shorter.
 FEW = 12
-
-
 # Poses are shown one by one where a smooth line through most of them is off by more than this, picture units.
 FAR_APART = 0.5
-
-
 MOST_OF_THEM = 0.8
 
 
@@ -207,23 +199,13 @@ def _off(values: Number) -> float:
 
 # What is between keyframes may be off by this much, picture units: with two of them and rounding less than 0.2.
 DEVIATION = 0.09
-
-
 # So many intervals of even length are tried; an even key is written in half the letters, for it needs no time.
 EVEN = tuple(n for n in range(2, 721) if 720 % n == 0 or (n > 90 and n % 12 == 0))
-
-
 CHEAPER = 1.6
-
-
 # Times that differ by less are one.
 SAME_TIME = 1e-6
-
-
 # Digits after the point: of times in parts of the whole, of places, of degrees.
 OF_TIMES, OF_PLACES, OF_DEGREES = 5, 2, 2
-
-
 # What is not on the picture waits here.
 AWAY = -1000.0 - 1000.0j
 

@@ -27,12 +27,8 @@ from compoundkin.view.sketch.vectors import VectorScale, scale_shapes, vector_sh
 
 # So near to the edge of a picture a centre is left out.
 EDGE = 2.0
-
-
 # The name of a centre stands so far beside it where no better place is known.
 BESIDE = 9.0 - 9.0j
-
-
 FAR = 22.0
 
 
@@ -176,12 +172,8 @@ def _finite(values: Number) -> Number:
 
 
 LEFT = 16.0
-
-
 # A gauge is so long: this part of the picture's width, but no longer than this.
 GAUGE, LONGEST_GAUGE = 0.3, 160.0
-
-
 # Times are shown with so many digits of the whole.
 DIGITS = 3
 

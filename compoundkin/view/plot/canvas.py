@@ -18,31 +18,17 @@ from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, Plot
 from compoundkin.view.plot.plotted_rows import CONSTANT, Plotted
 
 WIDTH = 7.0
-
-
 # Characters of a title in a line.
 TITLE = 78
-
-
 # More designs than this get a scale of colours instead of a legend.
 LISTED = 8
-
-
 # Steps of ticks in degrees, as people count them.
 DEGREES = (1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720)
-
-
 ACROSS, UPWARDS = 9, 6
-
-
 # Characters that the height of a panel and of a whole figure have room for.
 PANEL, WHOLE = 24, 60
-
-
 # The width of a letter in a legend, inches, and how many letters a handle is wide.
 LETTER, HANDLE = 0.078, 9
-
-
 # How poses next to limit positions are marked.
 RING: Mapping[str, Any] = MappingProxyType(
     {"linestyle": "none", "marker": "o", "markersize": 5.5, "markerfacecolor": "white", "markeredgewidth": 1.2}
@@ -231,12 +217,8 @@ def design_names(shape: tuple[int, ...], given: Sequence[str]) -> tuple[str, ...
 
 # What may be logarithmic, and what a logarithmic axis has ticks at, parts of a power of ten.
 LOG, SUBS = ("x", "y", "xy"), (1.0, 2.0, 5.0)
-
-
 # From how many times its lower end on an axis has ticks at powers of ten only, and about at how many.
 FEW, DECADES = 500.0, 8
-
-
 # What is below this part of a quantity's size is zero but for rounding.
 ROUNDING = 1e-12
 
@@ -328,8 +310,6 @@ def _hold_positive(one: Plotted) -> None:
 # would press all else flat, and is cut off. Where a motion has no limit position it may end just before one, or have
 # true peaks, which are cut off only where nothing else could be seen.
 INNER, TALL, TALL_WITHOUT_LIMITS, MARGIN = (5.0, 95.0), 3.0, 50.0, 0.35
-
-
 # Free space above and below curves, for the values of extremes; a part of their range.
 HEADROOM = 0.16
 
@@ -381,32 +361,18 @@ def _window(curves: Sequence[Plotted], values: Number, near_limits: bool) -> tup
 
 # Distance from a point to the edge of its text, in points.
 CLEARANCE = 4.0
-
-
 # Directions that are tried, as parts of a turn counterclockwise from the one that is wished for.
 TURNS = (0.0, 0.125, -0.125, 0.25, -0.25, 0.375, -0.375, 0.5)
-
-
 # A text that is farther away from its point: twice and three times the clearance, after all else.
 FARTHER = (1.0, 2.5, 4.5)
-
-
 # Points nearer to each other than so many pixels are one.
 SAME = 3.0
-
-
 # White around a text that keeps curves off it.
 HALO = 1.5
-
-
 # Places of a curve looked at, a few pixels from each other.
 PLACES = 1500
-
-
 # A value smaller than this part of its scale is zero but for interpolation.
 NOTHING = 1e-6
-
-
 # From where four digits would need a power of ten, and from where one is easier to read than the digits.
 MANY_DIGITS, POWER_OF_TEN = 1e4, 1e6
 

@@ -50,16 +50,10 @@ from compoundkin.view.plot.plotted_rows import TURN, Plotted
 
 # So many groups have a panel where no quantity is named.
 MOST_PANELS = 3
-
-
 # A legend of more entries than this is one of circuits, and then of that one circuit only.
 MOST_ENTRIES = 12
-
-
 # Characters in a line of the legend below.
 WIDEST = 50
-
-
 # Inches: room for the names of branches beside the panels.
 WIDTH, FIRST, EACH = 8.4, 1.4, 2.8
 
@@ -206,27 +200,15 @@ def _branch_names(circuit: Circuit, branches: Sequence[Branch]) -> str:
 
 # Branches of one circuit one after another, and again from the first.
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1.2)))
-
-
 # The circuit on which solving begins is a wide line on which the others can be seen where they coincide.
 OWN, OTHER, ALONE = 2.8, 1.3, 1.6
-
-
 # A place nearer to the end of a turn than this (degrees) is there.
 AT_END = 1e-6
-
-
 # More limit positions than this in a panel, and the names beside them would be a crowd.
 MOST_NAMED = 8
-
-
 # Free space beside curves, and above and below them for names; parts of their range.
 BRANCH_MARGIN, BESIDE, NAME_MARGIN = 0.06, 0.16, 0.12
-
-
 DOT = 5.5
-
-
 START: Mapping[str, Any] = MappingProxyType({"linestyle": "none", "marker": "D", "markersize": 5.5})
 
 

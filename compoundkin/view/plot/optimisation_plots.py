@@ -26,12 +26,8 @@ from compoundkin.view.report.wording import objective_quantity, objective_text
 
 # Heights of a path and of a course, and of all that stands around them, inches.
 PATH, COURSE, AROUND = 5.0, 2.2, 1.1
-
-
 # So many poses at most are dots on a path.
 FEW = 40
-
-
 # Beside so many wanted places at most stand their numbers.
 NUMBERED = 24
 
@@ -178,12 +174,8 @@ def _course(axes: Any, panel: ImprovementPanel, motions: Sequence[Motion]) -> No
 
 
 SIZE = (7.0, 4.2)
-
-
 # Objectives that differ by this factor are drawn by their powers of ten.
 FAR = 50.0
-
-
 # An objective that is nothing is drawn at this part of the least that is something.
 BELOW = 0.1
 
@@ -255,8 +247,6 @@ def _least(values: Number) -> float | None:
 
 # So many poses make a smooth curve.
 POSES = 361
-
-
 # A driver that turns through more than this is shown over its whole turn, rad.
 MUCH = np.pi / 2.0
 

@@ -36,12 +36,8 @@ from compoundkin.view.plot.plotted_rows import (
 )
 
 SIZE = (6.4, 5.8)
-
-
 # A letter of the mechanism, or a link and a place (complex or x, y) in its own frame.
 Point: TypeAlias = str | tuple[str, Any]
-
-
 # Poles farther from a link than this many lengths of the mechanism are not drawn: centrodes run to infinity.
 FAR = 2.5
 
@@ -210,16 +206,10 @@ def _pole(axes: Any, shared: SharedCurves, z: complex) -> None:
 
 # Sizes in inches.
 PHASE, HODOGRAPH, POLAR = (6.0, 5.0), (6.0, 5.6), (5.6, 5.8)
-
-
 # What Matplotlib leaves out of legends begins so.
 ZERO = "_zero"
-
-
 # Where the radii may be written, degrees, between the lines of angles.
 FREE_ANGLES = np.arange(15.0, 375.0, 30.0)
-
-
 # Free space inside the lowest and outside the highest value, as a part of their distance.
 MARGIN = 0.08
 
@@ -467,8 +457,6 @@ def _rows(forces: Forces, values: Number) -> Number:
 
 # About so many marks along a curve, where it is not said after how many poses they come.
 MARKS = 12
-
-
 # Nearer than this part of a curve's size to the first one, the last mark is the same.
 SAME = 1e-6
 

@@ -21,9 +21,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 FAMILY, LIGHTEST = "viridis", 0.88
 # What is many and not meant: further circuits, designs that cannot be assembled.
 FAINT = "#a8a8a8"
-
 SMALL_PRINT = 8.5
-
 STYLE: Mapping[str, Any] = MappingProxyType(
     {
         "font.family": "DejaVu Sans",  # comes with Matplotlib, so that every computer draws the same

@@ -29,8 +29,6 @@ from compoundkin.model.attributes import (
 )
 
 POSE, DRIVEN = "pose", "driver"
-
-
 # The scale of angles, in degrees.
 TURN = 360.0
 

@@ -106,8 +106,6 @@ def _draw(axes: Sequence[Any], panels: Sequence[QuantityPanel], scales: AxisScal
 
 # More curves than this in a panel, and values beside their extremes would be a crowd.
 MOST_MARKED = 4
-
-
 # How high the strip is that shows where single designs cannot be assembled.
 STRIP = 0.1
 
@@ -483,8 +481,6 @@ class PlottedCurve:
 # Curves of fewer poses than these are solved between them, so that they are smooth; many designs together no more often
 # than so.
 SMOOTH, MOST = 240, 20000
-
-
 # So many places lead from the last pose to a limit position, towards which curves bend.
 TO_LIMITS = 12
 

@@ -21,28 +21,16 @@ from compoundkin.view.plot.study_columns import StudyColumns, drawn_rows, histog
 
 # So wide and high is a panel, and what stands beside and above all of them, inches.
 PANEL, BESIDE = 1.45, 1.5
-
-
 # The least width: a title has room.
 NARROWEST = 7.0
-
-
 # More columns than these are no picture; the first ones are drawn where none is named.
 MOST_COLUMNS = 8
-
-
 # Characters that a panel has room for beside it, and ticks.
 ROOM, TICKS = 19, 3
-
-
 # Dots take so large an area all together, square points; one has so much at least and at most. A cross takes more.
 ALL, SMALL, LARGE, CROSS = 4500.0, 1.5, 16.0, 1.8
-
-
 # Free space at the ends of a column's range, a part of it.
 EDGE = 0.05
-
-
 # Of fewer designs than these no correlation is told.
 FEWEST = 3
 
@@ -214,16 +202,10 @@ def _legend(figure: Any, drawing: MatrixDrawing) -> None:
 
 
 SIZE = (7.0, 5.0)
-
-
 # Beside so many rows of the front at most stand their numbers.
 NAMED = 12
-
-
 # Dots of all designs, and of the front.
 DESIGN_DOT, FRONT_DOT = 6.0, 22.0
-
-
 LOOK: Mapping[str, Any] = MappingProxyType({"linewidths": 0.0, "rasterized": True, "clip_on": False})
 
 

@@ -76,16 +76,10 @@ def _(found: Optimum, *names: str, **options: Any) -> Plot:
 
 
 BANDS_BASE_HEIGHT, BANDS_PANEL_HEIGHT = 1.8, 2.2
-
-
 # Percentiles that are drawn: the outermost two are the edges of the lightest band, and so on to the one in the middle.
 BAND_PERCENTILES = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
-
-
 # How dark the outermost band is, and the innermost one.
 LIGHT, DARK = 0.15, 0.5
-
-
 # Percentiles of random designs within tolerances.
 SAMPLED: Mapping[str, Any] = MappingProxyType({"color": COLOURS[1], "linestyle": (0, (4, 2)), "linewidth": 0.9})
 
@@ -258,15 +252,9 @@ def _shade(dark: float) -> tuple[float, ...]:
 
 
 SIZE = (7.0, 4.0)
-
-
 HISTOGRAM_PERCENTILES = (5.0, 50.0, 95.0)
-
-
 # Room above the bars for the values of percentiles, a part of their height.
 HISTOGRAM_MARGIN = 0.25
-
-
 # Places of the curve of a normal distribution.
 PLACES = 400
 
@@ -391,16 +379,10 @@ def _percentiles(axes: Any, shown: FigureDistribution, values: Number, labels: l
 
 
 BARS_BASE_HEIGHT, BAR_HEIGHT = 1.7, 0.27
-
-
 # More bars are one, of all others together.
 MOST = 16
-
-
 # Characters of a name in a line.
 NAME_CHARACTERS = 26
-
-
 # Room behind the bars for their values, a part of the longest.
 BEHIND = 0.28
 

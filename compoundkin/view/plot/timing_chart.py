@@ -30,31 +30,17 @@ from compoundkin.view.plot.plotted_rows import CONSTANT, Plotted
 
 # Heights in inches.
 FIRST, EACH = 1.1, 1.35
-
-
 # Parts of the height of a row: the strip that names phases, and the room above and below the curve.
 STRIP, BELOW, ABOVE = 0.17, 0.10, 0.12
-
-
 # A character of small print takes this part of an inch, and this much of the width is not axes.
 CHARACTER, MARGINS = 0.075, 1.1
-
-
 # Times of events nearer to each other than this part of the width would be written over each other.
 NEAR = 0.055
-
-
 # More levels than these would crowd the vertical axis.
 MOST_LEVELS = 5
-
-
 # Levels nearer than this part of the range are one.
 SAME_LEVEL = 0.12
-
-
 SHADES: Mapping[int, str] = MappingProxyType({1: "#9ecae8", -1: "#f3c19b", 0: SHADE})
-
-
 CURVE, TINT, DWELL = "#0072B2", "#eaf3f9", "#f4f4f4"
 
 
@@ -171,12 +157,8 @@ def _events(axes: Sequence[Any], shown: Iterable[TimingRow]) -> None:
 
 # Places looked at in every phase of a program, and all along any other law.
 IN_PHASE, IN_LAW = 60, 1500
-
-
 # Halvings that find where a law begins to dwell, to the last digit that is shown.
 HALVINGS = 40
-
-
 ROTATION = "rotation"
 
 

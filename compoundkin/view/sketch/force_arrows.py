@@ -35,24 +35,14 @@ from compoundkin.view.sketch.vectors import VectorScale, round_below
 
 # The arc of a moment: its radius, what it goes through (radians), and how much farther the next one is.
 ROUND, SWEEP, NEXT = 19.0, 2.7, 7.0
-
-
 # Arrows begin and end so far from the point at which they act, so that the pin stays to be seen.
 CLEAR = 6.0
-
-
 # Around a driven pin it is outside of the arrow of the driver.
 AROUND_DRIVER = 34.0
-
-
 # A shorter arrow is not drawn, and told below the picture.
 SHORTEST = 5.0
-
-
 # Digits of the values beside arrows.
 DIGITS = 4
-
-
 # Values of so many digits before the point are written without an exponent.
 PLAIN = 8
 
@@ -156,12 +146,8 @@ def force_text(value: float) -> str:
 
 
 LOWERED = str.maketrans("0123456789-", "₀₁₂₃₄₅₆₇₈₉₋")
-
-
 # What is below this part of the largest force is rounding.
 NOTHING = 1e-9
-
-
 # Arcs are not to scale: a moment below this part of the largest force by the size would look like any other.
 FAINT = 1e-5
 

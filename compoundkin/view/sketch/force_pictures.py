@@ -60,16 +60,10 @@ from compoundkin.view.sketch.vectors import VectorScale, round_below
 
 # The longest force is this part of the picture's diagonal.
 LONGEST = 0.2
-
-
 # What is smaller than this part of the largest force or moment is left out of a sketch, which has little room.
 SMALL_PART = 0.03
-
-
 # An arrow that tells a colour is so long.
 KEY = 22.0
-
-
 # The kinds of arrows, as they are told below a picture.
 KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: "inertia"}
 
@@ -227,15 +221,9 @@ def _units(known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale
 
 # The greatest distance between two corners of a polygon, picture units: of several, of a single one.
 POLYGON_LENGTH, POLYGON_LENGTH_ALONE = 170.0, 380.0
-
-
 POLYGON_HEADING, BELOW = 30.0, 14.0
-
-
 # Forces that lie on each other are drawn beside their line.
 ASIDE = 4.0
-
-
 # Labels are tried at these parts of a force, so far beside it.
 ALONG, BESIDE = (0.5, 0.35, 0.65, 0.22, 0.78), (4.0, 12.0, 22.0)
 
@@ -344,16 +332,10 @@ def _beside(key: str, text: str, start: complex, stop: complex, middle: complex)
 
 # Links are drawn in this part of the size of a sketch; a single one in this.
 PART_OF_SKETCH, ALONE = 0.55, 1.0
-
-
 # The longest force is so long, picture units.
 BODY_FORCE_LENGTH, BODY_FORCE_LENGTH_ALONE = 84.0, 130.0
-
-
 # Above each body, for its heading.
 BODY_HEADING = 30.0
-
-
 # The circle at a mass centre, and the dot in it.
 CENTRE, DOT = 4.0, 1.5
 

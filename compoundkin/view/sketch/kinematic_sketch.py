@@ -85,8 +85,6 @@ from compoundkin.view.sketch.wheel_shapes import around_genevas, genevas
 
 # A place that would be good to see, such as an instant centre, makes the picture larger by at most this part of it.
 STRETCH = 0.5
-
-
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
 

@@ -35,35 +35,19 @@ from compoundkin.view.sketch.sketch_style import LINE as LINE_of_sketch_style
 
 # Places along a bar for its number, the middle first; and how far beside it, in picture units.
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
-
-
 BESIDE = (0.0, 13.0, -13.0, 20.0, -20.0, 30.0, -30.0)
-
-
 # The first of those lines is so far below a sketch.
 BELOW = 7.0
-
-
 # Those lines begin so far from the left edge, and end so far from the right one.
 SIDE = 16.0
-
-
 # Width of a letter in a long line, in parts of its height.
 NARROW = 0.54
-
-
 # Between the parts of a line below a picture.
 SEPARATOR = " · "
-
-
 # Beside a bar is worse than on it by this.
 OFF_BAR = 6.0
-
-
 # Beside a wheel is worse than on it by this.
 OUTSIDE = 30.0
-
-
 # On the edge of a plate is worse than inside it by this.
 ON_EDGE = 8.0
 
@@ -234,8 +218,6 @@ def lines_below(lines: Sequence[str], height: float) -> tuple[list[Shape], float
 
 # So many poses of a sketch with few labels are looked at, fewer where there are many labels.
 MOST, LEAST, LABELS = 12, 3, 240
-
-
 # A label that leaves the picture makes it larger: that costs less than to be cut off.
 LARGER = 0.02
 
@@ -308,8 +290,6 @@ def placed_along(labels: Sequence[Label], courses: LabelCourses, around: Surroun
 # What it costs to be nearer to another link, and so much more for each picture unit; distances that differ by less are
 # equal: links that lie on each other.
 WRONG, WORSE, EQUAL = 400.0, 3.0, 0.5
-
-
 # So much nearer than any other link it had better be, and what a picture unit less costs.
 CLEARLY, UNCLEAR = 7.0, 1.5
 
@@ -386,34 +366,18 @@ def _of_all_poses(at: Number, own: Number, lines: Number) -> Number:
 
 # Width of a letter in parts of its height, a little more than in the usual fonts.
 WIDE = 0.62
-
-
 # What it costs to be in the way: of another label, of the edge of the picture, of a line, of a circle.
 LABEL, EDGE, LINE, ROUND = 1000.0, 4000.0, 12.0, 30.0
-
-
 # Places are tried at so many directions and distances around a point.
 DIRECTIONS = 16
-
-
 RINGS = (0.0, 5.0, 11.0, 18.0, 27.0, 38.0, 52.0, 70.0)
-
-
 AROUND = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
-
-
 # What it costs to be a picture unit farther away.
 FAR = 1.1
-
-
 # Labels keep this distance.
 ROOM = 1.5
-
-
 # Costs that differ beyond these digits are equal: rounding must not decide.
 DIGITS = 6
-
-
 # What is drawn last is placed again so many times, when all others are known.
 ROUNDS = 2
 
@@ -573,8 +537,6 @@ def crowded(gap: Number, half: complex, others: Number) -> Number:
 
 # A larger circle is in the way with its line only.
 BIG = 12.0
-
-
 # Its line is so many chords.
 CHORDS = 24
 

@@ -32,8 +32,6 @@ from compoundkin.view.sketch.traced_numbers import as_place
 
 # A guide goes on by this much beyond the places that the block takes, in picture units.
 BEYOND = 22.0
-
-
 # A stop keeps this distance from a block that is at its end.
 STOP = 2.0
 
@@ -235,8 +233,6 @@ def _outer_side(e: complex, place: complex, middle: complex) -> float:
 
 # A block is no longer than this part of the shortest link that carries one, but no smaller than this part of its size.
 SHARE, SMALLEST = 0.6, 0.7
-
-
 # A block within a block is so much smaller.
 INNER = 0.7
 
@@ -267,29 +263,15 @@ def _span(scene: Scene, link: str) -> float:
 
 # Points nearer than this to a line, in picture units, lie on it; points nearer to each other are one.
 ON_LINE = 3.0
-
-
 SAME = 0.5
-
-
 Places = Sequence[complex]
-
-
 # A fixed pivot: its height and half its foot, in picture units.
 PIVOT, FOOT = 17.0, 11.0
-
-
 # The circle around an outer pair of a group that is drawn apart.
 OUTER = 17.0
-
-
 DOWNWARD = (1j, 1 + 0j, -1 + 0j, -1j)
-
-
 # How much more than the next direction a pivot may be in the way of bars before it is turned there.
 LEANING = 0.35
-
-
 # The pin of a wheel is no larger than this part of it.
 WITHIN = 0.45
 
@@ -441,8 +423,6 @@ def _drawn(painter: Painter, one: OutlineShape, kind: str, more: float) -> Shape
 
 # A point that carries nothing is left out where it is nearer than this to another one, in picture units.
 APART = 12.0
-
-
 # It is beside a guide where it is no farther than this beyond the part that is used.
 NEAR = 22.0
 

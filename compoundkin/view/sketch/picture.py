@@ -25,43 +25,23 @@ from compoundkin.view.sketch.traced_numbers import as_place
 # How large the drawn part of a picture is, in picture units: at least and at most its longer side. The middle of the
 # links' lengths is drawn at least so long, if that is possible: many links make a large picture with fine lines.
 LEAST, MOST = 480.0, 1200.0
-
-
 BAR_LENGTH = 74.0
-
-
 # Of so many bars or more the picture grows with their number.
 FEW = 14
-
-
 # Around it is room for letters, hatching and arrows.
 MARGIN = 26.0
-
-
 # A picture is at least so wide and so high, in picture units.
 NARROWEST, LOWEST = 260.0, 130.0
-
-
 # A line may be off by this much: no eye can tell.
 DEVIATION = 0.12
-
-
 # A path whose ends are nearer to each other than this part of its size is closed.
 CLOSED = 1e-9
-
-
 # A path of a long motion is drawn through so many of its places.
 MOST_PLACES = 2001
-
-
 # A path is drawn with so many points between two poses.
 BETWEEN = 6
-
-
 # The longer side of a picture has so many pixels, at least and at most.
 SMALLEST, LARGEST = 16, 20000
-
-
 # The longest side of a picture for which no size is asked for.
 PAGE = 800.0
 
@@ -246,12 +226,8 @@ def checked_size(size: Any) -> float | None:
 
 # Parts stand side by side until they are so wide together, in picture units.
 WIDEST = 1000.0
-
-
 # Parts so wide together are printed legibly on A4: of some 780 units on 180 mm, small letters have 7 points.
 PAPER_WIDTH = 730.0
-
-
 # Between parts, with a sign.
 GAP = 30.0
 

@@ -34,8 +34,6 @@ from compoundkin.view.sketch.scene import Scene, scene_of_motion
 
 # A driver value is that of a pose if it differs by no more than this part of the driver's range.
 SAME = 1e-9
-
-
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6
 
@@ -205,8 +203,6 @@ def pose_notes(scene: Scene) -> list[str]:
 
 
 LABELS = ("points", "links")
-
-
 Drawable: TypeAlias = Motion | Mechanism | Structure
 
 

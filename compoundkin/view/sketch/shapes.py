@@ -12,14 +12,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 
 HATCH = 6.0  # distance of the strokes of a hatching
-
-
 HEAD = 10.0  # length of an arrow's head
-
-
 HEAD_HALF = 3.6
-
-
 SLANT = np.exp(2.4j)  # direction of a hatching as seen from its line
 
 

@@ -37,23 +37,13 @@ def dimension_shapes(
 
 # Numbers stand at these shares of a line, and so far beside it, in picture units.
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
-
-
 OFFSETS = (0.0, 6.0, 13.0, 22.0)
-
-
 # Arcs of angles have these radii.
 RADII = (26.0, 36.0, 48.0, 62.0)
-
-
 # An arc is a line through so many points.
 ON_ARC = 13
-
-
 # The radius of a wheel is drawn in one of so many directions.
 DIRECTIONS = 16
-
-
 # Lengths below this part of the size are nothing, angles below this (radians) are none.
 NOTHING, PARALLEL = 1e-6, 1e-4
 
@@ -203,20 +193,12 @@ def _radius(painter: Painter, link: str, middle: complex, radius: float) -> Dime
 
 # From the sketch to the first dimension line, and from line to line, in picture units.
 FIRST, ROW = 12.0, 20.0
-
-
 # Extension lines begin so far from their points, below pivots and beside them, and end so far beyond the line.
 BELOW_PIVOT, BESIDE_PIVOT, BEYOND = 24.0, 9.0, 4.0
-
-
 # The horizontal line at an inclined guide is so long.
 LEVEL = 60.0
-
-
 # A number is so far above its line, and so far beyond a short one.
 ABOVE, AFTER, ROOM = 7.0, 18.0, 4.0
-
-
 # The outermost line is so much nearer to the edge than a row.
 EDGE_ROOM = 3.0
 
@@ -373,26 +355,14 @@ def _inclination(painter: Painter, mark: Sliding) -> list[Dimension]:
 
 # A number has so many digits, and no zeros at its end.
 SIGNIFICANT = 4
-
-
 # What has more places than these before or behind its point is written with a power of ten.
 GREATEST, LEAST = 6, -4
-
-
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
 # Half the height of a number with the room around it, in picture units; and how far it stands beside its line.
 HALF = 6.0
-
-
 BESIDE = 10.5
-
-
 # What is steeper than this is read from the right, from below to above.
 STEEP = 0.1
-
-
 # Heads of dimension lines, in parts of an arrow's.
 HEAD = 0.62
 

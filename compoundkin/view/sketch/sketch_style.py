@@ -24,7 +24,6 @@ from compoundkin.view.sketch.shapes import (
 
 # A colour on light and on dark paper.
 Colours: TypeAlias = tuple[str, str]
-
 # Sizes that shapes are made with, in picture units.
 PIN = 4.5
 STUD = 4.0
@@ -34,7 +33,6 @@ LETTER = 14.0
 SMALL = 11.0
 LINE = 16.0  # from line to line of a text
 NUMBER = 8.5  # radius of the circle around a link's number
-
 # Colours on light and on dark paper. Those of groups keep a contrast of at least 3 : 1 with their paper and differ in
 # lightness too, for readers who do not see all colours (after M. Okabe and K. Ito, Color Universal Design).
 PAPER = "#ffffff", "#14171c"
@@ -60,10 +58,8 @@ OF_FORCES: Mapping[str, Colours] = {
     LOAD: ("#0047ab", "#82b4ff"),
     INERTIA: ("#7a4fa3", "#c9a6ee"),
 }
-
 _ROUND = "stroke-linecap:round;stroke-linejoin:round"
 _LINE = f"fill:none;{_ROUND}"
-
 # What each class looks like: its rules, `{}` standing for its colour.
 CLASSES: Mapping[str, tuple[str, Colours]] = {
     "paper": ("fill:{}", PAPER),

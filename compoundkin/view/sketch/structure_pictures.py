@@ -116,25 +116,15 @@ def _taken_apart(what: Drawable) -> Structure:
 
 # Parts are drawn in this part of the size of a sketch.
 PART_OF_SKETCH = 0.52
-
-
 # Above each part, for its heading.
 HEADING = 30.0
-
-
 # More loops than this nobody looks at one by one.
 MOST = 40
-
-
 # Panels are drawn in this part of the size of a sketch, and no larger than this, in picture units: two of them, or
 # three where there are more than a few loops, stand side by side.
 SMALLER, TWO, THREE, FEW = 0.52, 420.0, 250.0, 4
-
-
 # The marks of more links than this would run together in a panel: links are thin lines then.
 MOST_MARKED = 16
-
-
 # Places nearer to each other than this part of a loop's size are one.
 SAME = 1e-9
 
@@ -301,24 +291,14 @@ def _picture(structure: Structure, panels: Sequence[LoopPanel], notes: Sequence[
 
 # Panels are at least so wide, for their headings.
 NARROWEST = 230.0
-
-
 # Vectors that lie on each other, nearer than this, are drawn beside their line.
 ON_LINE, ASIDE = 5.0, 6.0
-
-
 # The head of a vector: its length and half its width, without the thickness of its line.
 HEAD, HALF = 7.0, 3.0
-
-
 # The arrow around the number of a loop: its radius, and what it goes through of a turn (radians).
 ROUND, SWEEP = 11.0, 4.9
-
-
 # Places for the number of a loop: in so many rings around its middle.
 RINGS = (0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0)
-
-
 # What it costs the number of a loop to be a picture unit away from its middle.
 NEAR = 0.3
 
@@ -542,12 +522,8 @@ def _graph_part(title: str, shapes: list[Shape], spots: Sequence[complex], links
 
 # The distance of two links that a pair joins, in picture units, and the radius of a link.
 APART, NODE = 110.0, 14.0
-
-
 # Rounds of majorization; a graph of some dozens of links has settled by then.
 ROUNDS = 200
-
-
 # Two pairs between the same links bulge by this.
 BULGE = 26.0
 
@@ -668,12 +644,8 @@ def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
 
 # Of so many starting orders, by the number of links, the one is taken whose lines cross least.
 STARTS, MOST_STARTS = 500, 40
-
-
 # Products of distances below this are rounding.
 CLEAR = 1e-9
-
-
 # Not along an axis, so that no two links start at one height.
 START = 0.3
 

@@ -47,8 +47,6 @@ from compoundkin.view.sketch.wheel_shapes import (
 
 # A groove ends so far beyond the middle of a pin at its end.
 GROOVE_END = 7.0
-
-
 # Wheels that differ by less than this, in picture units, are one.
 SAME_WHEEL = 1.0
 
@@ -121,43 +119,23 @@ def _strap(painter: Painter, seen: PairMark, mark: Strap) -> Iterator[Laid]:
 
 
 CYLINDER = 17.0
-
-
 # A cylinder ends at this part of the shortest length, and its piston keeps this distance from both ends.
 BARREL = 0.92
-
-
 PISTON = 7.0
-
-
 # What its user calls by one of these words is drawn as a piston.
 PISTONS = frozenset({"piston", "pistons", "plunger", "plungers"})
-
-
 # A piston is so wide, in parts of its stroke and within bounds, and so long, in parts of its width.
 WIDTH, NARROWEST, WIDEST, LENGTH = 0.25, 24.0, 44.0, 0.9
-
-
 # What is between it and its bore.
 PLAY = 2.0
-
-
 # How much of it, in parts of its length, is out of its bore at its nearest place.
 SKIRT = 0.4
-
-
 # The head of a bore is so far beyond the piston's crown at its last place.
 HEAD = 6.0
-
-
 # Two rings are so far below the crown.
 RINGS = 4.0, 7.5
-
-
 # Bores that differ by less than this, in picture units, are one.
 SAME_BORE = 1.0
-
-
 # A rod that stands more across the bore than this, in parts of its length, is pinned to a stem outside.
 ACROSS = 0.5
 
@@ -295,8 +273,6 @@ def side_clearance(painter: Painter, seen: PairMark) -> float:
 
 # A guide that leaves a point at less than this angle from a bar, radians, makes a wedge of both; and at more than this.
 SHARP, FLAT = 0.8, 0.1
-
-
 # Points that are nearer to each other than this are one.
 SAME_POINT = 1.0
 
@@ -318,8 +294,6 @@ def wedge_ends(painter: Painter, link: str) -> tuple[complex, ...]:
 
 # The arrow around a driven pin: its radius and how far it goes, radians.
 TURN_RADIUS, TURN = 25.0, 1.9
-
-
 # The arrow beside a driven slide.
 PUSH = 34.0
 

@@ -28,18 +28,10 @@ from compoundkin.view.sketch.svg import BASELINE, svg_number
 
 # TeX's big points of a pixel: 72 and 96 to the inch.
 OF_PIXEL = 0.75
-
-
 # So many points of a line stand in a line of the file.
 POINTS_IN_LINE = 8
-
-
 ANCHORS = {"start": " west", "middle": "", "end": " east"}
-
-
 HALO = "halo"
-
-
 _SAME: Mapping[str, str] = {
     "stroke-linecap": "line cap",
     "stroke-linejoin": "line join",
@@ -214,36 +206,22 @@ _COMMANDS: Mapping[str, str] = {
     "'": r"\ensuremath{'}",
     **{sign: f"\\{sign}" for sign in "&%$#_{}"},
 }
-
-
 # From alpha on as Unicode lists them.
 _GREEK = (
     *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu"),
     *("xi", "o", "pi", "rho", "varsigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"),
 )
-
-
 _CAPITALS = {"Γ": "Gamma", "Δ": "Delta", "Θ": "Theta", "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Φ": "Phi"}
-
-
 _SIGNS = {
     **{chr(0x3B1 + k): name if name == "o" else f"\\{name}" for k, name in enumerate(_GREEK)},
     **{letter: f"\\{name}" for letter, name in (*_CAPITALS.items(), ("Ψ", "Psi"), ("Ω", "Omega"))},
     **{"−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "°": r"^\circ", "∞": r"\infty", "→": r"\to"},
     **{"≤": r"\le", "≥": r"\ge", "≈": r"\approx", "√": r"\surd", "′": "'", "″": "''", "µ": r"\mu", "∠": r"\angle"},
 }
-
-
 # Raised and lowered signs, several in a row as one formula.
 _RAISED, _LOWERED = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "₀₁₂₃₄₅₆₇₈₉₋"
-
-
 _PLAIN = str.maketrans(_RAISED + _LOWERED, "0123456789-0123456789-")
-
-
 _RUNS = re.compile(f"[{_RAISED}]+|[{_LOWERED}]+|.", re.DOTALL)
-
-
 # Two of these would become one sign of another kind.
 _DOUBLED = re.compile(r"([-,])(?=\1)")
 

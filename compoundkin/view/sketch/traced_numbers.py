@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 # The kind of inputs that are the least of a course.
 LEAST = "least"
-
-
 # Functions that give an array along the poses as it is.
 SAME = (np.ravel, np.atleast_1d)
 

@@ -31,20 +31,12 @@ from compoundkin.view.sketch.traced_numbers import as_length
 
 # Teeth nearer than this to each other are not drawn one by one.
 CLOSEST = 5.0
-
-
 # A tooth reaches so far beyond its pitch circle or line, and so far within it.
 TOOTH = 3.0
-
-
 # How thick the rim of a ring gear is behind its teeth, and a rack or flat face.
 RIM = 9.0
-
-
 # The hub around a shaft. A wheel has one that is so many times as large.
 HUB, WITH_HUB = 9.0, 3.0
-
-
 # A wheel of a smaller radius has no teeth, and does not show how it is turned.
 TINY = 9.0
 
@@ -151,12 +143,8 @@ def _row(painter: Painter, link: str, mark: Track, ends: tuple[complex, complex]
 
 # A bush is so long, so far beyond the follower at its farthest, and its walls are so far from the stem.
 BUSH, AWAY, CLEARANCE = 30.0, 12.0, 3.0
-
-
 # How long the flanks of a knife edge are, and half their distance.
 EDGE = 13.0, 5.0
-
-
 # The stem comes out of its bush by this much at the lowest place.
 OUT = 10.0
 
@@ -263,22 +251,12 @@ def _radii(painter: Painter, cam: PairMark) -> list[float]:
 
 # Numbers that differ by less than this are one, in parts of the distance of the axes or as numbers of slots.
 SAME = 1e-3
-
-
 FEWEST = 3
-
-
 # Half the width of a slot, and the wall between slot and locking arc at its thinnest, in picture units.
 HALF, WALL = 5.5, 6.0
-
-
 # Neither is more than this part of the crank's length, where the wheel is small or has many slots.
 PART = 0.2
-
-
 GENEVA_HUB = 9.0
-
-
 # The locking disc in parts of the crank's length, where there is room for it.
 LOCKING = 0.7
 
