@@ -17,8 +17,8 @@ from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.sketch.kinematic_sketch import ghost_shapes, layered, window_on
 from compoundkin.view.sketch.labels import label_shapes, placed, point_letters
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import fitted_window
 from compoundkin.view.sketch.picture_options import scene_of
+from compoundkin.view.sketch.scene import fitted_window
 from compoundkin.view.sketch.shapes import Polygon, Polyline
 
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"

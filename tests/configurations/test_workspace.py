@@ -136,7 +136,7 @@ def test_pictures_show_region_boundary_and_mechanism() -> None:
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert labels == ["drivers lose their hold", "outer boundary"]
     assert figure.axes[1].get_ylabel() == "condition number"
-    with pytest.raises(InvalidInput, match="not coloured by 'red'"):
+    with pytest.raises(InvalidInput, match="cannot be coloured by 'red'"):
         found.plot(colour="red")
     assert repr(found).startswith("Workspace(P by left, right: 594")
 

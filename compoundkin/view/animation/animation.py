@@ -74,7 +74,7 @@ class Animation(Savable):
         if isinstance(k, bool) or not isinstance(k, int) or not -len(self) <= k < len(self):
             raise InvalidInput(Problem("frame", f"there is no frame {k!r}", f"0 to {len(self) - 1}"))
         place = self.timeline.frames[k]
-        pose, way = int(self.timeline.poses[place]), int(self.timeline.ways[place])
+        pose, way = int(self.timeline.poses[place]), int(self.timeline.directions[place])
         shapes = self._shapes(pose, way)
         texts, height = self.caption.shapes(pose)
         window, mechanism = self.sketch.window, self.sketch.scene.mechanism
@@ -98,7 +98,9 @@ class Animation(Savable):
         return smil(self.timeline, self.caption, self.arrows, self.centres, scale)
 
     def save(self, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
-        """Write it to a .gif, .mp4 or .svg file, whole or not at all. `progress(done, total)` is told of every frame.
+        """Write it to a .gif, .mp4 or .svg file, whole or not at all.
+
+        `progress(done, total)` is called with every frame.
 
         Raises InvalidInput for another suffix, where the file cannot be written, for GIF and MP4 where CairoSVG and
         Pillow are not installed, and for MP4 where there is no ffmpeg or it fails.
@@ -151,7 +153,7 @@ def ready_for(path: str | os.PathLike[str]) -> str:
 
 
 def _no_progress(done: int, total: int) -> None:
-    """Tell nobody of progress."""
+    """Report no progress."""
 
 
 @checked
@@ -184,17 +186,17 @@ def animate(
     >>> len(animate(crank))
     72
     """
-    kinds, asked, shown_size = vector_kinds(vectors), label_kinds(labels), checked_size(size)
+    kinds, named, shown_size = vector_kinds(vectors), label_kinds(labels), checked_size(size)
     motion = what.motion if isinstance(what, Forces) else _motion(what)
     scene = scene_in(motion, None, None, design)
-    sketch = moving_sketch(motion, design, paths=path_letters(scene.mechanism, paths), labels=asked)
+    sketch = moving_sketch(motion, design, paths=path_letters(scene.mechanism, paths), labels=named)
     timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
-    sketch, arrows = with_arrows(sketch, kinds, bool((timeline.ways < 0).any()))
+    sketch, arrows = with_arrows(sketch, kinds, bool((timeline.directions < 0).any()))
     if isinstance(what, Forces):
         sketch, arrows = with_force_arrows(sketch, what, arrows)
-    names = [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
+    names = [f"{number} {name}" for name, number in scene.legend.items()] if "links" in named else []
     shown = timeline.poses[timeline.frames]
-    caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(asked))
+    caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(named))
     return Animation(sketch, timeline, caption, arrows, moving_centres(sketch) if centres else (), shown_size)
 
 

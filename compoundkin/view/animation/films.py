@@ -36,7 +36,7 @@ CLOCK = 90_000
 QUALITY = 18
 # The last lines of what ffmpeg says tell why it fails.
 TOLD = 4
-# What is told of progress: how many frames are done, of how many.
+# What progress reports: how many frames are done, of how many.
 Progress: TypeAlias = Callable[[int, int], None]
 
 
@@ -70,7 +70,7 @@ def colour_palette(pixels: Number, most: int) -> Number:
 
 
 def nearest_table(colours: Number) -> Number:
-    """Tell which colour of a palette is the nearest to any other. It is a table for `indices`."""
+    """Return which colour of a palette is the nearest to any other. It is a table for `indices`."""
     levels = np.arange(LEVELS) * (256 // LEVELS) + 128 // LEVELS
     any_colour = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 1, 3)
     parts = np.array_split(any_colour, LEVELS)
@@ -142,7 +142,7 @@ def _durations(count: int, hold: float) -> list[int]:
 
 
 def require_ffmpeg() -> str:
-    """Tell where ffmpeg is; raises InvalidInput where it is not installed."""
+    """Return where ffmpeg is; raises InvalidInput where it is not installed."""
     found = shutil.which("ffmpeg")
     if found is None:
         remedy = "install it (https://ffmpeg.org), or save a .gif or .svg, which do without"

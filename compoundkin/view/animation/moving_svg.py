@@ -16,7 +16,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.view.animation.overlays import Arrows, Caption, Gauge, MovingCentre, point_places
 from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch
-from compoundkin.view.sketch.picture import BETWEEN, MOST_PLACES, smooth
+from compoundkin.view.sketch.scene import BETWEEN, MOST_PLACES, smooth
 from compoundkin.view.sketch.shapes import Polygon, Shape, Text, arrow_shapes, leaves, moved_shapes, shape_corners
 from compoundkin.view.sketch.svg import elements, svg_document
 
@@ -81,7 +81,7 @@ def _styled(sketch: MovingSketch, arrows: Sequence[Arrows], centres: Sequence[Mo
 def _arrows(writer: Writer, arrows: Arrows) -> Iterator[str]:
     """The arrows of vectors, whose outlines change; a vector that is not known is a point."""
     timeline, scale = writer.timeline, arrows.scale
-    signs = np.where(timeline.ways > 0, 1, arrows.sign(-1))
+    signs = np.where(timeline.directions > 0, 1, arrows.sign(-1))
     for letter, rates in arrows.rates.items():
         start = arrows.places[letter][timeline.poses]
         rate = np.where(np.isfinite(rates), rates, 0.0)[timeline.poses] * signs
@@ -180,7 +180,7 @@ def _turned_angles(sketch: MovingSketch, link: str) -> Number:
 
 
 def are_far_apart(timeline: Timeline, values: Number) -> bool:
-    """Tell whether a smooth line through values is much off between poses. The values are (poses, columns)."""
+    """Return whether a smooth line through values is much off between poses. The values are (poses, columns)."""
     return any(_off(values[leg]) > FAR_APART for leg in timeline.slices if leg.stop - leg.start > 1)
 
 
@@ -261,11 +261,11 @@ def _run(times: Number, values: Number, seen: bool, away: complex) -> tuple[Numb
 def _even(times: Number, values: Number, deviation: float, most: float) -> Keyframes | None:
     """As few values as will do at even times, which need not be written; None where too many are needed."""
     for count in (count for count in EVEN if count < most):
-        asked = np.linspace(0.0, 1.0, count + 1)
-        found = np.stack([np.interp(asked, times, column) for column in values.T], axis=1)
-        lines = np.stack([np.interp(times, asked, column) for column in found.T], axis=1)
+        even = np.linspace(0.0, 1.0, count + 1)
+        found = np.stack([np.interp(even, times, column) for column in values.T], axis=1)
+        lines = np.stack([np.interp(times, even, column) for column in found.T], axis=1)
         if np.max(np.abs(lines - values)) <= deviation:
-            return Keyframes(asked, found, is_even=True)
+            return Keyframes(even, found, is_even=True)
     return None
 
 

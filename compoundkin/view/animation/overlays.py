@@ -18,9 +18,10 @@ from compoundkin.view.sketch.centre_pictures import DOT, TOGETHER, centre_number
 from compoundkin.view.sketch.force_arrows import ForceCourse
 from compoundkin.view.sketch.force_pictures import drawn_force_courses, force_scales
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch
-from compoundkin.view.sketch.labels import BELOW, Label, label_around, lines_below, lines_of_text, placed, text_half
-from compoundkin.view.sketch.picture import MARGIN, Window
+from compoundkin.view.sketch.labels import Label, label_around, placed, text_half
+from compoundkin.view.sketch.picture import BELOW, lines_below, lines_of_text
 from compoundkin.view.sketch.picture_options import pose_notes
+from compoundkin.view.sketch.scene import MARGIN, Window
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, Text, leaves, moved_shapes, sheet
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, SMALL
 from compoundkin.view.sketch.vectors import VectorScale, scale_shapes, vector_shapes
@@ -41,7 +42,7 @@ class Arrows:
     rates: dict[str, Number]
 
     def sign(self, way: int) -> int:
-        """Tell what they are multiplied by where the motion goes back. Velocities turn round, accelerations do not."""
+        """Return the factor of the vectors where the motion goes back. Velocities turn round, accelerations do not."""
         return int(way**self.scale.order)
 
     def shapes(self, k: int, way: int) -> list[Shape]:
@@ -85,7 +86,7 @@ def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple
 
 
 def point_places(sketch: MovingSketch, letter: str) -> Number:
-    """Tell where a point is on the picture, (poses,)."""
+    """Return where a point is on the picture, (poses,)."""
     return np.broadcast_to(sketch.window.at(sketch.scene.places(letter)), (sketch.scene.count,))
 
 
@@ -128,7 +129,7 @@ def _centre_on_picture(window: Window, places: Number) -> Number:
 
 
 def _beside(sketch: MovingSketch, centres: Sequence[MovingCentre]) -> tuple[MovingCentre, ...]:
-    """The centres with their names where they are in nobody's way at the pose shown first."""
+    """The centres with their names where they cover nothing at the pose shown first."""
     k = int(np.searchsorted(sketch.scene.known, sketch.scene.pose[1]))
     shapes = list(leaves(sketch.shapes(k)))
     taken = [Label(f"text {n}", text_half(s.text, LETTER), (s.at,), (0.0,)) for n, s in enumerate(texts_in(shapes))]
@@ -213,7 +214,7 @@ class Caption(ShortRepr):
     poses: Number  # those that are ever shown as frames
     names: tuple[str, ...]
     scales: tuple[VectorScale, ...]
-    is_told: bool = True  # else there are scales only
+    has_notes: bool = True  # else there are scales only
 
     @property
     def window(self) -> Window:
@@ -228,7 +229,7 @@ class Caption(ShortRepr):
 
     def notes(self, k: int) -> list[str]:
         """Return the time and the drivers' values at the k-th assembled pose."""
-        if not self.is_told:
+        if not self.has_notes:
             return []
         scene, motion = self.sketch.scene, self.sketch.motion
         here = replace(scene, pose=(scene.pose[0], int(scene.known[k])))
@@ -244,12 +245,12 @@ class Caption(ShortRepr):
 
     def gauges(self) -> tuple[list[Gauge], list[Shape], float]:
         """Return lines with dots in the place of texts that change. What else stands there, and the height with all."""
-        told = list(self._gauged()) if self.is_told else []
-        moving = [(text, values) for text, values in told if np.ptp(values) > 0]
+        gauged = list(self._gauged()) if self.has_notes else []
+        moving = [(text, values) for text, values in gauged if np.ptp(values) > 0]
         start = complex(LEFT, self.window.height + BELOW)
         length = min(GAUGE * self.window.width, LONGEST_GAUGE)
         found = [Gauge(text, v, start + 1j * LINE * n, length) for n, (text, v) in enumerate(moving)]
-        lines = ["" for _ in moving] + lines_of_text([*self._still(told), *self.names], self._room)
+        lines = ["" for _ in moving] + lines_of_text([*self._still(gauged), *self.names], self._room)
         texts, height = lines_below(lines, self.window.height)
         texts = [shape for shape in texts if not isinstance(shape, Text) or shape.text]
         return found, *self._scaled(texts, height)
@@ -287,10 +288,10 @@ class Caption(ShortRepr):
             unit = unit_suffix(step.pair.free_is_angle, scene.mechanism.unit)
             yield f"{name}, {shown.min():.5g} to {shown.max():.5g}{unit}", np.asarray(values, dtype=float)
 
-    def _still(self, told: Sequence[tuple[str, Number]]) -> list[str]:
+    def _still(self, gauged: Sequence[tuple[str, Number]]) -> list[str]:
         """The notes of what does not change."""
         notes = self.notes(0)
-        return [note for note, (_, values) in zip(notes, told, strict=True) if np.ptp(values) == 0]
+        return [note for note, (_, values) in zip(notes, gauged, strict=True) if np.ptp(values) == 0]
 
     def _scaled(self, texts: list[Shape], height: float) -> tuple[list[Shape], float]:
         for scale in self.scales:

@@ -67,7 +67,7 @@ class Timeline(ShortRepr):
         return np.concatenate([leg.times for leg in self.legs])
 
     @cached_property
-    def ways(self) -> Number:
+    def directions(self) -> Number:
         """For all of them whether the motion goes on, 1, or back, -1."""
         return np.concatenate([np.full(len(leg.poses), leg.way) for leg in self.legs])
 
@@ -107,25 +107,25 @@ def timeline_of(
     if back is not None and not isinstance(back, bool):
         raise InvalidInput(Problem("back", f"{back!r} is neither true nor false", "leave it out"))
     rate = _checked("fps", FPS if fps is None else fps, 1.0, MOST_FPS)
-    asked = None if seconds is None else _checked("seconds", seconds, 1.0 / rate, MOST_FRAMES)
+    wished = None if seconds is None else _checked("seconds", seconds, 1.0 / rate, MOST_FRAMES)
     pieces, closed = _pieces(scene, motion.inputs.poses)
     legs = _legs(pieces, _clock(motion, design)[scene.known], not closed if back is None else back)
     returns = (closed and back is not True) or legs[-1].way < 0
     length = float(legs[-1].times[-1])
-    if asked is None and motion.time is not None:
-        asked = length
+    if wished is None and motion.time is not None:
+        wished = length
     legs = [TimelineLeg(leg.poses, leg.times / (length or 1.0), leg.way) for leg in legs]
     usual = CYCLE * min(max(_turns(motion), 1.0), MOST_CYCLES)
-    frames = _frames(legs, returns, (asked or usual) * rate)
-    return Timeline(tuple(legs), returns, _lasting(asked, usual, len(frames), rate), frames)
+    frames = _frames(legs, returns, (wished or usual) * rate)
+    return Timeline(tuple(legs), returns, _lasting(wished, usual, len(frames), rate), frames)
 
 
-def _lasting(asked: float | None, usual: float, count: int, rate: float) -> float:
-    """How long so many frames are shown: what is asked for; else about what is usual, with frames of one length.
+def _lasting(wished: float | None, usual: float, count: int, rate: float) -> float:
+    """How long so many frames are shown: the given duration; else about the usual one, with frames of one length.
 
     A GIF knows whole hundredths of a second only.
     """
-    return asked or count * max(round(100.0 * usual / count) / 100.0, 1.0 / rate)
+    return wished or count * max(round(100.0 * usual / count) / 100.0, 1.0 / rate)
 
 
 def _checked(name: str, value: Any, low: float, high: float) -> float:
@@ -211,7 +211,7 @@ def _frames(legs: list[TimelineLeg], returns: bool, most: float) -> Number:
 def _nearest(times: Number, count: int, returns: bool) -> tuple[Number, float]:
     """The poses nearest to so many even times, and by how much of a frame the worst of them is off."""
     step = 1.0 / (count if returns else max(count - 1, 1))
-    asked = np.arange(count) * step
-    after = np.clip(np.searchsorted(times, asked), 1, len(times) - 1)
-    nearest = after - (asked - times[after - 1] < times[after] - asked)
-    return nearest, float(np.max(np.abs(times[nearest] - asked)) / step)
+    even = np.arange(count) * step
+    after = np.clip(np.searchsorted(times, even), 1, len(times) - 1)
+    nearest = after - (even - times[after - 1] < times[after] - even)
+    return nearest, float(np.max(np.abs(times[nearest] - even)) / step)

@@ -285,7 +285,7 @@ def _force_arrow(
     known = own[np.isfinite(own)]
     force = course.force[chosen]
     packed = [packed_floats(force.real), packed_floats(force.imag)]
-    found = {"name": shown.name, "told": shown.told, "kind": shown.kind, "force": packed}
+    found = {"name": shown.name, "told": shown.description, "kind": shown.kind, "force": packed}
     if len(known) and np.max(np.abs(known - known[0])) <= FIXED_PLACE * forces.motion.size:
         return {**found, "link": links[shown.link], "x": float(known[0].real), "y": float(known[0].imag)}
     at = course.at[chosen]

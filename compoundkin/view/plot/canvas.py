@@ -36,12 +36,14 @@ RING: Mapping[str, Any] = MappingProxyType(
 
 
 def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, **options: Any) -> tuple[Any, list[Any]]:
-    """Make a figure with a title and its axes, row by row. Raises InvalidInput for a size that is none."""
+    """Make a figure with a title and its axes, row by row. Raises InvalidInput for an invalid size."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     if not all(0.0 < one < np.inf for one in size):
-        raise InvalidInput(Problem("size", f"{size!r} is no size", "give width and height in inches, such as (7, 4)"))
+        raise InvalidInput(
+            Problem("size", f"{size!r} is not a size", "give width and height in inches, such as (7, 4)")
+        )
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     if title:
@@ -105,7 +107,7 @@ def constant_limits(values: Number, scale: float) -> tuple[float, float] | None:
 
 
 def write_empty(axes: Any) -> None:
-    """Say that there is nothing to draw, instead of ticks that mean nothing."""
+    """Write that there are no values, and leave out the ticks."""
     axes.text(0.5, 0.5, "no values", transform=axes.transAxes, ha="center", va="center", color=GREY)
     axes.set_yticks([])
 
@@ -129,7 +131,7 @@ def draw_legend(axes: Any) -> None:
 def designs_legend(
     figure: Any, axes: Sequence[Any], names: Sequence[str], shades: Sequence[Any] = (), beside: bool = True
 ) -> None:
-    """Say which colour is which design. Names beside the plot or above it, or a scale where there are many."""
+    """Draw the legend of designs. Names beside the plot or above it, or a scale where there are many."""
     from matplotlib.colors import LinearSegmentedColormap, Normalize
     from matplotlib.lines import Line2D
 
@@ -148,7 +150,7 @@ def designs_legend(
 
 
 def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: str = "") -> None:
-    """Say what the shades, rings, dashes and dots mean, below the plot."""
+    """Draw the legend of shades, rings, dashes and dots below the plot."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -206,7 +208,7 @@ def write_note(axes: Any, text: str) -> None:
 
 
 def design_names(shape: tuple[int, ...], given: Sequence[str]) -> tuple[str, ...]:
-    """Tell what designs are called: as given, or by their indices.
+    """Return the names of designs: as given, or by their indices.
 
     >>> design_names((2, 5), ()), design_names((1, 2, 5), ())
     (('design 0', 'design 1'), ('design 0, 0', 'design 0, 1'))
@@ -232,37 +234,37 @@ class AxisScales:
     log: str = ""
 
     @classmethod
-    def asked(cls, xlim: tuple[float, float] | None, ylim: tuple[float, float] | None, log: str | None) -> AxisScales:
-        """Return the axes that are asked for. Raises InvalidInput for ends or words that are none."""
+    def checked(cls, xlim: tuple[float, float] | None, ylim: tuple[float, float] | None, log: str | None) -> AxisScales:
+        """Return the axes of given limits. Raises InvalidInput for limits or words that are not valid."""
         if log is not None and log not in LOG:
-            raise InvalidInput(Problem("log", f"{log!r} is no axis", 'write "x", "y" or "xy"'))
+            raise InvalidInput(Problem("log", f"{log!r} is not an axis", 'write "x", "y" or "xy"'))
         for name, ends in (("x", xlim), ("y", ylim)):
             if ends is None:
                 continue
             if not (np.isfinite(ends).all() and ends[0] < ends[1]):
-                told = f"from {ends[0]:g} to {ends[1]:g} is no range"
-                raise InvalidInput(Problem(f"{name}lim", told, "give the lower end and the upper one"))
+                what = f"from {ends[0]:g} to {ends[1]:g} is not a range"
+                raise InvalidInput(Problem(f"{name}lim", what, "give the lower end and the upper one"))
             if name in (log or "") and ends[0] <= 0.0:
-                told = f"it begins at {ends[0]:g}, and the axis is logarithmic"
-                raise InvalidInput(Problem(f"{name}lim", told, "begin above zero"))
+                what = f"it begins at {ends[0]:g}, and the axis is logarithmic"
+                raise InvalidInput(Problem(f"{name}lim", what, "begin above zero"))
         return cls(xlim, ylim, log or "")
 
-    def hold(self, across: Sequence[Plotted], titles: Sequence[Plotted], curves: Iterable[Plotted]) -> None:
+    def check_fit(self, across: Sequence[Plotted], titles: Sequence[Plotted], curves: Iterable[Plotted]) -> None:
         """Raise InvalidInput where limits or scales do not fit.
 
         They do not where limits are meant for several units, or an axis cannot be logarithmic.
         """
         units = list(dict.fromkeys(with_superscripts(one.unit) or "numbers" for one in titles))
         if self.ylim is not None and len(units) > 1:
-            told = f"the panels are in {', '.join(units)}"
-            raise InvalidInput(Problem("ylim", told, "draw quantities of one unit, or leave it out"))
+            what = f"the panels are in {', '.join(units)}"
+            raise InvalidInput(Problem("ylim", what, "draw quantities of one unit, or leave it out"))
         values = np.concatenate([one.values.ravel() for one in across])
         if self.xlim is not None and not np.any((values >= self.xlim[0]) & (values <= self.xlim[1])):
-            told = f"{across[0].name} goes from {value_text(np.nanmin(values))} to {value_text(np.nanmax(values))}"
-            raise InvalidInput(Problem("xlim", f"no pose is between {self.xlim[0]:g} and {self.xlim[1]:g}", told))
+            what = f"{across[0].name} goes from {value_text(np.nanmin(values))} to {value_text(np.nanmax(values))}"
+            raise InvalidInput(Problem("xlim", f"no pose is between {self.xlim[0]:g} and {self.xlim[1]:g}", what))
         for name, rows in (("x", across), ("y", curves)):
             for one in rows if name in self.log else ():
-                _hold_positive(one)
+                _check_positive(one)
 
     def visible(self, x: Number, y: Number) -> Number:
         """Return the values of a curve that are within the horizontal limits."""
@@ -273,11 +275,11 @@ class AxisScales:
         return values[values > ROUNDING * scale] if "y" in self.log else values
 
     def shows(self, x: float, y: float) -> bool:
-        """Tell whether a place of a curve is within the limits."""
+        """Return whether a place of a curve is within the limits."""
         return self.reaches(x) and (self.ylim is None or self.ylim[0] <= y <= self.ylim[1])
 
     def reaches(self, x: float) -> bool:
-        """Tell whether a place of the horizontal axis is within its limits."""
+        """Return whether a place of the horizontal axis is within its limits."""
         return self.xlim is None or self.xlim[0] <= x <= self.xlim[1]
 
     def make_log(self, axes: Any) -> None:
@@ -297,13 +299,13 @@ class AxisScales:
             axis.set_minor_formatter(NullFormatter())
 
 
-def _hold_positive(one: Plotted) -> None:
+def _check_positive(one: Plotted) -> None:
     known = one.values[np.isfinite(one.values)]
     if len(known) and known.min() <= ROUNDING * one.scale:
         low, high = (value_text(float(end), one.scale) for end in (known.min(), known.max()))
-        told = f"{one.name} goes from {low} to {high}, and a logarithmic axis has positive values only"
+        what = f"{one.name} goes from {low} to {high}, and a logarithmic axis has positive values only"
         remedy = "leave it out, or draw what is positive, such as a length"
-        raise InvalidInput(Problem("log", told, remedy))
+        raise InvalidInput(Problem("log", what, remedy))
 
 
 # Beside limit positions rates grow without limit: what exceeds the inner nine tenths of the values this many times

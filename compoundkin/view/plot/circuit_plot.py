@@ -125,7 +125,7 @@ def _circuits_of(
 
 def _title(positions: Positions) -> str:
     """The mechanism's title, and where the other drivers stand."""
-    found, unit = positions.found, positions.mechanism.unit
+    found, unit = positions.circuits, positions.mechanism.unit
     parts = [positions.mechanism.title]
     for name, value in found.fixed.items():
         is_angle = positions.drives[name].is_angle
@@ -167,8 +167,8 @@ def _legends(drawn: BranchDrawing, figure: Any) -> None:
 
 def _entries(drawn: BranchDrawing) -> list[tuple[str, dict[str, Any]]]:
     """The branches; of many of them the circuits, of many circuits that on which solving begins."""
-    shown = drawn.found.circuits
-    if len(drawn.found.branches) <= MOST_ENTRIES:
+    shown = drawn.circuits.circuits
+    if len(drawn.circuits.branches) <= MOST_ENTRIES:
         return [(_branch_names(c, (b,)), drawn.look(c, b)) for c in shown for b in c.branches]
     if not drawn.is_crowd:
         return [(_branch_names(c, c.branches), drawn.look(c, c.branches[0])) for c in shown]
@@ -185,9 +185,9 @@ def _meanings(drawn: BranchDrawing) -> list[tuple[str, dict[str, Any]]]:
         of = "" if drawn.are_named else f" of {', '.join(drawn.responsible)}"
         look = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": plot_style.GREY}
         found.append((f"limit position{of}", look))
-    if any(circuit.changes for circuit in drawn.found.circuits):
+    if any(circuit.changes for circuit in drawn.circuits.circuits):
         found.append(("change point", {**canvas.RING, "color": plot_style.INK}))
-    if drawn.found.start is not None:
+    if drawn.circuits.start is not None:
         found.append(("where solving begins", {**START, "color": plot_style.INK}))
     return found
 
@@ -223,7 +223,7 @@ class BranchDrawing:
     @classmethod
     def of(cls, positions: Positions, quantity: Plotted) -> BranchDrawing:
         """Return the drawing of circuits."""
-        found = positions.found
+        found = positions.circuits
         is_angle = positions.drives[found.driver].is_angle
         unit = DEGREES if is_angle else unit_of(found.structure.mechanism.unit, "length")
         curves = [branch_curve(positions, branch, quantity).x for branch in found.branches]
@@ -231,34 +231,34 @@ class BranchDrawing:
         return cls(positions, Plotted(found.driver, unit, positions.values), low)
 
     @property
-    def found(self) -> Circuits:
+    def circuits(self) -> Circuits:
         """The circuits."""
-        return self.positions.found
+        return self.positions.circuits
 
     @property
     def own(self) -> int:
         """The number of the circuit on which solving begins; 0 for none."""
-        return 0 if self.found.start is None else self.found.start.circuit
+        return 0 if self.circuits.start is None else self.circuits.start.circuit
 
     @property
     def responsible(self) -> tuple[str, ...]:
         """The groups that make limit positions."""
-        return tuple(dict.fromkeys(label(self.found.structure, limit.group) for limit in self.found.limits))
+        return tuple(dict.fromkeys(label(self.circuits.structure, limit.group) for limit in self.circuits.limits))
 
     @property
     def are_named(self) -> bool:
         """Whether the group is written beside each limit position: several groups, and no crowd."""
-        return len(self.responsible) > 1 and len(self.found.limits) <= MOST_NAMED
+        return len(self.responsible) > 1 and len(self.circuits.limits) <= MOST_NAMED
 
     @property
     def is_crowd(self) -> bool:
         """Whether there are more circuits than colours."""
-        return len(self.found.circuits) > len(plot_style.COLOURS)
+        return len(self.circuits.circuits) > len(plot_style.COLOURS)
 
     def look(self, circuit: Circuit, branch: Branch) -> dict[str, Any]:
         """Return what the curve of a branch looks like."""
         own, k = circuit.number == self.own, circuit.branches.index(branch)
-        width = ALONE if len(self.found.circuits) == 1 else OWN if own else OTHER
+        width = ALONE if len(self.circuits.circuits) == 1 else OWN if own else OTHER
         look = {"color": self.colour(circuit), "linestyle": DASHES[k % len(DASHES)], "linewidth": width}
         # thin lines on the wide one, but for a crowd of grey ones
         return {**look, "zorder": 2.0 if own and not self.is_crowd else 2.5 + own, "dash_capstyle": "butt"}
@@ -272,7 +272,7 @@ class BranchDrawing:
 
     def panel(self, axes: Any, quantity: Plotted, labels: list[PointLabel]) -> None:
         """Draw all branches in one panel, their limit positions and change points."""
-        branches = [(circuit, branch) for circuit in self.found.circuits for branch in circuit.branches]
+        branches = [(circuit, branch) for circuit in self.circuits.circuits for branch in circuit.branches]
         curves = [branch_curve(self.positions, branch, quantity) for _, branch in branches]
         low = turn_seam([curve.y for curve in curves], OF_ANGLES) if quantity.is_angle else None
         for (circuit, branch), curve in zip(branches, curves, strict=True):
@@ -323,14 +323,14 @@ class BranchDrawing:
         for curve in curves:
             for k, limit in curve.limits:
                 x, y = self._at(curve.x[k], curve.y[k], low)
-                text = label(self.found.structure, limit.group)
+                text = label(self.circuits.structure, limit.group)
                 one = PointLabel(axes, float(x), float(y), text, 1.0 if limit.greatest else -1.0, plot_style.INK)
                 found.setdefault(id(limit), one)
         return list(found.values())
 
     def _start(self, axes: Any, quantity: Plotted, low: float | None) -> None:
         """A diamond where solving begins."""
-        start = start_position(self.found)
+        start = start_position(self.circuits)
         if start is not None:
             x = degrees(start.values) if self.across.is_angle else start.values
             y = next(one for one in segment_quantity(start, quantity.name) if one.name == quantity.name).values
@@ -393,7 +393,7 @@ class BranchCurve:
 
 def branch_curve(positions: Positions, branch: Branch, one: Plotted) -> BranchCurve:
     """Return the curve of a branch."""
-    found, visits = positions.found, branch.visits
+    found, visits = positions.circuits, branch.visits
     x = np.concatenate([positions.values[v.row][:: v.sense] + v.periods * found.period for v in visits])
     y = np.concatenate([one.values[v.row][:: v.sense] for v in visits])
     ends = branch.ends if visits[0].sense > 0 else branch.ends[::-1]
@@ -483,24 +483,24 @@ class _PointCoordinates(_CoordinateValues):
 class Positions:
     """All that has a position on segments. `values` of the driver (rows, places), and the poses of the links there."""
 
-    found: Circuits
+    circuits: Circuits
     values: Number
     world: Mapping[str, Pose]
 
     @property
     def mechanism(self) -> Mechanism:
         """The mechanism."""
-        return self.found.structure.mechanism
+        return self.circuits.structure.mechanism
 
     @property
     def solving_order(self) -> SolvingOrder:
         """What solves it."""
-        return self.found.placing.sweep.solving_order
+        return self.circuits.placing.sweep.solving_order
 
     @property
     def inputs(self) -> Inputs:
         """The dimensions."""
-        return Inputs(self.values.shape, self.found.placing.sweep.ends, {})
+        return Inputs(self.values.shape, self.circuits.placing.sweep.ends, {})
 
     @property
     def poses(self) -> Mapping[str, Pose]:
@@ -514,13 +514,13 @@ class Positions:
 
     @property
     def regular(self) -> Number:
-        """Which poses have finite rates: no rates are asked for."""
+        """Which poses have finite rates: circuits show none."""
         return np.ones(self.values.shape, dtype=bool)
 
     @cached_property
     def points(self) -> Mapping[str, _PointCoordinates]:
         """The points."""
-        dimensions = dimensions_at(self.found.structure, self.found.placing.design, 0)
+        dimensions = dimensions_at(self.circuits.structure, self.circuits.placing.design, 0)
         places = {letter: (links[0], dimensions[links[0]][letter]) for letter, links in self.mechanism.carriers.items()}
         return {
             letter: _PointCoordinates(self._full(self.world[link].at(p).c[0])) for letter, (link, p) in places.items()
@@ -534,7 +534,7 @@ class Positions:
     @cached_property
     def pairs(self) -> Mapping[str, _CoordinateValues]:
         """The coordinates of the pairs."""
-        sweep = self.found.placing.sweep
+        sweep = self.circuits.placing.sweep
         found = {}
         for name, pair in sweep.solving_order.pairs.items():
             ends: Ends = sweep.ends[name]
@@ -546,9 +546,9 @@ class Positions:
     @cached_property
     def drives(self) -> Mapping[str, _CoordinateValues]:
         """The values of the drivers."""
-        sweep = self.found.placing.sweep
+        sweep = self.circuits.placing.sweep
         values = {**sweep.fixed, sweep.driver: self.values}
-        driven = self.found.structure.driven.items()
+        driven = self.circuits.structure.driven.items()
         return {name: _CoordinateValues(self._full(values[name]), step.pair.free_is_angle) for name, step in driven}
 
     def _full(self, value: Number) -> Number:
@@ -566,7 +566,7 @@ def segment_positions(found: Circuits) -> Positions:
 
 
 def start_position(found: Circuits) -> Positions | None:
-    """Tell where solving begins; None where nothing is assembled there."""
+    """Return where solving begins; None where nothing is assembled there."""
     if found.start is None:
         return None
     return _positions(found, np.array([found.start.visit.row]), np.array([[found.start.inside]]), np.array([NONE]))

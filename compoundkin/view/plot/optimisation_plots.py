@@ -28,13 +28,13 @@ from compoundkin.view.report.wording import objective_quantity, objective_text
 PATH, COURSE, AROUND = 5.0, 2.2, 1.1
 # So many poses at most are dots on a path.
 FEW = 40
-# Beside so many wanted places at most stand their numbers.
+# Beside so many target points at most stand their numbers.
 NUMBERED = 24
 
 
 @dataclass(frozen=True, eq=False)
 class ImprovementPanel:
-    """A panel: a quantity before and after, of a point with the places wanted."""
+    """A panel: a quantity before and after, of a point with the target points."""
 
     name: str
     is_path: bool
@@ -56,7 +56,7 @@ def improvement(
     of a driver that turns far, with the places that goals want, numbered in their order; of all else the courses over
     the driver or time. Before is the mechanism as it stood, dashed.
 
-    Raises UnknownName for quantities that there are not, InvalidInput without Matplotlib.
+    Raises UnknownName for quantities that are unknown, InvalidInput without Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.studies.goals.value_goals import least
@@ -85,7 +85,7 @@ def improvement(
 
 
 def objective_summary(optimum: Optimum) -> str:
-    """Say what the objective was and is."""
+    """Return the objective before and after."""
     if not np.isfinite(optimum.value_before):
         return f"objective {objective_text(optimum, optimum.value)}, before not assembled"
     return f"objective {' → '.join(objective_text(optimum, one) for one in (optimum.value_before, optimum.value))}"
@@ -121,7 +121,7 @@ def _dense_motions(optimum: Optimum) -> tuple[Motion, Motion]:
 def _path(
     axes: Any, panel: ImprovementPanel, dense: Sequence[Motion], motions: Sequence[Motion], labels: list[PointLabel]
 ) -> None:
-    """The path of a point before and after, where it is at the poses asked, and the places wanted."""
+    """The path of a point before and after, where it is at the poses of the motion, and the target points."""
     for look, curve, motion in zip(LOOKS, dense, motions, strict=True):
         z, at = (np.ravel(quantity(one, panel.name).values) for one in (curve, motion))
         axes.plot(z.real, z.imag, **look)

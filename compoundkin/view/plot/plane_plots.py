@@ -148,7 +148,7 @@ def centrodes(
         canvas.plane_axes(one, f"x [{unit}]", f"y [{unit}]")
         canvas.draw_legend(one)
         where = f"every {shared.every} poses: {shared.x.label}"
-        canvas.events_legend(figure, False, bool(shared.happened.blanks), False, where)
+        canvas.events_legend(figure, False, bool(shared.events.blanks), False, where)
         return canvas.finished(figure, shared.labels)
 
 
@@ -249,7 +249,7 @@ def phase(
         shades: Any = plot_style.colours(1, shared.designs)
         for d in range(shared.designs):
             z = x.values[d] + 1j * y.values[d]
-            draw_curve(axes[0], shared, d, z, shades[d], shared.called[d])
+            draw_curve(axes[0], shared, d, z, shades[d], shared.names[d])
             draw_marks(axes[0], shared, d, z, shades[d], shared.designs == 1)
         axes[0].margins(0.1)
         canvas.axis_labels(axes[0], x, y, canvas.WHOLE)
@@ -269,7 +269,7 @@ def hodograph(
     """Draw the curves of vectors' tips, all from one origin: "G.velocity".
 
     Equal scales; a dot every so many poses with the driver's value or the time. Vectors of one plot have one unit.
-    Raises UnknownName for names that the motion does not have, InvalidInput for what is no vector or has another unit.
+    Raises UnknownName for names that the motion does not have, InvalidInput for other quantities or other units.
     Source: W. R. Hamilton, The Hodograph (1847).
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
@@ -281,10 +281,10 @@ def hodograph(
     vectors = plotted_quantities(motion, names)
     for one in vectors:
         if not one.is_vector:
-            raise InvalidInput(Problem(one.name, "it is no vector", "a hodograph takes vectors such as G.velocity"))
+            raise InvalidInput(Problem(one.name, "it is not a vector", "a hodograph takes vectors such as G.velocity"))
         if one.unit != vectors[0].unit:
-            told = f"its unit is {one.unit}, that of {vectors[0].name} {vectors[0].unit}"
-            raise InvalidInput(Problem(one.name, told, "draw them one by one"))
+            what = f"its unit is {one.unit}, that of {vectors[0].name} {vectors[0].unit}"
+            raise InvalidInput(Problem(one.name, what, "draw them one by one"))
     shared = shared_curves_of(motion, designs, every)
     with plot_style.styled():
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or HODOGRAPH)
@@ -309,7 +309,7 @@ def polar(
 
     Vectors are drawn by their length. Radii begin at zero, or with negative values below the lowest one; then the zero
     circle is drawn. All quantities of a plot have one unit. Raises UnknownName for names that the motion does not
-    have, InvalidInput where units differ or `around` is no angle.
+    have, InvalidInput where units differ or `around` is not an angle.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
@@ -338,17 +338,17 @@ def polar(
 
 def _check_radii(radii: Sequence[Plotted], angle: Plotted) -> None:
     if not angle.is_angle:
-        raise InvalidInput(Problem(angle.name, "it is no angle", 'name one: around="crank.angle"'))
+        raise InvalidInput(Problem(angle.name, "it is not an angle", 'name one: around="crank.angle"'))
     for one in radii:
         if one.unit != radii[0].unit:
-            told = f"its unit is {one.unit}, that of {radii[0].name} {radii[0].unit}"
-            raise InvalidInput(Problem(one.name, told, "draw them one by one"))
+            what = f"its unit is {one.unit}, that of {radii[0].name} {radii[0].unit}"
+            raise InvalidInput(Problem(one.name, what, "draw them one by one"))
 
 
 def _line(axes: Any, shared: SharedCurves, d: int, angle: Plotted, radius: Plotted, colour: Any) -> None:
     around, out = radius.curve(d, angle)
     axes.plot(np.deg2rad(around), out, color=colour, label=radius.name)
-    beside = shared.happened.beside(d, angle.values.shape[1])
+    beside = shared.events.beside(d, angle.values.shape[1])
     canvas.draw_rings(axes, np.deg2rad(angle.values[d][beside]), radius.values[d][beside], colour)
 
 
@@ -406,7 +406,7 @@ def bearing_loads(
     `pairs` are names; several are in one panel in the frame's axes only. A dot every so many poses has the driver's
     value or the time.
 
-    Raises UnknownName for pairs that there are not, InvalidInput where none is named. Source: polar load diagrams of
+    Raises UnknownName for pairs that are unknown, InvalidInput where none is named. Source: polar load diagrams of
     engine bearings, e.g. C. F. Taylor, The Internal-Combustion Engine in Theory and Practice.
 
     >>> from compoundkin.model.elements import drive, link
@@ -466,8 +466,8 @@ class SharedCurves:
     """What all curves of a plot share. The driver or time, events, names of designs, labels to be placed."""
 
     x: Plotted
-    happened: Events
-    called: Sequence[str]
+    events: Events
+    names: Sequence[str]
     every: int
     labels: list[PointLabel]
 
@@ -482,7 +482,7 @@ def shared_curves_of(motion: Motion, designs: Sequence[str], every: int | None) 
     x, _ = horizontal_axis(motion, None)
     called = canvas.design_names(motion.shape, designs)
     if every is not None and every < 1:
-        raise InvalidInput(Problem("every", f"{every} is no number of poses", "give 1 or more, or leave it out"))
+        raise InvalidInput(Problem("every", f"{every} is not a number of poses", "give 1 or more, or leave it out"))
     default = max(1, round((motion.inputs.poses - 1) / MARKS))
     return SharedCurves(x, events(motion), called, every or default, [])
 
@@ -491,7 +491,7 @@ def draw_curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, 
     """Draw one curve with an arrow, and rings next to limit positions. The curve is complex, pose by pose."""
     axes.plot(z.real, z.imag, color=colour, label=name)
     canvas.draw_arrow(axes, z.real, z.imag, colour)
-    beside = shared.happened.beside(d, len(z))
+    beside = shared.events.beside(d, len(z))
     canvas.draw_rings(axes, z.real[beside], z.imag[beside], colour)
 
 
@@ -531,10 +531,10 @@ def draw_marks(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, 
 def draw_plane_legends(figure: Any, axes: Sequence[Any], shared: SharedCurves, marked: bool) -> None:
     """Draw the legends of curves, designs, rings and marks."""
     if shared.designs > 1:
-        canvas.designs_legend(figure, axes, shared.called)
+        canvas.designs_legend(figure, axes, shared.names)
     else:
         for one in axes:
             canvas.draw_legend(one)
-    limits = any(any(blank.limits) for blank in shared.happened.blanks)
+    limits = any(any(blank.limits) for blank in shared.events.blanks)
     what = f"every {shared.every} poses: {shared.x.label}" if shared.every > 1 else f"every pose: {shared.x.label}"
     canvas.events_legend(figure, False, limits, False, what if marked and shared.designs <= canvas.LISTED else "")

@@ -49,7 +49,7 @@ STYLE: Mapping[str, Any] = MappingProxyType(
         "axes.spines.right": False,
         "lines.linewidth": 1.5,
         "legend.frameon": False,
-        "legend.handlelength": 3.2,  # so long that a dash can be told from a dot
+        "legend.handlelength": 3.2,  # so long that a dash differs from a dot
         "savefig.dpi": 150,
         "text.parse_math": False,  # a dollar sign in a name is a dollar sign
         "svg.hashsalt": "compoundkin",  # otherwise the names inside an SVG differ from run to run

@@ -1,4 +1,7 @@
-"""Plotted quantities as rows of real numbers (designs x poses) in display units, and the gaps and change points marked along them."""
+"""Plotted quantities as rows of real numbers (designs x poses) in display units, and the gaps between their poses.
+
+Marked along a motion are gaps without assembled poses and change points.
+"""
 
 from __future__ import annotations
 
@@ -118,7 +121,7 @@ def rate_name(motion: Motion, name: str) -> str:
 
 
 def horizontal_axis(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
-    """Tell what a plot runs along, and whether it is always known.
+    """Return the quantity of the horizontal axis, and whether it is known at every pose.
 
     It may not be where the mechanism cannot be assembled.
 
@@ -131,7 +134,7 @@ def horizontal_axis(motion: Motion, against: str | None) -> tuple[Plotted, bool]
         return Plotted(POSE, "", _shaped(motion, np.arange(motion.inputs.poses, dtype=float))), True
     if against == TIME or (against is None and motion.time is not None):
         if motion.time is None:
-            raise InvalidInput(Problem(TIME, "this is no motion in time", "solve(..., time=...)"))
+            raise InvalidInput(Problem(TIME, "this is not a motion in time", "solve(..., time=...)"))
         return Plotted(TIME, unit_of("", "time"), _shaped(motion, motion.time), dimension="time"), True
     if against in (None, DRIVEN):
         return moving_driver(motion), True

@@ -76,10 +76,10 @@ def plot(
     ['bar.angle [deg]', 'G.velocity [mm/s]']
     """
     motions = [motion_of(one) for one in ([motion] if isinstance(motion, Motion | Forces) else motion)]
-    known, scales = names_of_curves(motions, tuple(designs)), AxisScales.asked(xlim, ylim, log)
+    known, scales = names_of_curves(motions, tuple(designs)), AxisScales.checked(xlim, ylim, log)
     drawn = motions_of_plot(motions, names, against, stacked)
     panels = [QuantityPanel(drawn, k, scales, extremes) for k in range(len(drawn[0].panels))]
-    scales.hold(
+    scales.check_fit(
         [one.x for one in drawn], [one.title for one in panels], [curve for one in panels for curve in one.curves]
     )
     heading = (motions[0].mechanism.title if len(motions) == 1 else "") if title is None else title
@@ -164,7 +164,7 @@ class QuantityPanel:
         """Draw the curves, their extremes, and rings beside limit positions."""
         drawn, found = list(self.lines()), list[PointLabel]()
         near = any(curve.has_poles for curve in self.curves)
-        near = near or any(any(blank.limits) for one in self.motions for blank in one.happened.blanks)
+        near = near or any(any(blank.limits) for one in self.motions for blank in one.events.blanks)
         window = set_range(axes, self.curves, [one.line for one in drawn], self.scales, near)
         are_marked = self.extremes or (self.extremes is None and len(drawn) <= MOST_MARKED)
         for one in drawn:
@@ -174,7 +174,7 @@ class QuantityPanel:
                 color=one.colour,
                 label=name if self.designs == 1 else f"_design {one.of.before + one.design}",
             )
-            beside = one.of.happened.beside(one.design, one.of.x.values.shape[1])
+            beside = one.of.events.beside(one.design, one.of.x.values.shape[1])
             canvas.draw_rings(
                 axes, one.of.x.values[one.design][beside], one.curve.values[one.design][beside], one.colour
             )
@@ -198,7 +198,7 @@ class QuantityPanel:
         alone = self.designs == 1
         shades = [plot_style.SHADE] if alone else curve_colours(self.motions, 1)
         for one in self.motions:
-            for blank in one.happened.blanks if one.is_input else ():
+            for blank in one.events.blanks if one.is_input else ():
                 k, row = one.before + blank.design, one.x.values[blank.design]
                 low, high = (0.0, 1.0) if alone else np.array([k, k + 1]) * STRIP / self.designs
                 axes.axvspan(
@@ -210,7 +210,7 @@ class QuantityPanel:
                     lw=0,
                     zorder=0.5,
                 )
-            for design, place in one.happened.changes:
+            for design, place in one.events.changes:
                 where = interpolated(one.x.values[design], place)
                 colour = plot_style.GREY if alone else shades[one.before + design]
                 if np.isfinite(where) and self.scales.reaches(where):
@@ -226,7 +226,7 @@ def curve_colours(motions: Sequence[PlottedMotion], curves: int) -> Sequence[Any
 
 
 def set_horizontal_range(axes: Any, motions: Sequence[PlottedMotion], scales: AxisScales) -> None:
-    """Set the ends of the horizontal axis. They are as asked for, else those of what drives the motions."""
+    """Set the ends of the horizontal axis. They are the given limits, else those of what drives the motions."""
     values = np.concatenate([one.x.values.ravel() for one in motions])
     known = values[np.isfinite(values)]
     if scales.xlim is not None:
@@ -242,10 +242,10 @@ def draw_legends(figure: Any, axes: Sequence[Any], motions: Sequence[PlottedMoti
     else:
         for one in axes:
             canvas.draw_legend(one)
-    blanks = [blank for one in motions for blank in one.happened.blanks]
-    shaded = any(one.happened.blanks and one.is_input for one in motions)
+    blanks = [blank for one in motions for blank in one.events.blanks]
+    shaded = any(one.events.blanks and one.is_input for one in motions)
     limits = any(any(blank.limits) for blank in blanks)
-    canvas.events_legend(figure, shaded, limits, any(one.happened.changes for one in motions))
+    canvas.events_legend(figure, shaded, limits, any(one.events.changes for one in motions))
 
 
 # A mean nearer to zero than this part of the greatest value is zero but for rounding.
@@ -289,7 +289,7 @@ class PlottedMotion:
     motion: Motion
     panels: tuple[Panel, ...]
     is_input: bool
-    happened: Events
+    events: Events
     course: PlottedCurve
     before: int
 
@@ -318,7 +318,7 @@ def motions_of_plot(
     Raises UnknownName for names that one of them does not have, InvalidInput where their units differ.
     """
     if not motions:
-        raise InvalidInput(Problem("motion", "there is none", "give one or several, as solve() returns them"))
+        raise InvalidInput(Problem("motion", "none is given", "give one or several, as solve() returns them"))
     found: list[PlottedMotion] = []
     designs = sum(motion.inputs.designs for motion in motions)
     chosen = names or [one.name for one in plotted_quantities(motions[0], ())]
@@ -328,7 +328,7 @@ def motions_of_plot(
         before = sum(one.designs for one in found)
         course = PlottedCurve.of(motion, x, [curve.name for panel in panels for curve in panel.curves])
         found.append(PlottedMotion(motion, panels, is_input, events(motion), course, before))
-        _hold_units(found[0], found[-1])
+        _check_units(found[0], found[-1])
     return tuple(found)
 
 
@@ -352,8 +352,8 @@ def names_of_curves(motions: Sequence[Motion], given: Sequence[str]) -> tuple[st
     """Return what the curves are called: as given, else by mechanism and design. Raises InvalidInput."""
     designs = sum(motion.inputs.designs for motion in motions)
     if given and len(given) != designs:
-        told = f"there are {designs} designs and {len(given)} names"
-        raise InvalidInput(Problem("designs", told, "give one for each, or leave them out"))
+        what = f"there are {designs} designs and {len(given)} names"
+        raise InvalidInput(Problem("designs", what, "give one for each, or leave them out"))
     if given or len(motions) == 1:
         return canvas.design_names(motions[0].shape, given)
     titles = [motion.mechanism.title for motion in motions]
@@ -367,7 +367,7 @@ def names_of_curves(motions: Sequence[Motion], given: Sequence[str]) -> tuple[st
     )
 
 
-def _hold_units(first: PlottedMotion, other: PlottedMotion) -> None:
+def _check_units(first: PlottedMotion, other: PlottedMotion) -> None:
     """Raise InvalidInput where another motion cannot be drawn in the panels of the first."""
     rows = [(first.x, other.x), *((a.title, b.title) for a, b in zip(first.panels, other.panels, strict=False))]
     for one, another in rows:

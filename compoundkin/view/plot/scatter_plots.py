@@ -31,7 +31,7 @@ ROOM, TICKS = 19, 3
 ALL, SMALL, LARGE, CROSS = 4500.0, 1.5, 16.0, 1.8
 # Free space at the ends of a column's range, a part of it.
 EDGE = 0.05
-# Of fewer designs than these no correlation is told.
+# Of fewer designs than these no correlation is given.
 FEWEST = 3
 
 
@@ -94,7 +94,7 @@ def scatter_matrix(
     Designs that cannot be assembled over the whole motion are grey crosses. With `colour` the dots have the colour of a
     column. Angles are in degrees, `size` in inches. Of very many designs some thousands are drawn, which the plot says.
 
-    Raises UnknownName for columns that there are not, InvalidInput for courses or without Matplotlib.
+    Raises UnknownName for columns that are unknown, InvalidInput for courses or without Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.studies.study import study
@@ -114,7 +114,7 @@ def scatter_matrix(
     wide = max(NARROWEST, PANEL * len(columns) + BESIDE)
     with plot_style.styled():
         some = f"the first {len(shown)} of {len(chosen)} columns" if shown != chosen else ""
-        text = title_with_summary(among.title if title is None else title, among.told(len(rows), len(result)), some)
+        text = title_with_summary(among.title if title is None else title, among.summary(len(rows), len(result)), some)
         figure, axes = canvas.panels(len(columns), text, size or (wide, PANEL * len(columns) + BESIDE), len(columns),
                                      sharex="col")  # fmt: skip
         _panels(np.reshape(np.array(axes, dtype=object), (len(columns), len(columns))), drawing)
@@ -227,14 +227,14 @@ def pareto(
     thousands are drawn. Rows of the front have their numbers, for `result.mechanism(row)`, where they are few. With
     `colour` the dots have the colour of a column.
 
-    Raises UnknownName for columns that there are not, InvalidInput for courses or without Matplotlib. Source of the
+    Raises UnknownName for columns that are unknown, InvalidInput for courses or without Matplotlib. Source of the
     name: V. Pareto, Manuale di economia politica (1906).
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.studies.study import study
-    >>> free, asked = {"crank.B.x": (1.8, 2.2)}, ["rocker.angle.stroke", "rocker.angle.least"]
-    >>> result = study(load_named("crank-rocker"), free, asked, count=64).run()
-    >>> pareto(result, *asked, greatest=["rocker.angle.stroke"]).figure.axes[0].get_xlabel()
+    >>> free, outputs = {"crank.B.x": (1.8, 2.2)}, ["rocker.angle.stroke", "rocker.angle.least"]
+    >>> result = study(load_named("crank-rocker"), free, outputs, count=64).run()
+    >>> pareto(result, *outputs, greatest=["rocker.angle.stroke"]).figure.axes[0].get_xlabel()
     'rocker.angle.stroke [deg], greatest'
     """
     among = StudyColumns(result)
@@ -247,7 +247,7 @@ def pareto(
     with plot_style.styled():
         missing = "" if len(known) else "none has both figures"
         text = title_with_summary(
-            among.title if title is None else title, among.told(len(others) + len(front), len(known)), missing
+            among.title if title is None else title, among.summary(len(others) + len(front), len(known)), missing
         )
         figure, (axes,) = canvas.panels(1, text, size or SIZE)
         _dots(figure, axes, both, others, front, shades)

@@ -46,8 +46,8 @@ class StudyColumns(ShortRepr):
         """Which designs are assembled over the whole motion."""
         return np.asarray(self.found.assembled, dtype=bool)
 
-    def told(self, drawn: int = 0, among: int = 0) -> str:
-        """Say how many designs there are, and how many cannot be assembled.
+    def summary(self, drawn: int = 0, among: int = 0) -> str:
+        """Return how many designs there are, and how many cannot be assembled.
 
         It says how many are drawn where those are fewer than those `among` which they were picked.
         """
@@ -191,7 +191,7 @@ def value_at(values: Number, pose: int | None) -> float:
 
 
 def place_words(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
-    """Say which output it is, and at which pose: "rocker.angle at crank 20 deg"."""
+    """Return which output it is, and at which pose: "rocker.angle at crank 20 deg"."""
     if pose is None:
         return one.name
     x, _ = horizontal_axis(found.motion, None)

@@ -119,7 +119,7 @@ def bands(
     the worst case and as many standard deviations as limits lie from the middle, with the percentiles of random designs
     beside them; what is drawn is the error, unless `relative` is False.
 
-    Raises UnknownName for quantities that there are not, InvalidInput for figures or without Matplotlib.
+    Raises UnknownName for quantities that are unknown, InvalidInput for figures or without Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
@@ -127,9 +127,9 @@ def bands(
     >>> bands(found).figure.axes[0].get_ylabel()
     'error of rocker.angle\\n[deg]'
     """
-    told, motion, panels = _panels(found, names, percentiles, relative)
+    said, motion, panels = _panels(found, names, percentiles, relative)
     x, is_input = horizontal_axis(motion, None)
-    text = title_with_summary(motion.mechanism.title if title is None else title, told)
+    text = title_with_summary(motion.mechanism.title if title is None else title, said)
     with plot_style.styled():
         height = BANDS_BASE_HEIGHT + BANDS_PANEL_HEIGHT * len(panels)
         figure, axes = canvas.panels(len(panels), text, size or (canvas.WIDTH, height), sharex=True)
@@ -152,10 +152,10 @@ def _panels(
     if isinstance(found, StudyResult):
         among = StudyColumns(found)
         panels = tuple(_study_bands(among, one, ordered) for one in among.courses(names))
-        return among.told(), found.reference, panels
-    told = [counted(found.count, "random design"), _missing(found.unassembled)]
+        return among.summary(), found.reference, panels
+    said = [counted(found.count, "random design"), _missing(found.unassembled)]
     panels = tuple(_tolerance_bands(found, one, relative) for one in toleranced_curves(found, names))
-    return ", ".join(filter(None, told)), found.motion, panels
+    return ", ".join(filter(None, said)), found.motion, panels
 
 
 def _missing(number: int) -> str:
@@ -167,7 +167,7 @@ def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
     found: list[float] = np.unique(real_numbers("percentiles", percentiles)).tolist()
     wrong = [one for one in found if not 0.0 <= one <= 100.0]
     if wrong or not found:
-        what = f"{wrong[0]:g} is no percentile" if wrong else "there is none"
+        what = f"{wrong[0]:g} is not a percentile" if wrong else "none is given"
         raise InvalidInput(Problem("percentiles", what, "numbers from 0 to 100, such as (5, 50, 95)"))
     return found
 
@@ -264,7 +264,7 @@ class FigureDistribution:
     """What a histogram shows: values, percentiles, named lines, a normal distribution."""
 
     title: str
-    told: str
+    summary: str
     values: Plotted
     percentiles: Sequence[float]
     lines: tuple[tuple[str, float], ...] = ()
@@ -287,23 +287,23 @@ def histogram(
     else the pose of the greatest deviation. Counted are assembled designs. `percentiles` are dashed, with their values.
     Within tolerances the worst case is drawn too, and the normal distribution of the deviation found by slopes.
 
-    Raises UnknownName for what there is not, InvalidInput for courses of a study, vectors, or without Matplotlib.
+    Raises UnknownName for unknown names, InvalidInput for courses of a study, vectors, or without Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.studies.study import study
-    >>> asked = "rocker.angle.stroke"
-    >>> result = study(load_named("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, asked, count=64).run()
-    >>> int(sum(patch.get_height() for patch in histogram(result, asked).figure.axes[0].patches))
+    >>> stroke = "rocker.angle.stroke"
+    >>> result = study(load_named("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, stroke, count=64).run()
+    >>> int(sum(patch.get_height() for patch in histogram(result, stroke).figure.axes[0].patches))
     64
     """
-    asked = None if percentiles is None else checked_percentiles(percentiles)
+    chosen = None if percentiles is None else checked_percentiles(percentiles)
     if isinstance(found, StudyResult):
-        shown = _study_distribution(found, name, pose, asked)
+        shown = _study_distribution(found, name, pose, chosen)
     else:
-        shown = _tolerance_distribution(found, name, pose, asked)
+        shown = _tolerance_distribution(found, name, pose, chosen)
     labels: list[PointLabel] = []
     with plot_style.styled():
-        text = title_with_summary(shown.title if title is None else title, shown.told)
+        text = title_with_summary(shown.title if title is None else title, shown.summary)
         figure, (axes,) = canvas.panels(1, text, size or SIZE)
         _draw_histogram(axes, shown, labels)
         axes.set_xlabel(shown.values.label)
@@ -319,7 +319,7 @@ def _study_distribution(
     among = StudyColumns(found)
     shown = among.values(among.figure(name), np.flatnonzero(among.assembled))
     return FigureDistribution(
-        among.title, among.told(), shown, HISTOGRAM_PERCENTILES if percentiles is None else percentiles
+        among.title, among.summary(), shown, HISTOGRAM_PERCENTILES if percentiles is None else percentiles
     )
 
 
@@ -335,9 +335,9 @@ def _tolerance_distribution(
         return float(displayed_values(one.name, one.unit, np.array([value_at(own, at)])).values[0])
 
     lines = (("worst case", shown(one.low)), ("_", shown(one.high)))
-    told = f"{place_words(found, one, at)}, {counted(one.sample.count, 'random design')}"
+    said = f"{place_words(found, one, at)}, {counted(one.sample.count, 'random design')}"
     normal = shown(one.mean), shown(one.deviation)
-    return FigureDistribution(found.mechanism.title, told, values, percentiles or found.percentiles, lines, normal)
+    return FigureDistribution(found.mechanism.title, said, values, percentiles or found.percentiles, lines, normal)
 
 
 def _draw_histogram(axes: Any, shown: FigureDistribution, labels: list[PointLabel]) -> None:
@@ -414,7 +414,7 @@ def contributions(
     At the left stand shares of the variance, at the right parts of the worst case; the greatest come first. `name` is a
     figure, or a quantity at the `pose` of that index; without it the pose at which the standard deviation is greatest.
 
-    Raises UnknownName for outputs that there are not, InvalidInput for a vector, a pose that there is not, or without
+    Raises UnknownName for outputs that are unknown, InvalidInput for a vector, a pose that there is not, or without
     Matplotlib.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named

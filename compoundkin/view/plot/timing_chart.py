@@ -222,7 +222,7 @@ class TimingRow:
 
     @cached_property
     def still(self) -> float:
-        """The rate that is none: rounding of the greatest, or of the values."""
+        """The rate that counts as zero: rounding of the greatest, or of the values."""
         values, rates = self.moved(self._joints)
         return CONSTANT * max(float(np.max(np.abs(rates))), float(np.ptp(values)) / (self.between[1] - self.between[0]))
 
@@ -231,7 +231,7 @@ class TimingRow:
         return np.where(np.abs(rates) <= self.still, 0, np.sign(rates)).astype(int)
 
     def _refined(self, k: int, senses: Number, joints: Number) -> float:
-        """Where the sense changes: at a break, else between two places looked at."""
+        """Where the sense changes: at a break, else between two places examined."""
         if self.breaks:
             return float(joints[k])
         before = senses[k - 1]
@@ -261,9 +261,9 @@ def timing_rows(what: Mechanism | Mapping[str, Any], over: str | None) -> tuple[
         if found:
             return ROTATION, found
     wanted = {TIME: "no driver has a law", ROTATION: "no cam is made for a motion program"}
-    told = wanted[over] if over else " and ".join(wanted.values())
+    problem = wanted[over] if over else " and ".join(wanted.values())
     raise InvalidInput(
-        Problem("timing chart", told, "write drive(..., law=laws.program(...)), or give the laws by name")
+        Problem("timing chart", problem, "write drive(..., law=laws.program(...)), or give the laws by name")
     )
 
 
@@ -292,7 +292,7 @@ def _range(laws: Mapping[str, Law], times: Number | None) -> tuple[float, float]
     spans = [law.span for law in laws.values() if law.span] if times is None else [(np.min(times), np.max(times))]
     low, high = min((a for a, _ in spans), default=0.0), max((b for _, b in spans), default=0.0)
     if not high > low:
-        what = "nothing tells for how long the drivers move" if laws else "there is no law"
+        what = "the time over which the drivers move is not given" if laws else "there is no law"
         raise InvalidInput(Problem("timing chart", what, "give Mechanism(..., time=...), or a law with a span"))
     return float(low), float(high)
 

@@ -49,7 +49,7 @@ def workspace(
     ['outer boundary']
     """
     if colour not in (None, CONDITION):
-        what = f"a workspace is not coloured by {colour!r}"
+        what = f"a workspace cannot be coloured by {colour!r}"
         raise InvalidInput(Problem("colour", what, f"give {CONDITION!r}, or leave it out"))
     labels: list[PointLabel] = []
     with plot_style.styled():

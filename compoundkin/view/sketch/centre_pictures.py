@@ -14,8 +14,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.structure import Structure
 from compoundkin.view.sketch.labels import Label, label_around, text_half
-from compoundkin.view.sketch.picture import Picture, Window, checked_size
-from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.picture import Picture, checked_size
+from compoundkin.view.sketch.scene import Scene, Window
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, ShapeGroup, Text, sheet
 from compoundkin.view.sketch.sketch_style import LINE, NUMBER, SMALL
 
@@ -68,7 +68,7 @@ def visible_centres(scene: Scene, window: Window) -> VisibleCentres:
 
 
 def centre_places(scene: Scene) -> list[complex]:
-    """Tell where the instant centres are, those that are not at infinity."""
+    """Return where the instant centres are, those that are not at infinity."""
     if scene.shown is None:
         return []
     centres = instant_centres(scene.shown)

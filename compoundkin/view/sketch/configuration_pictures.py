@@ -18,18 +18,15 @@ from compoundkin.model.attributes import unit_suffix
 from compoundkin.model.outline_shapes import outline_shapes
 from compoundkin.structure import Structure
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
-from compoundkin.view.sketch.labels import NARROW, label_shapes, labels_of, lines_below, lines_of_text, placed
+from compoundkin.view.sketch.labels import label_shapes, labels_of, placed
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import (
-    MARGIN,
+    NARROW,
     PAPER_WIDTH,
     Picture,
     PicturePart,
-    Window,
-    checked_size,
-    fitted_window,
     in_rows,
-    legible_size,
+    with_notes,
 )
 from compoundkin.view.sketch.picture_options import (
     Drawable,
@@ -42,15 +39,14 @@ from compoundkin.view.sketch.picture_options import (
     scene_of,
     structure_of,
 )
-from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, shape_corners, sheet
-from compoundkin.view.sketch.shapes import moved_shapes as shifted
+from compoundkin.view.sketch.scene import MARGIN, Scene, Window, fitted_window
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, moved_shapes, shape_corners
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
 
 if TYPE_CHECKING:
     from compoundkin.configurations.circuit import Circuit
 
-# More panels than this nobody compares.
+# More panels than this are not compared.
 MOST = 40
 # Panels are no larger than this, in picture units: up to so many of them such that two stand side by side, or three.
 LARGEST = {8: 340.0, MOST: 222.0}
@@ -68,48 +64,48 @@ class _ConfigurationPanel:
     faint: tuple[Scene, ...] = ()
 
 
-def configurations_picture(what: Drawable, wishes: PictureOptions) -> Picture:
+def configurations_picture(what: Drawable, options: PictureOptions) -> Picture:
     """Draw all configurations at a value of every driver. Raises what `configurations` does."""
     # late: other pictures need none of this
     from compoundkin.configurations.enumeration import configurations
 
-    what, design = one_design(what, wishes.design)
-    wishes = replace(wishes, design=design)
+    what, design = one_design(what, options.design)
+    options = replace(options, design=design)
     structure = structure_of(what)
-    found = configurations(structure, _values(what, structure, wishes))
+    found = configurations(structure, _values(what, structure, options))
     ones = list(found)
     scenes = _scenes(structure, ones)
     panels = [
         _ConfigurationPanel(str(k), one.name, s) for k, (one, s) in enumerate(zip(ones, scenes, strict=True), start=1)
     ]
     notes = [*_drivers(structure, ones[0].values if ones else {}), found.count_in_words.rstrip(".")]
-    return _picture(structure, panels, notes, "configurations", wishes)
+    return _picture(structure, panels, notes, "configurations", options)
 
 
-def _values(what: Drawable, structure: Structure, wishes: PictureOptions) -> dict[str, float] | None:
-    """The values asked for; else those of the pose that a sketch would show."""
-    if wishes.at is not None:
-        return driver_values_by_name(structure, wishes.at)
+def _values(what: Drawable, structure: Structure, options: PictureOptions) -> dict[str, float] | None:
+    """The requested values; else those of the pose that a sketch would show."""
+    if options.at is not None:
+        return driver_values_by_name(structure, options.at)
     try:
-        scene = scene_of(what, None, wishes.pose, wishes.design)
+        scene = scene_of(what, None, options.pose, options.design)
     except (InvalidInput, NotAssembled):
-        if wishes.pose is not None:
+        if options.pose is not None:
             raise
         # there may be other configurations than the one that is drawn
         return None
     return {step.drive.name: scene.driver_value(step.drive.name) for step in scene.driven} if scene.shown else None
 
 
-def circuits_picture(what: Drawable, wishes: PictureOptions) -> Picture:
+def circuits_picture(what: Drawable, options: PictureOptions) -> Picture:
     """Draw all circuits. Each is in the middle of its first branch, its other branches faint.
 
     The driver moves that `at` leaves out, the first of those; the others stand still. Raises what `circuits` does.
     """
     from compoundkin.configurations.circuit_search import circuits
 
-    structure = structure_of(one_design(what, wishes.design)[0])
+    structure = structure_of(one_design(what, options.design)[0])
     names = [drive.name for drive in structure.mechanism.drives]
-    given = driver_values_by_name(structure, wishes.at) if wishes.at is not None else {}
+    given = driver_values_by_name(structure, options.at) if options.at is not None else {}
     free = [name for name in names if name not in given] or names
     values = {name: value for name, value in given.items() if name != free[0]} if free else {}
     found = circuits(structure, free[0] if free else None, values)
@@ -121,11 +117,11 @@ def circuits_picture(what: Drawable, wishes: PictureOptions) -> Picture:
         panels.append(_ConfigurationPanel(f"circuit {circuit.number}", said, first, tuple(others)))
     count = f"{count_phrase(len(found.circuits), 'circuit')} of {found.driver}"
     branches = f"{count_phrase(len(found.branches), 'branch', 'branches')}, each in its middle"
-    return _picture(structure, panels, [count, branches, *_drivers(structure, found.fixed)], "circuits", wishes)
+    return _picture(structure, panels, [count, branches, *_drivers(structure, found.fixed)], "circuits", options)
 
 
 def _of_circuit(structure: Structure, driver: str, circuit: Circuit) -> str:
-    """Say which branches a circuit has, and how far the driver goes."""
+    """Return which branches a circuit has, and how far the driver goes."""
     numbers = [str(branch.number) for branch in circuit.branches]
     said = f"branch {numbers[0]}" if len(numbers) == 1 else f"branches {', '.join(numbers)}"
     if circuit.turns_fully:
@@ -158,25 +154,26 @@ def _drivers(structure: Structure, values: Mapping[str, float]) -> list[str]:
 
 
 def _picture(
-    structure: Structure, panels: Sequence[_ConfigurationPanel], notes: Sequence[str], kind: str, wishes: PictureOptions
+    structure: Structure,
+    panels: Sequence[_ConfigurationPanel],
+    notes: Sequence[str],
+    kind: str,
+    options: PictureOptions,
 ) -> Picture:
     """The panels in rows, and what stands below them."""
-    asked, size, mechanism = label_kinds(wishes.labels), checked_size(wishes.size), structure.mechanism
+    kinds = label_kinds(options.labels)
     shown = panels[:MOST]
-    parts = _parts(shown, asked)
+    parts = _parts(shown, kinds)
     shapes, width, height = in_rows(parts, widest=PAPER_WIDTH)
     more = [f"and {len(panels) - MOST} more"] if len(panels) > MOST else []
-    legend = shown[0].scene.legend.items() if shown and "links" in asked else ()
+    legend = shown[0].scene.legend.items() if shown and "links" in kinds else ()
     notes = [*notes, *more, *(f"{number} {name}" for name, number in legend)]
-    texts, height = lines_below(lines_of_text(notes, width - 32.0), height)
     described = "; ".join(f"{panel.heading}: {panel.said}" for panel in panels)
-    title = f"{mechanism.title}: {kind}"
-    return Picture(
-        (sheet(width, height), *shapes, *texts), width, height, title, described, legible_size(width, height, size)
-    )
+    title = f"{structure.mechanism.title}: {kind}"
+    return with_notes(shapes, width, height, notes, title, described, options.size, legible=True)
 
 
-def _parts(panels: Sequence[_ConfigurationPanel], asked: Sequence[str]) -> list[PicturePart]:
+def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[PicturePart]:
     """The panels with their headings, all in one window."""
     scenes = [scene for panel in panels for scene in (panel.scene, *panel.faint)]
     if not scenes:
@@ -193,7 +190,7 @@ def _parts(panels: Sequence[_ConfigurationPanel], asked: Sequence[str]) -> list[
         heads += [
             Text(top + 1j * LINE * i, line.replace("\u00a0", " "), "note") for i, line in enumerate(lines, start=1)
         ]
-        part = ShapeGroup((*heads, *shifted(_drawn(panel, window, asked), 1j * down)))
+        part = ShapeGroup((*heads, *moved_shapes(_drawn(panel, window, kinds), 1j * down)))
         parts.append(PicturePart((part,), window.width, window.height + down))
     return parts
 
@@ -207,8 +204,8 @@ def _window(scenes: Sequence[Scene], largest: float) -> Window:
     return fitted_window(whole, points, NARROWEST)
 
 
-def _drawn(panel: _ConfigurationPanel, window: Window, asked: Sequence[str]) -> list[Shape]:
+def _drawn(panel: _ConfigurationPanel, window: Window, kinds: Sequence[str]) -> list[Shape]:
     painter = Painter(panel.scene, window)
     laid = in_layers(painter)
-    found = placed(labels_of(painter, laid, asked), [one.shape for one in laid], window.width, window.height)
+    found = placed(labels_of(painter, laid, kinds), [one.shape for one in laid], window.width, window.height)
     return [*(ghost_shapes(other, window) for other in panel.faint), *by_links(laid), *label_shapes(panel.scene, found)]

@@ -12,21 +12,11 @@ from compoundkin.kinematics.dyad_loci import CircleLocus, Loci, Locus, same_locu
 from compoundkin.kinematics.groups import DyadSolver, as_dyad
 from compoundkin.structure import Group
 from compoundkin.view.sketch.kinematic_sketch import layered, nearby
-from compoundkin.view.sketch.labels import (
-    SIDE,
-    Label,
-    label_around,
-    lines_below,
-    lines_of_text,
-    placed,
-    point_letters,
-    text_half,
-    width_with,
-)
+from compoundkin.view.sketch.labels import Label, label_around, placed, point_letters, text_half
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted_window, window_around
+from compoundkin.view.sketch.picture import SIDE, Picture, checked_size, lines_below, lines_of_text, width_with
 from compoundkin.view.sketch.picture_options import Drawable, PictureOptions, pose_notes, scene_of
-from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.scene import Scene, Window, fitted_window, window_around
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, shape_corners, sheet
 from compoundkin.view.sketch.sketch_style import LETTER, PIN, SMALL, STUD, style_of
 
@@ -72,23 +62,23 @@ class DrawnDyad:
                 if not any(same_locus(curve, own, SAME * size) for own in self.modes[0].curves)]  # fmt: skip
 
 
-def construction(what: Drawable, wishes: PictureOptions) -> Picture:
+def construction(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the construction of a dyad at one pose.
 
     Its mode is solid and the other one dashed. Circles have their centres at the outer pins and meet each other or
     lines where the inner pair is. Raises InvalidInput for a link of no dyad, and for a mechanism that is shown as
     drawn. Source: e.g. F. Grashof, Theoretische Maschinenlehre, or any course of descriptive kinematics.
     """
-    scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+    scene = scene_of(what, options.at, options.pose, options.design)
     scene = scene.compact(LONG * scene.mechanism.geometry.size)
-    solver = _solver(scene, wishes.link)
+    solver = _solver(scene, options.link)
     modes = _modes(scene, solver)
     drawn = DrawnDyad(scene, solver.group, modes, solver.letters, _window(scene, solver.group, modes))
     shapes = list(_shapes(drawn))
     found = placed(_labels(drawn), shapes, drawn.window.width, drawn.window.height)
     names = [Text(at, key.partition(" ")[2], key.partition(" ")[0]) for key, at in found.items()]
     faint = ShapeGroup(tuple(layered(Painter(scene, drawn.window))), "ghost")
-    return _finished(drawn, [faint, *shapes, *names], checked_size(wishes.size))
+    return _finished(drawn, [faint, *shapes, *names], checked_size(options.size))
 
 
 def _solver(scene: Scene, link: str | None) -> DyadSolver:
@@ -101,13 +91,13 @@ def _solver(scene: Scene, link: str | None) -> DyadSolver:
     known = [dyad for dyad in dyads if link is None or link in dyad.group.links]
     if known:
         return known[0]
-    told = "; ".join(", ".join(dyad.group.links) for dyad in dyads)
-    remedy = f"the dyads have {told}" if dyads else "none of its groups is a dyad"
+    listed = "; ".join(", ".join(dyad.group.links) for dyad in dyads)
+    remedy = f"the dyads have {listed}" if dyads else "none of its groups is a dyad"
     if link is None:
         raise InvalidInput(Problem("construction", "there is no dyad", "circles and lines construct dyads only"))
     scene.mechanism.link(link)
     group = next((one.group for one in solvers if link in one.group.links), None)
-    what = f"{link!r} belongs to the group {group.name}, which is no dyad" if group else f"{link!r} is in no group"
+    what = f"{link!r} belongs to the group {group.name}, which is not a dyad" if group else f"{link!r} is in no group"
     raise InvalidInput(Problem("link", what, remedy))
 
 

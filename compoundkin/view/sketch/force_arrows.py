@@ -35,11 +35,11 @@ from compoundkin.view.sketch.vectors import VectorScale, round_below
 
 # The arc of a moment: its radius, what it goes through (radians), and how much farther the next one is.
 ROUND, SWEEP, NEXT = 19.0, 2.7, 7.0
-# Arrows begin and end so far from the point at which they act, so that the pin stays to be seen.
+# Arrows begin and end so far from the point at which they act, so that the pin stays visible.
 CLEAR = 6.0
 # Around a driven pin it is outside of the arrow of the driver.
 AROUND_DRIVER = 34.0
-# A shorter arrow is not drawn, and told below the picture.
+# A shorter arrow is not drawn, but listed below the picture.
 SHORTEST = 5.0
 # Digits of the values beside arrows.
 DIGITS = 4
@@ -66,16 +66,16 @@ class DrawnForce:
     away: complex
 
     @property
-    def is_seen(self) -> bool:
-        """Whether its arrow is long enough to be seen."""
+    def is_visible(self) -> bool:
+        """Whether its arrow is long enough visible."""
         return abs(self.stop - self.start) >= SHORTEST
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
         """The arrow."""
-        title = f"{self.force.told}: {force_text(abs(self.force.force))}"
+        title = f"{self.force.description}: {force_text(abs(self.force.force))}"
         made = arrow_shapes(self.start, self.stop, self.force.kind)
-        return (ShapeGroup(made, title=title, links=(self.force.link,)),) if self.is_seen else ()
+        return (ShapeGroup(made, title=title, links=(self.force.link,)),) if self.is_visible else ()
 
     def label(self, text: str, key: str) -> Label:
         """Return the label at the free end of the arrow."""
@@ -111,7 +111,9 @@ def moment_arc(one: ActingForce, at: complex, radius: float, toward: complex) ->
     heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
     arc = ArcShape(complex(at + start * radius), complex(end), radius, way > 0, one.kind)
     tip = arrow_head(complex(at + stop * radius), complex(heading), f"{one.kind}-head")
-    return (ShapeGroup((arc, tip), title=f"moment, {one.told}: {force_text(abs(one.moment))}", links=(one.link,)),)
+    return (
+        ShapeGroup((arc, tip), title=f"moment, {one.description}: {force_text(abs(one.moment))}", links=(one.link,)),
+    )
 
 
 def moment_arcs(
@@ -156,13 +158,13 @@ FAINT = 1e-5
 class ActingForce:
     """A force and a moment on a link at one pose.
 
-    `name` and `turning` are their short names, `told` says it in words.
+    `name` and `turning` are their short names, `description` says it in words.
     `kind` is the style they are drawn in, `at` a place of the mechanism's plane.
     """
 
     name: str
     turning: str
-    told: str
+    description: str
     link: str
     by: str
     kind: str
@@ -216,7 +218,7 @@ def acting_forces(forces: Forces, scene: Scene) -> Mapping[str, tuple[ActingForc
 
 
 def is_drawn_once(one: ActingForce, legend: Mapping[str, int]) -> bool:
-    """Tell whether a force stands for itself and its opposite.
+    """Return whether a force stands for itself and its opposite.
 
     That in a pair does on its later link; none on the frame.
     """
@@ -232,7 +234,7 @@ def largest_force(found: Mapping[str, tuple[ActingForce, ...]]) -> float:
 
 
 def _cleaned(one: ActingForce, force: float, moment: float) -> ActingForce:
-    """Rounding as zero; what equilibrium leaves open is told, and not drawn."""
+    """Rounding as zero; what equilibrium leaves open is named, and not drawn."""
     if not np.isfinite(one.force) or not np.isfinite(one.moment):
         return replace(one, force=0j, moment=0.0, is_open=True)
     return replace(
@@ -247,7 +249,7 @@ def _courses(forces: Forces, scene: Scene, link: str, design: int) -> Iterator[F
     twice = Counter(one.by for one in acting if one.kind == PAIR)
     for letter in pins:
         pin = _course(forces.pins[letter].on(link), design, f"F{_lowered(scene, link)}({letter})", "M")
-        # the torque of a driver at the pin is told by itself
+        # the torque of a driver at the pin is drawn by itself
         turned = [_course(one, design, "", "").moment for one in acting if one.kind == DRIVER and one.at == letter]
         yield replace(pin, moment=pin.moment - sum(turned)) if turned else pin
     for one in acting:
@@ -278,9 +280,9 @@ def _lowered(scene: Scene, *links: str) -> str:
 
 
 def _course(one: LinkWrench, design: int, name: str, turning: str) -> ForceCourse:
-    told = f"{one.kind} {one.name} on {one.on}" + (f" by {one.by}" if one.by else "")
+    description = f"{one.kind} {one.name} on {one.on}" + (f" by {one.by}" if one.by else "")
     kind = REACTION if one.kind in (PAIR, DRIVER, FRICTION) else INERTIA if one.kind == OF_INERTIA else LOAD
-    shown = ActingForce(name, turning, told, one.on, one.by, kind, 0j, 0j, 0.0, one.kind == DRIVER)
+    shown = ActingForce(name, turning, description, one.on, one.by, kind, 0j, 0j, 0.0, one.kind == DRIVER)
 
     def row(values: Any) -> Number:
         rows = np.broadcast_to(values, one.motion.shape).reshape(one.motion.inputs.designs, one.motion.inputs.poses)

@@ -27,23 +27,30 @@ from compoundkin.view.sketch.force_arrows import (
 )
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, by_links, in_layers, window_on
 from compoundkin.view.sketch.labels import (
-    NARROW,
-    SIDE,
     WIDE,
     Label,
     label_around,
     label_shapes,
     labels_of,
-    lines_below,
-    lines_of_text,
     placed,
     point_letters,
     text_half,
 )
 from compoundkin.view.sketch.painter import Painter, pin_shapes
-from compoundkin.view.sketch.picture import MARGIN, Picture, PicturePart, Window, checked_size, fitted_window, in_rows
+from compoundkin.view.sketch.picture import (
+    NARROW,
+    SIDE,
+    Picture,
+    PicturePart,
+    checked_size,
+    headed_part,
+    in_rows,
+    lines_below,
+    lines_of_text,
+    with_notes,
+)
 from compoundkin.view.sketch.picture_options import PictureOptions, label_kinds, pose_notes, scene_of
-from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.scene import MARGIN, Scene, Window, fitted_window, panel_around
 from compoundkin.view.sketch.shapes import (
     CircleShape,
     Shape,
@@ -64,7 +71,7 @@ LONGEST = 0.2
 SMALL_PART = 0.03
 # An arrow that tells a colour is so long.
 KEY = 22.0
-# The kinds of arrows, as they are told below a picture.
+# The kinds of arrows, as they are named below a picture.
 KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: "inertia"}
 
 
@@ -76,7 +83,7 @@ class ForcesAtPose:
     scene: Scene
     on: Mapping[str, tuple[ActingForce, ...]]
 
-    def shown(self, link: str | None) -> list[ActingForce]:
+    def displayed(self, link: str | None) -> list[ActingForce]:
         """Return what is drawn in a sketch. All that acts on a link, or each pair's force on its second one."""
         if link is not None:
             return list(self.on[link])
@@ -93,18 +100,18 @@ class ForcesAtPose:
         return complex(np.mean([self.scene.at(one.link, p) for p in points])) if points else one.at
 
 
-def forces_at_pose(forces: Forces, wishes: PictureOptions) -> ForcesAtPose:
-    """Return what acts at the pose that is asked for. Raises UnknownName for a link that there is not."""
-    scene = scene_of(forces.motion, wishes.at, wishes.pose, wishes.design)
-    if wishes.link is not None:
-        scene.mechanism.link(wishes.link)
+def forces_at_pose(forces: Forces, options: PictureOptions) -> ForcesAtPose:
+    """Return what acts at the requested pose. Raises UnknownName for an unknown link."""
+    scene = scene_of(forces.motion, options.at, options.pose, options.design)
+    if options.link is not None:
+        scene.mechanism.link(options.link)
     return ForcesAtPose(forces, scene, acting_forces(forces, scene))
 
 
-def force_sketch(forces: Forces, wishes: PictureOptions) -> Picture:
+def force_sketch(forces: Forces, options: PictureOptions) -> Picture:
     """Draw the sketch with the forces at one pose."""
-    known, asked = forces_at_pose(forces, wishes), label_kinds(wishes.labels)
-    scene, shown = known.scene, known.shown(wishes.link)
+    known, kinds = forces_at_pose(forces, options), label_kinds(options.labels)
+    scene, shown = known.scene, known.displayed(options.link)
     window = window_on(scene)
     scale = force_scale(shown, LONGEST * window.diagonal, forces.units.force)
     if scale is None and not any(one.moment for one in shown):
@@ -113,15 +120,15 @@ def force_sketch(forces: Forces, wishes: PictureOptions) -> Picture:
     painter = Painter(scene, window)
     shapes, names = _acting(known, painter, shown, scale)
     laid = in_layers(painter)
-    own = labels_of(painter, laid, asked)
-    labels = [label for label, _, _ in names] if asked else []
+    own = labels_of(painter, laid, kinds)
+    labels = [label for label, _, _ in names] if kinds else []
     behind = [one.shape for one in laid]
     found = placed([*own, *labels], [*behind, *shapes], window.width, window.height)
     texts = [*label_shapes(scene, {label.key: found[label.key] for label in own})]
     texts += [
-        part for label, text, kind in names if asked for part in force_name(label.key, text, found[label.key], kind)
+        part for label, text, kind in names if kinds for part in force_name(label.key, text, found[label.key], kind)
     ]
-    return picture_with_notes(known, window, [*behind, *shapes, *texts], scale, shown, "forces", wishes.size)
+    return picture_with_notes(known, window, [*behind, *shapes, *texts], scale, shown, "forces", options.size)
 
 
 def _with_room(known: ForcesAtPose, window: Window, shown: Sequence[ActingForce], scale: VectorScale | None) -> Window:
@@ -142,7 +149,7 @@ def _acting(
     arrows = _arrows(known, window, shown, scale)
     shapes = [shape for one in arrows for shape in one.shapes]
     names = [(one.label(one.force.name, f"force {k}"), one.force.name, one.force.kind)
-             for k, one in enumerate(arrows) if one.is_seen]  # fmt: skip
+             for k, one in enumerate(arrows) if one.is_visible]  # fmt: skip
     for one, arc, label in moment_arcs(shown, lambda at: complex(window.at(at)), painter.middle, AROUND_DRIVER):
         shapes += arc
         names.append((label, one.turning, one.kind))
@@ -152,7 +159,7 @@ def _acting(
 def _arrows(
     known: ForcesAtPose, window: Window, shown: Sequence[ActingForce], scale: VectorScale | None
 ) -> list[DrawnForce]:
-    """The arrows; forces that press on their link come from outside, so that its bars stay to be seen."""
+    """The arrows; forces that press on their link come from outside, so that its bars stay visible."""
     if scale is None:
         return []
     return [force_arrow(one, complex(window.at(one.at)), scale, complex(window.at(known.middle(one)))) for one in shown]
@@ -175,8 +182,8 @@ def picture_with_notes(
     texts, height = notes_below(known, shown, scale, window.width, window.height)
     paper = sheet(window.width, height)
     title = f"{scene.mechanism.title}: {what}"
-    told = "; ".join(f"{one.told} {abs(one.force):.4g}" for one in shown if one.force)
-    return Picture((paper, *shapes, *texts), window.width, height, title, told, checked_size(size), window)
+    description = "; ".join(f"{one.description} {abs(one.force):.4g}" for one in shown if one.force)
+    return Picture((paper, *shapes, *texts), window.width, height, title, description, checked_size(size), window)
 
 
 def notes_below(
@@ -221,22 +228,23 @@ def _units(known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale
 
 # The greatest distance between two corners of a polygon, picture units: of several, of a single one.
 POLYGON_LENGTH, POLYGON_LENGTH_ALONE = 170.0, 380.0
-POLYGON_HEADING, BELOW = 30.0, 14.0
+# Below each polygon, for its scale.
+BELOW = 14.0
 # Forces that lie on each other are drawn beside their line.
 ASIDE = 4.0
 # Labels are tried at these parts of a force, so far beside it.
 ALONG, BESIDE = (0.5, 0.35, 0.65, 0.22, 0.78), (4.0, 12.0, 22.0)
 
 
-def force_polygons(forces: Forces, wishes: PictureOptions) -> Picture:
+def force_polygons(forces: Forces, options: PictureOptions) -> Picture:
     """Draw the polygon of all forces on every link, or on one.
 
     Each has its own scale. Loads come first, then weight and inertia, then reactions, which close it.
 
     Raises InvalidInput where no link has forces. Source: P. Varignon, Nouvelle mécanique, 1725.
     """
-    known = forces_at_pose(forces, wishes)
-    links = [wishes.link] if wishes.link is not None else [name for name in known.scene.legend if name != FRAME]
+    known = forces_at_pose(forces, options)
+    links = [options.link] if options.link is not None else [name for name in known.scene.legend if name != FRAME]
     longest = POLYGON_LENGTH_ALONE if len(links) == 1 else POLYGON_LENGTH
     parts = [part for link in links for part in _polygon_part(known, link, longest)]
     if not parts:
@@ -247,9 +255,8 @@ def force_polygons(forces: Forces, wishes: PictureOptions) -> Picture:
         f"forces in {forces.units.force}",
         *(f"{number} {name}" for name, number in known.scene.legend.items()),
     ]
-    texts, height = lines_below(lines_of_text(notes, width - 2.0 * SIDE), height)
     title = f"{known.scene.mechanism.title}: force polygon{'' if len(links) == 1 else 's'}"
-    return Picture((sheet(width, height), *shapes, *texts), width, height, title, "", checked_size(wishes.size))
+    return with_notes(shapes, width, height, notes, title, "", options.size)
 
 
 def _polygon_part(known: ForcesAtPose, link: str, longest: float) -> list[PicturePart]:
@@ -271,23 +278,18 @@ def _polygon_panel(
     shapes, labels, texts = _sides(forces, corner)
     points = np.array([*corner, *(place for label in labels for place in (label.places[0] - label.half,
                                                                            label.places[0] + label.half))])  # fmt: skip
-    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
-    size = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j) - low
     title = f"{known.scene.numbers[link]} {link}"
-    told = Text(0j, scale.text, "note", "start")
     ruler = scale.amount * scale.per_unit
-    wide = max(size.real, len(title) * LETTER * WIDE, ruler + (len(scale.text) + 4) * SMALL * WIDE)
-    low -= (wide - size.real) / 2.0
+    narrowest = max(len(title) * LETTER * WIDE, ruler + (len(scale.text) + 4) * SMALL * WIDE)
+    low, wide, tall = panel_around(points, narrowest)
     shapes = moved_shapes(shapes, -low)
-    every = [Label(label.key, label.half, tuple(p - low for p in label.places), label.costs) for label in labels]
-    found = placed(every, shapes, wide, size.imag)
+    every = [label.moved(-low) for label in labels]
+    found = placed(every, shapes, wide, tall)
     names = [part for label, (text, kind) in zip(every, texts, strict=True)
              for part in force_name(label.key, text, found[label.key], kind)]  # fmt: skip
-    heading = Text(complex(wide / 2.0, POLYGON_HEADING / 2.0), title, "heading")
-    foot = complex((wide - ruler) / 2.0 - SIDE, POLYGON_HEADING + size.imag + BELOW / 2.0)
-    line = [*arrow_shapes(foot, foot + ruler, "drive"), *moved_shapes([told], foot + ruler + 0.5 * SIDE)]
-    group = ShapeGroup((heading, *moved_shapes([*shapes, *names], POLYGON_HEADING * 1j), *line), links=(link,))
-    return PicturePart((group,), wide, size.imag + POLYGON_HEADING + BELOW + LINE)
+    foot = complex((wide - ruler) / 2.0 - SIDE, tall + BELOW / 2.0)
+    line = [*arrow_shapes(foot, foot + ruler, "drive"), Text(foot + ruler + 0.5 * SIDE, scale.text, "note", "start")]
+    return headed_part(title, [*shapes, *names, *line], wide, tall + BELOW + LINE, (link,))
 
 
 def _sides(
@@ -304,7 +306,7 @@ def _sides(
         if flat:
             start, stop = (place - across * ASIDE for place in (start, stop))
         shapes.append(
-            ShapeGroup(arrow_shapes(start, stop, one.kind), title=f"{one.told}: {force_text(abs(one.force))}")
+            ShapeGroup(arrow_shapes(start, stop, one.kind), title=f"{one.description}: {force_text(abs(one.force))}")
         )
         text = f"{one.name} {force_text(abs(one.force))}"
         labels.append(_beside(f"side {k}", text, start, stop, middle))
@@ -334,20 +336,18 @@ def _beside(key: str, text: str, start: complex, stop: complex, middle: complex)
 PART_OF_SKETCH, ALONE = 0.55, 1.0
 # The longest force is so long, picture units.
 BODY_FORCE_LENGTH, BODY_FORCE_LENGTH_ALONE = 84.0, 130.0
-# Above each body, for its heading.
-BODY_HEADING = 30.0
 # The circle at a mass centre, and the dot in it.
 CENTRE, DOT = 4.0, 1.5
 
 
-def free_bodies(forces: Forces, wishes: PictureOptions) -> Picture:
+def free_bodies(forces: Forces, options: PictureOptions) -> Picture:
     """Draw every link on its own, or one, with all that acts on it.
 
     All forces are to one scale; they press on a link from outside and pull away from it. Moments are arcs, not to
     scale. Source: any course of statics (free-body diagram).
     """
-    known = forces_at_pose(forces, wishes)
-    links = [wishes.link] if wishes.link is not None else [name for name in known.scene.legend if name != FRAME]
+    known = forces_at_pose(forces, options)
+    links = [options.link] if options.link is not None else [name for name in known.scene.legend if name != FRAME]
     shown = [one for link in links for one in known.on[link]]
     scale = force_scale(shown, BODY_FORCE_LENGTH_ALONE if len(links) == 1 else BODY_FORCE_LENGTH, forces.units.force)
     first, part = window_on(known.scene), ALONE if len(links) == 1 else PART_OF_SKETCH
@@ -355,8 +355,10 @@ def free_bodies(forces: Forces, wishes: PictureOptions) -> Picture:
     shapes, width, height = in_rows([_body(known, window, link, scale) for link in links])
     texts, height = notes_below(known, shown, scale, width, height)
     title = f"{known.scene.mechanism.title}: free {'body' if len(links) == 1 else 'bodies'}"
-    told = "; ".join(f"{one.told} {abs(one.force):.4g}" for one in shown if one.force)
-    return Picture((sheet(width, height), *shapes, *texts), width, height, title, told, checked_size(wishes.size))
+    description = "; ".join(f"{one.description} {abs(one.force):.4g}" for one in shown if one.force)
+    return Picture(
+        (sheet(width, height), *shapes, *texts), width, height, title, description, checked_size(options.size)
+    )
 
 
 def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | None) -> PicturePart:
@@ -383,7 +385,7 @@ def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | N
 def _force_names(arrows: Sequence[DrawnForce]) -> list[tuple[Label, str, str]]:
     """The names of forces with their values."""
     found = []
-    for k, one in enumerate(one for one in arrows if one.is_seen):
+    for k, one in enumerate(one for one in arrows if one.is_visible):
         text = f"{one.force.name} {force_text(abs(one.force.force))}"
         found.append((one.label(text, f"force {k}"), text, one.force.kind))
     return found
@@ -416,24 +418,13 @@ def _body_panel(
     scene = painter.scene
     extent = np.array([*shape_corners(shapes), *points, *(label.places[0] - label.half for label, _, _ in names),
                        *(label.places[0] + label.half for label, _, _ in names)])  # fmt: skip
-    low = complex(extent.real.min(), extent.imag.min()) - MARGIN * (1 + 1j)
-    size = complex(extent.real.max(), extent.imag.max()) + MARGIN * (1 + 1j) - low
     title = f"{scene.numbers[link]} {link}"
-    wide = max(size.real, len(title) * LETTER * WIDE)
-    low -= (wide - size.real) / 2.0
+    low, wide, tall = panel_around(extent, len(title) * LETTER * WIDE)
     shapes = moved_shapes(shapes, -low)
-    every = [_shifted(label, -low) for label in (*own, *(label for label, _, _ in names))]
-    found = placed(every, shapes, wide, size.imag)
+    found = placed([label.moved(-low) for label in (*own, *(label for label, _, _ in names))], shapes, wide, tall)
     texts = label_shapes(scene, {label.key: found[label.key] for label in own})
     texts += [part for label, text, kind in names for part in force_name(label.key, text, found[label.key], kind)]
-    heading = Text(complex(wide / 2.0, BODY_HEADING / 2.0), title, "heading")
-    group = ShapeGroup((heading, *moved_shapes([*shapes, *texts], BODY_HEADING * 1j)), links=(link,))
-    return PicturePart((group,), wide, size.imag + BODY_HEADING)
-
-
-def _shifted(label: Label, by: complex) -> Label:
-    own = tuple((a + by, b + by) for a, b in label.own)
-    return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
+    return headed_part(title, [*shapes, *texts], wide, tall, (link,))
 
 
 def drawn_force_courses(sketch: MovingSketch, forces: Forces) -> tuple[ForceCourse, ...]:

@@ -28,24 +28,13 @@ from compoundkin.view.sketch.labels import (
     label_courses,
     label_shapes,
     labels_of,
-    lines_below,
-    lines_of_text,
     placed,
     placed_along,
     poses_looked_at,
     text_half,
 )
 from compoundkin.view.sketch.painter import Laid, Layer, Painter, edges, link_body, link_contours, pin_shapes, skeleton
-from compoundkin.view.sketch.picture import (
-    MARGIN,
-    Picture,
-    Window,
-    checked_size,
-    fitted_window,
-    smooth,
-    thinned,
-    window_around,
-)
+from compoundkin.view.sketch.picture import Picture, checked_size, lines_below, lines_of_text
 from compoundkin.view.sketch.picture_options import (
     Drawable,
     PictureOptions,
@@ -55,7 +44,17 @@ from compoundkin.view.sketch.picture_options import (
     scene_in,
     scene_of,
 )
-from compoundkin.view.sketch.scene import Scene, is_inside, racks
+from compoundkin.view.sketch.scene import (
+    MARGIN,
+    Scene,
+    Window,
+    fitted_window,
+    is_inside,
+    racks,
+    smooth,
+    thinned,
+    window_around,
+)
 from compoundkin.view.sketch.shapes import (
     Polygon,
     Polyline,
@@ -90,9 +89,9 @@ MOST_GHOSTS = 60
 
 
 def window_on(
-    scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), wishes: Sequence[complex] = ()
+    scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), preferred: Sequence[complex] = ()
 ) -> Window:
-    """Return the window that holds a scene, its ghosts and paths. It also holds `wishes` that are not far."""
+    """Return the window that holds a scene, its ghosts and paths. It also holds `preferred` ones that are not far."""
     places = [place for shown in (scene, *more) for place in extent(shown)]
     places += [scene.places(letter) for letter in paths]
     plain = Window(1.0, 0j, 0.0, 0.0)
@@ -104,15 +103,15 @@ def window_on(
     points = np.concatenate([shape_corners(drawn), *(first.at(scene.places(letter)) for letter in paths)])
     # of a frame alone nothing is drawn
     points = points if len(points) else first.at(np.zeros(1, dtype=complex))
-    return fitted_window(first, np.append(points, nearby(points, [complex(first.at(wish)) for wish in wishes])))
+    return fitted_window(first, np.append(points, nearby(points, [complex(first.at(place)) for place in preferred])))
 
 
-def nearby(points: Number, wishes: Sequence[complex]) -> list[complex]:
-    """Return those of the wishes that are not far outside the box around points."""
+def nearby(points: Number, preferred: Sequence[complex]) -> list[complex]:
+    """Return those of the preferred places that are not far outside the box around points."""
     low, high = complex(points.real.min(), points.imag.min()), complex(points.real.max(), points.imag.max())
     room = STRETCH * max((high - low).real, (high - low).imag)
     box = Window(1.0, 0j, (high - low).real + 2.0 * room, (high - low).imag + 2.0 * room)
-    return [wish for wish in wishes if box.holds(wish - low + room * (1 + 1j))]
+    return [place for place in preferred if box.holds(place - low + room * (1 + 1j))]
 
 
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
@@ -153,35 +152,35 @@ def point_path(scene: Scene, window: Window, letter: str) -> list[Shape]:
     return [Polyline(window.line(smooth(thinned(p))), "path") for p in scene.path(letter) if len(p) > 1]
 
 
-def draw_sketch(what: Drawable, wishes: PictureOptions) -> Picture:
+def draw_sketch(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the kinematic sketch of a mechanism at one pose."""
-    wanted_vectors, asked = vector_kinds(wishes.vectors), label_kinds(wishes.labels)
-    scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
-    traced = path_letters(scene.mechanism, wishes.paths)
-    others = _ghosts(scene, wishes.ghosts)
-    places = _centre_places(scene) if wishes.centres else []
-    window, scales = _scaled(scene, window_on(scene, others, traced, places), wanted_vectors)
-    window = room_for_offsets(scene, window) if wishes.dimensions else window
+    vectors, kinds = vector_kinds(options.vectors), label_kinds(options.labels)
+    scene = scene_of(what, options.at, options.pose, options.design)
+    traced = path_letters(scene.mechanism, options.paths)
+    others = _ghosts(scene, options.ghosts)
+    places = _centre_places(scene) if options.centres else []
+    window, scales = _scaled(scene, window_on(scene, others, traced, places), vectors)
+    window = room_for_offsets(scene, window) if options.dimensions else window
     painter = Painter(scene, window)
     laid = in_layers(painter)
-    behind = offset_shapes(scene, window) if wishes.dimensions else []
+    behind = offset_shapes(scene, window) if options.dimensions else []
     sketch = [
         *behind,
         *(line for letter in traced for line in point_path(scene, window, letter)),
         *(one.shape for one in laid),
     ]
-    named = labels_of(painter, laid, asked)
-    notes = pose_notes(scene) if asked else []
-    notes += [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
-    if wishes.centres:
+    named = labels_of(painter, laid, kinds)
+    notes = pose_notes(scene) if kinds else []
+    notes += [f"{number} {name}" for name, number in scene.legend.items()] if "links" in kinds else []
+    if options.centres:
         shapes, labels, said = _centres(scene, window)
         sketch, named, notes = sketch + shapes, named + labels, notes + said
     sketch += _arrows(scene, window, scales)
     at = placed(named, sketch, window.width, window.height)
-    names = dimension_shapes(painter, sketch, named, at) if wishes.dimensions else []
+    names = dimension_shapes(painter, sketch, named, at) if options.dimensions else []
     names += label_shapes(scene, at)
     faint = [ghost_shapes(other, window) for other in others]
-    return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(wishes.size))
+    return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(options.size))
 
 
 def _centre_places(scene: Scene) -> list[complex]:
@@ -280,7 +279,7 @@ class MovingSketch(ShortRepr):
     parts: tuple[MovingPart, ...]
 
     def places(self, part: MovingPart) -> Number:
-        """Tell where the point of a part is on the picture, complex (poses,)."""
+        """Return where the point of a part is on the picture, complex (poses,)."""
         return np.broadcast_to(self.window.at(self.scene.whole[part.link].at(part.at).c[0]), (self.scene.count,))
 
     def turns(self, link: str) -> Number:
@@ -414,7 +413,7 @@ def carried_parts(painter: Painter, laid: Sequence[Laid]) -> Iterator[MovingPart
 
 
 def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[MovingPart]:
-    """Numbers and letters, where they are in the way of least over the whole motion."""
+    """Numbers and letters, where they cover least over the whole motion."""
     scene, window = painter.scene, painter.window
     for key, place in placed_over_motion(painter, laid, labels).items():
         kind, _, name = key.partition(" ")
@@ -429,14 +428,14 @@ def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> 
             )
 
 
-def placed_over_motion(painter: Painter, laid: Sequence[Laid], asked: Sequence[str]) -> dict[str, complex]:
-    """Return places at the pose shown for the labels that are asked for. They are in the way of least at all poses."""
+def placed_over_motion(painter: Painter, laid: Sequence[Laid], kinds: Sequence[str]) -> dict[str, complex]:
+    """Return places at the pose shown for the requested labels. They are where they cover least at all poses."""
     scene, window = painter.scene, painter.window
     shown = 0 if scene.known is None else int(np.searchsorted(scene.known, scene.pose[1]))
     poses = poses_looked_at(shown, scene.count, len(scene.letters) + len(scene.legend))
     courses = label_courses(scene, window, poses)
     around = Surroundings.of(laid, courses, window.width, window.height)
-    return placed_along(labels_of(painter, laid, asked, courses), courses, around)
+    return placed_along(labels_of(painter, laid, kinds, courses), courses, around)
 
 
 def own_place(scene: Scene, window: Window, link: str, place: complex) -> complex:
@@ -451,7 +450,7 @@ def extent(scene: Scene) -> Iterator[Number]:
     yield np.array(list(scene.carried.values()))
     yield from around_genevas(scene)
     guides = Painter(scene, Window(1.0, 0j, 0.0, 0.0))
-    for seen in scene.seen:
+    for seen in scene.pair_marks:
         mark = seen.mark
         if isinstance(mark, Wheel):
             rim = mark.radius * np.array([1, 1j, -1, -1j])

@@ -1,14 +1,14 @@
-"""Labels of pictures: letters at points, numbers on links, notes below, and where they stand.
+"""Labels of pictures: letters at points, numbers on links, and where they stand.
 
 Of several places for each label the one that covers least is taken, the same every time. Obstacles are the lines and
-small circles of shapes. A number is nearer to its own link than to any other; labels of a moving sketch cover least over
-the whole motion.
+small circles of shapes. A number is nearer to its own link than to any other; labels of a moving sketch cover least
+over the whole motion.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -27,23 +27,13 @@ from compoundkin.view.sketch.painter import (
     skeleton,
     visible_points,
 )
-from compoundkin.view.sketch.picture import Window
-from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.scene import Scene, Window
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
-from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, PIN, SMALL, style_of
-from compoundkin.view.sketch.sketch_style import LINE as LINE_of_sketch_style
+from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, PIN, style_of
 
 # Places along a bar for its number, the middle first; and how far beside it, in picture units.
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
 BESIDE = (0.0, 13.0, -13.0, 20.0, -20.0, 30.0, -30.0)
-# The first of those lines is so far below a sketch.
-BELOW = 7.0
-# Those lines begin so far from the left edge, and end so far from the right one.
-SIDE = 16.0
-# Width of a letter in a long line, in parts of its height.
-NARROW = 0.54
-# Between the parts of a line below a picture.
-SEPARATOR = " · "
 # Beside a bar is worse than on it by this.
 OFF_BAR = 6.0
 # Beside a wheel is worse than on it by this.
@@ -67,7 +57,7 @@ class LabelCourse:
         shape = (-1, *[1] * np.ndim(places))
         return places * self.turn.reshape(shape) + self.shift.reshape(shape)
 
-    def seen(self, places: Number) -> Number:
+    def relative(self, places: Number) -> Number:
         """Return places (poses, ...) as seen from what takes this course."""
         shape = (-1, *[1] * (np.ndim(places) - 1))
         return (places - self.shift.reshape(shape)) / self.turn.reshape(shape)
@@ -96,11 +86,11 @@ STILL = LabelCourses({}, {}, LabelCourse(np.ones(1, dtype=complex), np.zeros(1, 
 
 
 def labels_of(
-    painter: Painter, laid: Sequence[Laid], asked: Sequence[str], courses: LabelCourses = STILL
+    painter: Painter, laid: Sequence[Laid], kinds: Sequence[str], courses: LabelCourses = STILL
 ) -> list[Label]:
-    """Return the labels that are asked for. A number of a link is nearer to it than to any other."""
-    numbers = beside_their_links(numbered(painter), laid, courses) if "links" in asked else []
-    return [*numbers, *(point_letters(painter) if "points" in asked else [])]
+    """Return the requested labels. A number of a link is nearer to it than to any other."""
+    numbers = beside_their_links(numbered(painter), laid, courses) if "links" in kinds else []
+    return [*numbers, *(point_letters(painter) if "points" in kinds else [])]
 
 
 def point_letters(painter: Painter) -> list[Label]:
@@ -128,7 +118,7 @@ def _number(painter: Painter, name: str) -> Label:
     if not corners:
         return label_around(key, painter.middle, half, 0.0)
     if len(corners) == 1:
-        inside = [s for s in painter.scene.seen if isinstance(s.mark, Wheel) and s.members[s.mark.member] == name]
+        inside = [s for s in painter.scene.pair_marks if isinstance(s.mark, Wheel) and s.members[s.mark.member] == name]
         if not inside:
             return label_around(key, corners[0], half, 10.0, -1 + 1j)
         radius = max(float(s.mark.radius) for s in inside if isinstance(s.mark, Wheel)) * painter.window.scale
@@ -150,7 +140,7 @@ def _number(painter: Painter, name: str) -> Label:
 def _guides(painter: Painter, name: str) -> list[tuple[complex, complex]]:
     """The guides and rods of a link, which its number may be on too."""
     found = []
-    for seen in painter.scene.seen:
+    for seen in painter.scene.pair_marks:
         if isinstance(seen.mark, Sliding) and not painter.is_cylinder(seen):
             line, own = (rod_line, 1) if painter.is_rod(seen) else (guide_line, 0)
             if name == seen.members[own] != FRAME:
@@ -160,7 +150,7 @@ def _guides(painter: Painter, name: str) -> list[tuple[complex, complex]]:
 
 def _cylinder(painter: Painter, name: str) -> list[complex]:
     """Where the number of a cylinder's barrel may be, or that of its rod."""
-    for seen in painter.scene.seen:
+    for seen in painter.scene.pair_marks:
         mark, alone = seen.mark, len(painter.scene.points[name]) == 1
         if isinstance(mark, Sliding) and alone and name in seen.members and painter.is_cylinder(seen):
             foot, eye = painter.place(seen.members[0], mark.at), painter.place(seen.members[1], mark.block)
@@ -185,35 +175,6 @@ def badge(scene: Scene, name: str, at: complex) -> Shape:
     """Return the number of a link in a circle of its colour."""
     rim = CircleShape(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}")
     return ShapeGroup((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
-
-
-def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
-    """Break parts of text in lines no wider than this, in picture units.
-
-    >>> lines_of_text(["1 frame", "2 crank"], 60.0)
-    ['1 frame', '2 crank']
-    """
-    lines: list[str] = []
-    for part in parts:
-        longer = f"{lines[-1]}{SEPARATOR}{part}" if lines else part
-        if lines and len(longer) * SMALL * NARROW <= width:
-            lines[-1] = longer
-        else:
-            lines.append(part)
-    return lines
-
-
-def width_with(texts: Sequence[Shape]) -> float:
-    """Return how wide a picture must be for what stands below it. It has the same room at its right."""
-    ends = [shape.at.real + len(shape.text) * SMALL * NARROW for shape in texts if isinstance(shape, Text)]
-    return max(ends, default=0.0) + SIDE
-
-
-def lines_below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
-    """Return lines of text below a picture, and the height with them."""
-    places = [complex(SIDE, height + BELOW + LINE_of_sketch_style * k) for k in range(len(lines))]
-    shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
-    return shapes, round(height + (BELOW + LINE_of_sketch_style * len(lines) if lines else 0.0), 1)
 
 
 # So many poses of a sketch with few labels are looked at, fewer where there are many labels.
@@ -268,8 +229,8 @@ class Surroundings:
     def costs(self, label: Label, course: LabelCourse) -> Number:
         """Return what each place costs on the average of the poses."""
         at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
-        lines = course.seen(self.lines).reshape(-1, 2)
-        middles = course.seen(self.rounds[..., 0])
+        lines = course.relative(self.lines).reshape(-1, 2)
+        middles = course.relative(self.rounds[..., 0])
         rounds = np.stack([middles, self.rounds[..., 1]], axis=-1).reshape(-1, 2)
         poses = len(course.turn)
         outside = beyond(course.at(at), half, self.width, self.height)
@@ -284,7 +245,7 @@ def placed_along(labels: Sequence[Label], courses: LabelCourses, around: Surroun
     nothing: Number = np.zeros((len(courses.others.turn), 0), dtype=complex)
     turn = np.column_stack([nothing, *(course.turn for course in own)])
     shift = np.column_stack([nothing, *(course.shift for course in own)])
-    return settled_labels(labels, fixed, LabelCrowd(labels, turn, shift))
+    return arranged_labels(labels, fixed, LabelCrowd(labels, turn, shift))
 
 
 # What it costs to be nearer to another link, and so much more for each picture unit; distances that differ by less are
@@ -295,7 +256,7 @@ CLEARLY, UNCLEAR = 7.0, 1.5
 
 
 def is_of_link(one: Laid) -> bool:
-    """Tell whether a shape shows which link it is of. Pins are of several, arrows and the frame of none."""
+    """Return whether a shape shows which link it is of. Pins are of several, arrows and the frame of none."""
     return Layer.FRAME < one.layer < Layer.PIN and one.link != FRAME
 
 
@@ -344,7 +305,7 @@ def beside_their_links(labels: Sequence[Label], laid: Sequence[Laid], courses: L
         kind, _, name = label.key.partition(" ")
         if kind == "link" and name in links and len(links) > 1:
             own = own_distances(np.array(label.places), [one for one in shown if one.link == name])
-            others = courses.of_label(label.key).seen(lines[:, owner != links.index(name)])
+            others = courses.of_label(label.key).relative(lines[:, owner != links.index(name)])
             label = label.with_costs(_of_all_poses(np.array(label.places), own, others))
         found.append(label)
     return found
@@ -395,10 +356,14 @@ class Label:
     costs: tuple[float, ...]
     own: tuple[tuple[complex, complex], ...] = ()
 
+    def moved(self, by: complex) -> Label:
+        """Return the same label elsewhere on the picture."""
+        own = tuple((a + by, b + by) for a, b in self.own)
+        return replace(self, places=tuple(place + by for place in self.places), own=own)
+
     def with_costs(self, more: Number) -> Label:
         """Return the same label, its places the dearer by some costs."""
-        costs = tuple((np.array(self.costs) + more).tolist())
-        return Label(self.key, self.half, self.places, costs, self.own)
+        return replace(self, costs=tuple((np.array(self.costs) + more).tolist()))
 
 
 def text_half(text: str, size: float) -> complex:
@@ -425,10 +390,10 @@ def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, heigh
         covered = on_shapes(at, half, lines, rounds) + beyond(at, half, width, height)
         fixed[label.key] = np.array(label.costs) + covered - on_own(label, at, half)
     still = np.ones((1, len(labels)), dtype=complex)
-    return settled_labels(labels, fixed, LabelCrowd(labels, still, 0.0 * still))
+    return arranged_labels(labels, fixed, LabelCrowd(labels, still, 0.0 * still))
 
 
-def settled_labels(labels: Sequence[Label], fixed: Mapping[str, Number], crowd: LabelCrowd) -> dict[str, complex]:
+def arranged_labels(labels: Sequence[Label], fixed: Mapping[str, Number], crowd: LabelCrowd) -> dict[str, complex]:
     """Return a place for each label. All are placed again twice, by fixed costs and those of being on others."""
     found: dict[str, complex] = {}
     for _ in range(1 + ROUNDS):
@@ -504,7 +469,7 @@ def on_shapes(at: Number, half: complex, lines: Number, rounds: Number) -> Numbe
 
 
 def _within(at: Number, half: complex, low: Number, high: Number, axis: complex) -> Number:
-    """Tell which of some ranges along an axis can be met by any of the places: the others cost nothing."""
+    """Return which of some ranges along an axis can be met by any of the places: the others cost nothing."""
     along, reach = (np.conjugate(axis) * at).real, half.real if axis == 1 else half.imag
     return (low <= along.max() + reach) & (high >= along.min() - reach)
 

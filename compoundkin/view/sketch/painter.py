@@ -1,4 +1,4 @@
-"""`Painter`, a scene on its window: links as bars and plates with their outlines, pins and pivots, slides and guides."""
+"""`Painter`, a scene on its window: links as bars and plates, their outlines, pins and pivots, slides and guides."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from compoundkin.base.curves.samples import convex_hull
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.outline_shapes import OutlineShape
 from compoundkin.model.pairs.symbols import Pin, Sliding
-from compoundkin.view.sketch.picture import Window
-from compoundkin.view.sketch.scene import PairMark, Scene, is_inside, racks, smallest_wheel
+from compoundkin.view.sketch.scene import PairMark, Scene, Window, is_inside, racks, smallest_wheel
 from compoundkin.view.sketch.shapes import (
     Band,
     CircleShape,
@@ -71,15 +70,15 @@ class Painter:
     outer: frozenset[str] = frozenset()  # the letters of the pairs by which those are attached
 
     def shows(self, link: str) -> bool:
-        """Tell whether a link is drawn."""
+        """Return whether a link is drawn."""
         return self.only is None or link in self.only
 
     def place(self, link: str, p: Any) -> complex:
-        """Tell where a point of a link is on the picture."""
+        """Return where a point of a link is on the picture."""
         return as_place(self.window.at(self.scene.at(link, p)))
 
     def pin(self, link: str, letter: str) -> complex:
-        """Tell where a letter is on the picture. A link that carries it says so, else any that does."""
+        """Return where a letter is on the picture. A link that carries it says so, else any that does."""
         own = self.scene.points[link]
         return self.place(link, own[letter]) if letter in own else as_place(self.window.at(self.scene.letters[letter]))
 
@@ -105,7 +104,7 @@ class Painter:
     @cached_property
     def block(self) -> tuple[float, float]:
         """The length and width of the blocks."""
-        slides = [s for s in self.scene.seen if isinstance(s.mark, Sliding) and not self.is_cylinder(s)]
+        slides = [s for s in self.scene.pair_marks if isinstance(s.mark, Sliding) and not self.is_cylinder(s)]
         return block_size(self.scene, float(self.window.scale), slides)
 
     @cached_property
@@ -114,12 +113,12 @@ class Painter:
         return frozenset(step.pair.name for step in self.scene.driven)
 
     def is_cylinder(self, seen: PairMark) -> bool:
-        """Tell whether a slide is drawn as a cylinder. It is one, or driven between moving links and never at zero."""
+        """Return whether a slide is drawn as a cylinder. It is one or driven between moving links never at zero."""
         mark, is_driven = seen.mark, FRAME not in seen.members and seen.pair.name in self.driven
         return isinstance(mark, Sliding) and (mark.is_cylinder or (is_driven and mark.low * mark.high > 0.0))
 
     def is_rod(self, seen: PairMark) -> bool:
-        """Tell whether a slide is drawn as a rod. The link with its guide has but one point then."""
+        """Return whether a slide is drawn as a rod. The link with its guide has but one point then."""
         guide, block = (len(self.scene.points[name]) for name in seen.members)
         return seen.members[0] != FRAME and guide == 1 and block > 1
 
@@ -251,7 +250,7 @@ def block_size(scene: Scene, scale: float, slides: Iterable[PairMark]) -> tuple[
 def share_of_block(scene: Scene, slide: PairMark) -> float:
     """Return how large a block is of the usual size. One that swivels on a block of the frame is in it."""
     letter, guide = slide.pair.letters[0], slide.members[0]
-    on_frame = [s for s in scene.seen if isinstance(s.mark, Sliding) and FRAME in s.members and s is not slide]
+    on_frame = [s for s in scene.pair_marks if isinstance(s.mark, Sliding) and FRAME in s.members and s is not slide]
     return INNER if guide != FRAME and any(s.pair.letters[0] == letter for s in on_frame) else 1.0
 
 
@@ -343,7 +342,7 @@ def pin_shapes(painter: Painter) -> Iterator[Laid]:
         if len(joined) > 1 and painter.only is None:
             yield Laid(Layer.PIN, CircleShape(at, PIN + 3.5, "pin ink"), carriers[0], letter)
         if joined:
-            # that of a small wheel leaves it to be seen
+            # that of a small wheel leaves it visible
             radius = min(PIN, WITHIN * smallest_wheel(scene, letter) * float(painter.window.scale))
             yield Laid(Layer.PIN, CircleShape(at, radius, "pin ink"), carriers[0], letter)
         elif letter not in gliding_points(painter):
@@ -352,7 +351,7 @@ def pin_shapes(painter: Painter) -> Iterator[Laid]:
 
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
     """Return the names of the pins at a letter. One less than the links that it joins."""
-    found = [s.pair for s in painter.scene.seen if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
+    found = [s.pair for s in painter.scene.pair_marks if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
     thought = painter.scene.mechanism.auxiliary_links
     seen = [pair.name for pair in found if thought.isdisjoint(pair.members)]
     # what leads a pin is one of its links: the others are joined by it all the same
@@ -361,7 +360,7 @@ def joints(painter: Painter, letter: str) -> tuple[str, ...]:
 
 def gliding_points(painter: Painter) -> frozenset[str]:
     """Return the letters of points where a mark of their own is drawn."""
-    others = [s.pair for s in painter.scene.seen if not isinstance(s.mark, Pin)]
+    others = [s.pair for s in painter.scene.pair_marks if not isinstance(s.mark, Pin)]
     return frozenset(pair.letters[0] for pair in others)
 
 
@@ -439,8 +438,8 @@ def visible_points(scene: Scene, window: Window) -> dict[str, complex]:
 
 
 def _is_beside(scene: Scene, window: Window, letter: str, at: complex) -> bool:
-    """Tell whether a point of the frame is beside what is drawn of each guide for which it stands."""
-    for seen in scene.seen:
+    """Return whether a point of the frame is beside what is drawn of each guide for which it stands."""
+    for seen in scene.pair_marks:
         mark = seen.mark
         if isinstance(mark, Sliding) and seen.members[0] == FRAME and letter in seen.pair.letters[1:]:
             low, high = (complex(window.at(mark.at + mark.along * s)) for s in (mark.low, mark.high))

@@ -10,155 +10,33 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
 
-import numpy as np
-
-from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
-from compoundkin.view.sketch.shapes import Shape, Text, moved_shapes
-from compoundkin.view.sketch.sketch_style import LINE
+from compoundkin.view.sketch.scene import MARGIN, Window
+from compoundkin.view.sketch.shapes import (
+    Shape,
+    ShapeGroup,
+    Text,
+    moved_shapes,
+    sheet,
+)
+from compoundkin.view.sketch.sketch_style import LINE, SMALL
 from compoundkin.view.sketch.svg import NATURAL, converted, inline, svg
 from compoundkin.view.sketch.tikz import tikz
-from compoundkin.view.sketch.traced_numbers import as_place
 
-# How large the drawn part of a picture is, in picture units: at least and at most its longer side. The middle of the
-# links' lengths is drawn at least so long, if that is possible: many links make a large picture with fine lines.
-LEAST, MOST = 480.0, 1200.0
-BAR_LENGTH = 74.0
-# Of so many bars or more the picture grows with their number.
-FEW = 14
-# Around it is room for letters, hatching and arrows.
-MARGIN = 26.0
-# A picture is at least so wide and so high, in picture units.
-NARROWEST, LOWEST = 260.0, 130.0
-# A line may be off by this much: no eye can tell.
-DEVIATION = 0.12
-# A path whose ends are nearer to each other than this part of its size is closed.
-CLOSED = 1e-9
-# A path of a long motion is drawn through so many of its places.
-MOST_PLACES = 2001
-# A path is drawn with so many points between two poses.
-BETWEEN = 6
+# The first of those lines is so far below a sketch.
+BELOW = 7.0
+# Those lines begin so far from the left edge, and end so far from the right one.
+SIDE = 16.0
+# Width of a letter in a long line, in parts of its height.
+NARROW = 0.54
+# Between the parts of a line below a picture.
+SEPARATOR = " · "
 # The longer side of a picture has so many pixels, at least and at most.
 SMALLEST, LARGEST = 16, 20000
-# The longest side of a picture for which no size is asked for.
+# The longest side of a picture without a given size.
 PAGE = 800.0
-
-
-@dataclass(frozen=True)
-class Window:
-    """A part of the plane on a picture. `scale` picture units for a length unit, `corner` its upper left place."""
-
-    scale: float
-    corner: complex
-    width: float
-    height: float
-
-    def at(self, place: Number) -> Number:
-        """Tell where a place is on the picture, y downward."""
-        return ((place - self.corner) * self.scale).conjugate()
-
-    def line(self, places: Number) -> tuple[complex, ...]:
-        """Return a line through places as points of the picture. Those that it does not need are left out."""
-        return simplified(np.atleast_1d(self.at(places)))
-
-    def holds(self, point: complex, room: float = 0.0) -> bool:
-        """Tell whether a point is on the picture, and far from its edges. It must be so far from them."""
-        return room <= point.real <= self.width - room and room <= point.imag <= self.height - room
-
-    @property
-    def diagonal(self) -> float:
-        """The length of its diagonal."""
-        return float(np.hypot(self.width, self.height))
-
-
-def fitted_window(window: Window, points: Number, narrowest: float = NARROWEST) -> Window:
-    """Return the window of the same scale that just holds some points. It has room for letters around them.
-
-    It is no narrower than asked, its points in the middle.
-    """
-    known = np.asarray(points, dtype=complex)
-    low = complex(known.real.min(), known.imag.min()) - MARGIN * (1 + 1j)
-    high = complex(known.real.max(), known.imag.max()) + MARGIN * (1 + 1j)
-    extra = complex(max(0.0, narrowest - (high - low).real), max(0.0, LOWEST - (high - low).imag)) / 2.0
-    low, high = low - extra, high + extra
-    size = high - low
-    return Window(
-        window.scale, window.corner + low.conjugate() / window.scale, round(size.real, 1), round(size.imag, 1)
-    )
-
-
-def window_around(places: Iterable[Number], bars: Iterable[float]) -> Window:
-    """Return the window on some places. It is finer where the lengths of links (`bars`) are many and short."""
-    known = np.concatenate([np.ravel(p).astype(complex) for p in places] or [np.zeros(1, complex)])
-    known = known[np.isfinite(known)]
-    known = known if known.size else np.zeros(1, complex)
-    low = complex(known.real.min(), known.imag.min())
-    high = complex(known.real.max(), known.imag.max())
-    wide, tall = high.real - low.real, high.imag - low.imag
-    longer = max(wide, tall) or 1.0
-    lengths = sorted(length for length in bars if length > 0)
-    # the median; that of NumPy imports numpy.ma, which takes as long as all else here
-    middle = lengths[(len(lengths) - 1) // 2 : len(lengths) // 2 + 1]
-    asked = BAR_LENGTH * longer / (sum(middle) / len(middle)) if lengths else LEAST
-    crowded = LEAST * np.sqrt(len(lengths) / FEW)
-    scale = float(np.clip(max(asked, crowded), LEAST, MOST)) / longer
-    return Window(scale, complex(low.real, high.imag), wide * scale, tall * scale)
-
-
-def simplified(points: Number, deviation: float = DEVIATION) -> tuple[complex, ...]:
-    """Return the points of a line that it needs to keep within a deviation. Source: Douglas and Peucker, 1973.
-
-    >>> simplified(np.array([0, 1, 2, 2 + 1j]))
-    (0j, (2+0j), (2+1j))
-    """
-    own, points = points, np.asarray(points, dtype=complex)
-    keep = np.zeros(len(points), dtype=bool)
-    keep[[0, -1]] = True
-    parts = [(0, len(points) - 1)]
-    while parts:
-        first, last = parts.pop()
-        if last - first < 2:
-            continue
-        inner = points[first + 1 : last] - points[first]
-        chord = points[last] - points[first]
-        length = abs(chord)
-        off = np.abs((np.conjugate(chord) * inner).imag) / length if length > deviation else np.abs(inner)
-        worst = int(np.argmax(off))
-        if off[worst] > deviation:
-            middle = first + 1 + worst
-            keep[middle] = True
-            parts += [(first, middle), (middle, last)]
-    return tuple(as_place(p) for p in np.asarray(own)[keep])
-
-
-def thinned(places: Number) -> Number:
-    """Return some of many places, the first and the last among them.
-
-    >>> len(thinned(np.zeros(100_001)))
-    2001
-    """
-    chosen = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).round().astype(int)
-    return places[chosen]
-
-
-def smooth(places: Number) -> Number:
-    """Return a smooth line through places, with points between them. Source: E. Catmull and R. Rom, 1974.
-
-    >>> smooth(np.array([0, 1, 2, 3 + 0j])).real.round(3)[:4].tolist()
-    [0.0, 0.167, 0.333, 0.5]
-    """
-    closed = abs(places[-1] - places[0]) <= CLOSED * np.max(np.abs(places - places[0]))
-    before = places[-2] if closed else 2.0 * places[0] - places[1]
-    after = places[1] if closed else 2.0 * places[-1] - places[-2]
-    p = np.concatenate([[before], places, [after]])
-    t = np.arange(BETWEEN)[:, None] / BETWEEN
-    a, b, c, d = p[:-3], p[1:-2], p[2:-1], p[3:]
-    slopes = (c - a) / 2.0, (d - b) / 2.0
-    between = b + t * (slopes[0] + t * (3.0 * (c - b) - 2.0 * slopes[0] - slopes[1]))
-    between = between + t**3 * (2.0 * (b - c) + slopes[0] + slopes[1])
-    return np.append(between.T.ravel(), places[-1])
 
 
 @dataclass(frozen=True)
@@ -200,8 +78,8 @@ class Picture(Savable):
         Raises InvalidInput for PNG and PDF where CairoSVG is not installed.
         """
         if form == "tikz":
-            told = self.title, self.description
-            return tikz(self.shapes, self.width, self.height, self._longer_side, *told).encode("utf-8")
+            texts = self.title, self.description
+            return tikz(self.shapes, self.width, self.height, self._longer_side, *texts).encode("utf-8")
         return self.svg.encode("utf-8") if form == "svg" else converted(self.svg, form)
 
     def _repr_svg_(self) -> str:
@@ -228,6 +106,8 @@ def checked_size(size: Any) -> float | None:
 WIDEST = 1000.0
 # Parts so wide together are printed legibly on A4: of some 780 units on 180 mm, small letters have 7 points.
 PAPER_WIDTH = 730.0
+# Above a part, for its heading.
+HEADING = 30.0
 # Between parts, with a sign.
 GAP = 30.0
 
@@ -239,6 +119,15 @@ class PicturePart:
     shapes: tuple[Shape, ...]
     width: float
     height: float
+
+
+def headed_part(
+    title: str, shapes: Iterable[Shape], width: float, height: float, links: Iterable[str] = ()
+) -> PicturePart:
+    """Return shapes of that width and height as a part with a heading above them."""
+    heading = Text(complex(width / 2.0, HEADING / 2.0), title, "heading")
+    group = ShapeGroup((heading, *moved_shapes(shapes, HEADING * 1j)), links=tuple(links))
+    return PicturePart((group,), width, height + HEADING)
 
 
 def in_rows(parts: Sequence[PicturePart], sign: str = "", widest: float = WIDEST) -> tuple[list[Shape], float, float]:
@@ -274,3 +163,49 @@ def legible_size(width: float, height: float, size: float | None) -> float:
     1100.0
     """
     return round(NATURAL * max(width, height), 1) if size is None else size
+
+
+def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
+    """Break parts of text in lines no wider than this, in picture units.
+
+    >>> lines_of_text(["1 frame", "2 crank"], 60.0)
+    ['1 frame', '2 crank']
+    """
+    lines: list[str] = []
+    for part in parts:
+        longer = f"{lines[-1]}{SEPARATOR}{part}" if lines else part
+        if lines and len(longer) * SMALL * NARROW <= width:
+            lines[-1] = longer
+        else:
+            lines.append(part)
+    return lines
+
+
+def width_with(texts: Sequence[Shape]) -> float:
+    """Return how wide a picture must be for what stands below it. It has the same room at its right."""
+    ends = [shape.at.real + len(shape.text) * SMALL * NARROW for shape in texts if isinstance(shape, Text)]
+    return max(ends, default=0.0) + SIDE
+
+
+def lines_below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
+    """Return lines of text below a picture, and the height with them."""
+    places = [complex(SIDE, height + BELOW + LINE * k) for k in range(len(lines))]
+    shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
+    return shapes, round(height + (BELOW + LINE * len(lines) if lines else 0.0), 1)
+
+
+def with_notes(
+    shapes: Iterable[Shape],
+    width: float,
+    height: float,
+    notes: Sequence[str],
+    title: str,
+    description: str,
+    size: float | None,
+    *,
+    legible: bool = False,
+) -> Picture:
+    """Return the picture of shapes with notes below them; with texts as large as those of a page where `legible`."""
+    texts, height = lines_below(lines_of_text(notes, width - 2.0 * SIDE), height)
+    shown = legible_size(width, height, checked_size(size)) if legible else checked_size(size)
+    return Picture((sheet(width, height), *shapes, *texts), width, height, title, description, shown)

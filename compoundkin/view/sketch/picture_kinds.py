@@ -21,19 +21,19 @@ POSE = ("at", "pose", "design")
 
 
 class PictureKind(NamedTuple):
-    """A kind of picture: what draws it, and which of the wishes it knows.
+    """A kind of picture: what draws it, and which options it takes.
 
-    What draws is `module:function` of this folder, loaded when it is asked for.
+    What draws is `module:function` of this folder, imported when it is used.
     """
 
     drawn: str
     known: Sequence[str]
     of_forces: bool = False
 
-    def picture(self, what: Drawable | Forces, wishes: PictureOptions) -> Picture:
+    def picture(self, what: Drawable | Forces, options: PictureOptions) -> Picture:
         """Draw it; forces are found first where it is theirs."""
         made: Picture = display.import_function(f"{__package__}.{self.drawn}")(
-            _forces(what) if self.of_forces else what, wishes
+            _forces(what) if self.of_forces else what, options
         )
         return made
 
@@ -96,7 +96,7 @@ def draw(
 
     A mechanism is solved first; one that cannot be solved is shown as drawn. Raises InvalidInput, UnknownName for
     what does not fit it or the kind of picture, NotAssembled for a pose that does not close, NotDetermined where a
-    mechanism that the drivers do not determine is asked for its groups or centres.
+    mechanism that the drivers do not determine is drawn by its groups or centres.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -109,15 +109,15 @@ def draw(
     """
     if kind not in KINDS:
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", suggestion(kind, list(KINDS))))
-    wishes = PictureOptions(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
-    asked = KINDS[kind]
+    options = PictureOptions(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
+    chosen = KINDS[kind]
     if not isinstance(what, Drawable) and kind == "sketch":
-        asked = SKETCH_OF_FORCES
-    elif not isinstance(what, Drawable) and not asked.of_forces:
+        chosen = SKETCH_OF_FORCES
+    elif not isinstance(what, Drawable) and not chosen.of_forces:
         what = what.motion
-    if unfit := wishes.others(asked.known):
+    if unfit := options.others(chosen.known):
         raise InvalidInput(Problem(unfit[0], f"it does not go with the kind {kind!r}", "leave one of them out"))
-    return asked.picture(what, wishes)
+    return chosen.picture(what, options)
 
 
 def _forces(what: Drawable | Forces) -> Forces:

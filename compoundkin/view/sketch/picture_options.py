@@ -40,7 +40,7 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class PictureOptions:
-    """What is asked of a picture besides its kind, as `draw` explains it."""
+    """The options of a picture besides its kind, as `draw` explains them."""
 
     at: Any = None
     pose: int | None = None
@@ -69,7 +69,7 @@ class PictureOptions:
 
 
 def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
-    """Return the scene that is asked for. Raises InvalidInput, UnknownName or NotAssembled where there is none."""
+    """Return the requested scene. Raises InvalidInput, UnknownName or NotAssembled where there is none."""
     if at is not None and pose is not None:
         raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
     what, design = one_design(what, design)
@@ -85,7 +85,7 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
 
 
 def one_design(what: Drawable, design: int) -> tuple[Drawable, int]:
-    """Return what one of several designs is by itself, and its index there. Raises InvalidInput where there is none."""
+    """Return one of several designs by itself, and its index there. Raises InvalidInput where there is none."""
     if isinstance(what, Motion):
         check_design(design, what.inputs.designs)
         return motion_of_design(what, design), 0
@@ -230,7 +230,7 @@ def driver_values_by_name(structure: Structure, at: Any) -> dict[str, float]:
 
 
 def driver_value_text(structure: Structure, name: str, value: float) -> str:
-    """Say which value a driver has."""
+    """Return which value a driver has."""
     is_angle = structure.driven_angles.get(name, False)
     shown = f"{round(float(degrees(value)), 9) + 0.0:.5g}" if is_angle else f"{value:.6g}"
     return f"{name} at {shown}{unit_suffix(is_angle, structure.mechanism.unit)}"
@@ -247,7 +247,7 @@ def _first_side(value: Number) -> Number:
 
 
 def path_letters(mechanism: Mechanism, paths: Any) -> tuple[str, ...]:
-    """Return the letters of points whose paths are asked for; raises UnknownName."""
+    """Return the letters of points whose paths are requested; raises UnknownName."""
     carriers = mechanism.carriers
     if paths is True:
         return tuple(letter for letter, links in carriers.items() if len(links) == 1 and "frame" not in links)
@@ -259,7 +259,7 @@ def path_letters(mechanism: Mechanism, paths: Any) -> tuple[str, ...]:
 
 
 def label_kinds(labels: Any) -> tuple[str, ...]:
-    """Tell what is to be labelled; raises InvalidInput for what cannot be."""
+    """Return the kinds of labels that are requested; raises InvalidInput for others."""
     if isinstance(labels, bool):
         return LABELS if labels else ()
     names = (labels,) if isinstance(labels, str) else tuple(labels)

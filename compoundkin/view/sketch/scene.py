@@ -1,8 +1,8 @@
-"""The visible parts of a mechanism at one pose: places of links and points, the marks of its pairs, discs of its links."""
+"""The visible parts of a mechanism at one pose: places of links and points, marks of its pairs, discs of its links."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,6 +22,153 @@ from compoundkin.model.pairs.symbols import Mark, Outline, Sliding, Track, Wheel
 from compoundkin.model.pairs.travel_limits import as_travel_limited, bounds_name
 from compoundkin.structure import DrivenPair, Structure
 from compoundkin.view.sketch.traced_numbers import as_place
+
+# How large the drawn part of a picture is, in picture units: at least and at most its longer side. The middle of the
+# links' lengths is drawn at least so long, if that is possible: many links make a large picture with fine lines.
+LEAST, MOST = 480.0, 1200.0
+BAR_LENGTH = 74.0
+# Of so many bars or more the picture grows with their number.
+FEW = 14
+# Around it is room for letters, hatching and arrows.
+MARGIN = 26.0
+# A picture is at least so wide and so high, in picture units.
+NARROWEST, LOWEST = 260.0, 130.0
+# A line may be off by this much: no eye can tell.
+DEVIATION = 0.12
+# A path whose ends are nearer to each other than this part of its size is closed.
+CLOSED = 1e-9
+# A path of a long motion is drawn through so many of its places.
+MOST_PLACES = 2001
+# A path is drawn with so many points between two poses.
+BETWEEN = 6
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of the plane on a picture. `scale` picture units for a length unit, `corner` its upper left place."""
+
+    scale: float
+    corner: complex
+    width: float
+    height: float
+
+    def at(self, place: Number) -> Number:
+        """Return where a place is on the picture, y downward."""
+        return ((place - self.corner) * self.scale).conjugate()
+
+    def line(self, places: Number) -> tuple[complex, ...]:
+        """Return a line through places as points of the picture. Those that it does not need are left out."""
+        return simplified(np.atleast_1d(self.at(places)))
+
+    def holds(self, point: complex, room: float = 0.0) -> bool:
+        """Return whether a point is on the picture, and far from its edges. It must be so far from them."""
+        return room <= point.real <= self.width - room and room <= point.imag <= self.height - room
+
+    @property
+    def diagonal(self) -> float:
+        """The length of its diagonal."""
+        return float(np.hypot(self.width, self.height))
+
+
+def box_around(points: Number, margin: float = MARGIN) -> tuple[complex, complex]:
+    """Return the lower and the upper corner of a box around points with a margin."""
+    known = np.asarray(points, dtype=complex)
+    low, high = complex(known.real.min(), known.imag.min()), complex(known.real.max(), known.imag.max())
+    return low - margin * (1 + 1j), high + margin * (1 + 1j)
+
+
+def panel_around(points: Number, narrowest: float, margin: float = MARGIN) -> tuple[complex, float, float]:
+    """Return the first corner, width and height of a panel around points, which are in its middle across."""
+    low, high = box_around(points, margin)
+    wide = max((high - low).real, narrowest)
+    return low - (wide - (high - low).real) / 2.0, wide, (high - low).imag
+
+
+def fitted_window(window: Window, points: Number, narrowest: float = NARROWEST) -> Window:
+    """Return the window of the same scale that just holds some points. It has room for letters around them.
+
+    It is no narrower than `narrowest`, its points in the middle.
+    """
+    low, high = box_around(points)
+    extra = complex(max(0.0, narrowest - (high - low).real), max(0.0, LOWEST - (high - low).imag)) / 2.0
+    low, high = low - extra, high + extra
+    size = high - low
+    return Window(
+        window.scale, window.corner + low.conjugate() / window.scale, round(size.real, 1), round(size.imag, 1)
+    )
+
+
+def window_around(places: Iterable[Number], bars: Iterable[float]) -> Window:
+    """Return the window on some places. It is finer where the lengths of links (`bars`) are many and short."""
+    known = np.concatenate([np.ravel(p).astype(complex) for p in places] or [np.zeros(1, complex)])
+    known = known[np.isfinite(known)]
+    known = known if known.size else np.zeros(1, complex)
+    low = complex(known.real.min(), known.imag.min())
+    high = complex(known.real.max(), known.imag.max())
+    wide, tall = high.real - low.real, high.imag - low.imag
+    longer = max(wide, tall) or 1.0
+    lengths = sorted(length for length in bars if length > 0)
+    # the median; that of NumPy imports numpy.ma, which takes as long as all else here
+    middle = lengths[(len(lengths) - 1) // 2 : len(lengths) // 2 + 1]
+    usual = BAR_LENGTH * longer / (sum(middle) / len(middle)) if lengths else LEAST
+    crowded = LEAST * np.sqrt(len(lengths) / FEW)
+    scale = float(np.clip(max(usual, crowded), LEAST, MOST)) / longer
+    return Window(scale, complex(low.real, high.imag), wide * scale, tall * scale)
+
+
+def simplified(points: Number, deviation: float = DEVIATION) -> tuple[complex, ...]:
+    """Return the points of a line that it needs to keep within a deviation. Source: Douglas and Peucker, 1973.
+
+    >>> simplified(np.array([0, 1, 2, 2 + 1j]))
+    (0j, (2+0j), (2+1j))
+    """
+    own, points = points, np.asarray(points, dtype=complex)
+    keep = np.zeros(len(points), dtype=bool)
+    keep[[0, -1]] = True
+    parts = [(0, len(points) - 1)]
+    while parts:
+        first, last = parts.pop()
+        if last - first < 2:
+            continue
+        inner = points[first + 1 : last] - points[first]
+        chord = points[last] - points[first]
+        length = abs(chord)
+        off = np.abs((np.conjugate(chord) * inner).imag) / length if length > deviation else np.abs(inner)
+        worst = int(np.argmax(off))
+        if off[worst] > deviation:
+            middle = first + 1 + worst
+            keep[middle] = True
+            parts += [(first, middle), (middle, last)]
+    return tuple(as_place(p) for p in np.asarray(own)[keep])
+
+
+def thinned(places: Number) -> Number:
+    """Return some of many places, the first and the last among them.
+
+    >>> len(thinned(np.zeros(100_001)))
+    2001
+    """
+    chosen = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).round().astype(int)
+    return places[chosen]
+
+
+def smooth(places: Number) -> Number:
+    """Return a smooth line through places, with points between them. Source: E. Catmull and R. Rom, 1974.
+
+    >>> smooth(np.array([0, 1, 2, 3 + 0j])).real.round(3)[:4].tolist()
+    [0.0, 0.167, 0.333, 0.5]
+    """
+    closed = abs(places[-1] - places[0]) <= CLOSED * np.max(np.abs(places - places[0]))
+    before = places[-2] if closed else 2.0 * places[0] - places[1]
+    after = places[1] if closed else 2.0 * places[-1] - places[-2]
+    p = np.concatenate([[before], places, [after]])
+    t = np.arange(BETWEEN)[:, None] / BETWEEN
+    a, b, c, d = p[:-3], p[1:-2], p[2:-1], p[3:]
+    slopes = (c - a) / 2.0, (d - b) / 2.0
+    between = b + t * (slopes[0] + t * (3.0 * (c - b) - 2.0 * slopes[0] - slopes[1]))
+    between = between + t**3 * (2.0 * (b - c) + slopes[0] + slopes[1])
+    return np.append(between.T.ravel(), places[-1])
+
 
 # Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
 SAME_PLACE = 1e-6
@@ -61,7 +208,7 @@ class Scene:
         return self.structure.mechanism
 
     def at(self, link: str, p: Number) -> complex:
-        """Tell where a point of a link is at the pose shown."""
+        """Return where a point of a link is at the pose shown."""
         return as_place(self.here[link].at(p).c[0])
 
     def turned(self, link: str, along: Number) -> complex:
@@ -69,7 +216,7 @@ class Scene:
         return as_place((self.here[link].u * along).c[0])
 
     def places(self, letter: str) -> Number:
-        """Tell where a point is along the motion, (poses,)."""
+        """Return where a point is along the motion, (poses,)."""
         link = self.mechanism.carriers[letter][0]
         return np.atleast_1d(self.whole[link].at(self.points[link][letter]).c[0])
 
@@ -101,7 +248,7 @@ class Scene:
         return {k: place for k, place in self.letters.items() if k in needed or carriers[k] != (FRAME,)}
 
     @cached_property
-    def seen(self) -> tuple[PairMark, ...]:
+    def pair_marks(self) -> tuple[PairMark, ...]:
         """The marks of all pairs."""
         return tuple(PairMark(pair, mark, pair.members) for pair in self.structure.pairs for mark in self._marks(pair))
 
@@ -121,7 +268,7 @@ class Scene:
 
     @cached_property
     def legend(self) -> Mapping[str, int]:
-        """The numbers of the links that there are to be seen."""
+        """The numbers of the visible links."""
         return {name: number for name, number in self.numbers.items() if name not in self.mechanism.auxiliary_links}
 
     @cached_property
@@ -144,7 +291,7 @@ class Scene:
 
         They are then as the pose shown uses them, not the whole motion.
         """
-        spans = [seen.mark.high - seen.mark.low for seen in self.seen if isinstance(seen.mark, Sliding)]
+        spans = [seen.mark.high - seen.mark.low for seen in self.pair_marks if isinstance(seen.mark, Sliding)]
         return replace(self, whole=self.here) if max(spans, default=0.0) > longest else self
 
     @property
@@ -179,7 +326,7 @@ def link_numbers(structure: Structure) -> dict[str, int]:
 
 
 def link_groups(structure: Structure) -> dict[str, int]:
-    """Tell which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
+    """Return which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
     found = dict.fromkeys(structure.mechanism.links, 0)
     for k, group in enumerate(structure.groups, start=1):
         found.update(dict.fromkeys(group.links, k))
@@ -225,14 +372,14 @@ ON_RIM = 0.02
 
 
 def is_inside(scene: Scene, link: str) -> bool:
-    """Tell whether all points of a link are within a disc of its own."""
+    """Return whether all points of a link are within a disc of its own."""
     own = np.array([complex(p) for p in scene.points[link].values()])
     return any(bool(np.all(inside)) for inside in _inside(scene, link, own))
 
 
 def _inside(scene: Scene, link: str, own: Number) -> Iterator[Number]:
     """For each disc of a link, which of its points are within it."""
-    for seen in scene.seen:
+    for seen in scene.pair_marks:
         mark = seen.mark
         if isinstance(mark, Wheel) and seen.members[mark.member] == link and not mark.is_ring:
             yield np.abs(own - complex(mark.at)) <= float(mark.radius) * (1.0 + ON_RIM)
@@ -246,7 +393,7 @@ def _inside(scene: Scene, link: str, own: Number) -> Iterator[Number]:
 
 def racks(scene: Scene) -> frozenset[str]:
     """Return the names of the links that carry a rack."""
-    tracks = ((seen.members, seen.mark) for seen in scene.seen if isinstance(seen.mark, Track))
+    tracks = ((seen.members, seen.mark) for seen in scene.pair_marks if isinstance(seen.mark, Track))
     return frozenset(members[mark.member] for members, mark in tracks if mark.pitch)
 
 
@@ -256,7 +403,7 @@ def smallest_wheel(scene: Scene, letter: str) -> float:
     return min(
         (
             float(seen.mark.radius)
-            for seen in scene.seen
+            for seen in scene.pair_marks
             if isinstance(seen.mark, Wheel)
             and (link := seen.members[seen.mark.member]) in links
             and abs(complex(seen.mark.at) - complex(scene.points[link][letter])) <= ON_RIM * float(seen.mark.radius)

@@ -17,8 +17,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.symbols import Sliding, Wheel
 from compoundkin.view.sketch.labels import DIGITS, EDGE, LABEL, LINE, ROUNDS, WIDE, Label, distances, straight_lines
 from compoundkin.view.sketch.painter import Painter, edges, link_corners
-from compoundkin.view.sketch.picture import Window
-from compoundkin.view.sketch.scene import PairMark, Scene
+from compoundkin.view.sketch.scene import PairMark, Scene, Window
 from compoundkin.view.sketch.shapes import Polyline, Shape, Strokes, Text, arrow_head, unit_direction
 from compoundkin.view.sketch.sketch_style import SMALL
 
@@ -54,7 +53,7 @@ def link_dimensions(painter: Painter) -> list[Dimension]:
     shown = [name for name in scene.legend if name != FRAME and painter.shows(name)]
     found = [one for name in shown for one in _of_link(painter, name)]
     wheels: list[tuple[str, complex, float]] = []
-    for seen in scene.seen:
+    for seen in scene.pair_marks:
         if isinstance(seen.mark, Sliding) and seen.members[0] in shown:
             found += _of_guide(painter, seen, seen.mark)
         elif isinstance(seen.mark, Wheel):
@@ -271,7 +270,7 @@ def _fixed_points(scene: Scene) -> Iterator[tuple[complex, bool, bool]]:
     for letter, place in scene.carried.items():
         if FRAME in carriers[letter]:
             yield complex(place), True, True
-    for seen in scene.seen:
+    for seen in scene.pair_marks:
         mark = seen.mark
         if isinstance(mark, Sliding) and seen.members[0] == FRAME:
             e = complex(mark.along)
@@ -321,7 +320,7 @@ def guide_dimensions(painter: Painter) -> list[Dimension]:
     nothing = NOTHING * float(scene.mechanism.geometry.size)
     pivots = [complex(p) for k, p in scene.carried.items() if FRAME in scene.mechanism.carriers[k]]
     known: list[tuple[complex, complex]] = []
-    for mark in (seen.mark for seen in scene.seen if seen.members[0] == FRAME):
+    for mark in (seen.mark for seen in scene.pair_marks if seen.members[0] == FRAME):
         if not isinstance(mark, Sliding):
             continue
         at, e = complex(mark.at), unit_direction(complex(mark.along))

@@ -148,9 +148,9 @@ def page_css() -> str:
     names = sorted(["ghost", *CLASSES, *grouped])
     rules = [_rule(name, lambda pair: f"var({found.setdefault(pair, f'--k{len(found)}')})") for name in names]
     light, dark = ("".join(f"{name}:{pair[paper]};" for pair, name in found.items()) for paper in (0, 1))
-    asked = f"@media screen{{:root[data-theme=dark]{{{dark}}}}}"
+    screen = f"@media screen{{:root[data-theme=dark]{{{dark}}}}}"
     system = f"@media screen and (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{dark}}}}}"
-    return "\n".join((f":root{{{light}}}", asked, system, *rules))
+    return "\n".join((f":root{{{light}}}", screen, system, *rules))
 
 
 def declarations(name: str) -> dict[str, str]:

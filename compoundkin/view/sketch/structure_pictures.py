@@ -1,4 +1,4 @@
-"""Pictures of a structure: taken apart into groups, its independent loops, its kinematic graph, its circle of centres."""
+"""Pictures of a structure: taken apart into groups, its independent loops, its kinematic graph, its centres."""
 
 from __future__ import annotations
 
@@ -17,32 +17,19 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Group, Loop, Structure, roman
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
-from compoundkin.view.sketch.labels import (
-    NARROW,
-    WIDE,
-    Label,
-    label_around,
-    label_shapes,
-    labels_of,
-    lines_below,
-    lines_of_text,
-    placed,
-    text_half,
-)
+from compoundkin.view.sketch.labels import WIDE, Label, label_around, label_shapes, labels_of, placed, text_half
 from compoundkin.view.sketch.painter import Painter, edges, skeleton
 from compoundkin.view.sketch.picture import (
-    MARGIN,
+    NARROW,
     PAPER_WIDTH,
     Picture,
     PicturePart,
-    Window,
-    checked_size,
-    fitted_window,
+    headed_part,
     in_rows,
-    legible_size,
+    with_notes,
 )
 from compoundkin.view.sketch.picture_options import LABELS, Drawable, PictureOptions, scene_of, structure_of
-from compoundkin.view.sketch.scene import Scene, link_groups, link_numbers
+from compoundkin.view.sketch.scene import MARGIN, Scene, Window, fitted_window, link_groups, link_numbers, panel_around
 from compoundkin.view.sketch.shapes import (
     CircleShape,
     Polygon,
@@ -53,13 +40,12 @@ from compoundkin.view.sketch.shapes import (
     Text,
     moved_shapes,
     shape_corners,
-    sheet,
     unit_direction,
 )
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, PIN, SMALL, style_of
 
 
-def draw_groups_apart(what: Drawable, wishes: PictureOptions) -> Picture:
+def draw_groups_apart(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the mechanism taken apart into groups.
 
     They are drawn in its graph where it cannot be shown at any pose.
@@ -67,42 +53,42 @@ def draw_groups_apart(what: Drawable, wishes: PictureOptions) -> Picture:
     structure = _taken_apart(what)
     known = what if isinstance(what, Motion) else structure.mechanism
     try:
-        scene = scene_of(known, wishes.at, wishes.pose, wishes.design)
+        scene = scene_of(known, options.at, options.pose, options.design)
     except (InvalidInput, NotAssembled):
-        # how it is taken apart is a matter of its letters: it needs no pose unless one is asked for
-        if wishes.others(("size",)):
+        # how it is taken apart is a matter of its letters: it needs no pose unless one is requested
+        if options.others(("size",)):
             raise
-        return groups_in_graph(structure, wishes.size)
-    return groups_picture(scene, wishes.size)
+        return groups_in_graph(structure, options.size)
+    return groups_picture(scene, options.size)
 
 
-def draw_circle_of_centres(what: Drawable, wishes: PictureOptions) -> Picture:
+def draw_circle_of_centres(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the circle diagram of the instant centres."""
     # late: other pictures need none of this
     from compoundkin.view.sketch.centre_pictures import circle_diagram
 
     structure = _taken_apart(what)
-    return circle_diagram(structure, link_numbers(structure), wishes.size)
+    return circle_diagram(structure, link_numbers(structure), options.size)
 
 
-def draw_kinematic_graph(what: Drawable, wishes: PictureOptions) -> Picture:
+def draw_kinematic_graph(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the graph of links and pairs."""
     structure = structure_of(what)
-    return graph_shapes(structure, link_numbers(structure), link_groups(structure), wishes.size)
+    return graph_shapes(structure, link_numbers(structure), link_groups(structure), options.size)
 
 
-def draw_independent_loops(what: Drawable, wishes: PictureOptions) -> Picture:
+def draw_independent_loops(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the loops on the mechanism.
 
     They are drawn in its graph where it cannot be shown at any pose.
     """
     try:
-        scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+        scene = scene_of(what, options.at, options.pose, options.design)
     except (InvalidInput, NotAssembled, NotDetermined):
-        if wishes.others(("size",)):
+        if options.others(("size",)):
             raise
-        return loops_in_graph(structure_of(what), wishes.size)
-    return loops_picture(scene, wishes.size)
+        return loops_in_graph(structure_of(what), options.size)
+    return loops_picture(scene, options.size)
 
 
 def _taken_apart(what: Drawable) -> Structure:
@@ -116,9 +102,7 @@ def _taken_apart(what: Drawable) -> Structure:
 
 # Parts are drawn in this part of the size of a sketch.
 PART_OF_SKETCH = 0.52
-# Above each part, for its heading.
-HEADING = 30.0
-# More loops than this nobody looks at one by one.
+# More loops than this are not compared one by one.
 MOST = 40
 # Panels are drawn in this part of the size of a sketch, and no larger than this, in picture units: two of them, or
 # three where there are more than a few loops, stand side by side.
@@ -146,16 +130,13 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
     shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
     notes = [f"{number} {name}" for name, number in scene.legend.items()]
     notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
-    texts, height = lines_below(lines_of_text(notes, width - 32.0), height + LINE)
-    paper = sheet(width, height)
     title = f"{scene.mechanism.title}, taken apart"
-    described = "; ".join(group_heading(group) for group in scene.structure.groups)
-    shown = legible_size(width, height, checked_size(size))
-    return Picture((paper, *shapes, *texts), width, height, title, described, shown)
+    described = "; ".join(map(group_heading, scene.structure.groups))
+    return with_notes(shapes, width, height + LINE, notes, title, described, size, legible=True)
 
 
 def group_heading(group: Group) -> str:
-    """Tell what a group is called: its class and the letters of its pairs."""
+    """Return the heading of a group: its class and the letters of its pairs."""
     return f"class {roman(group.class_)}: {group.name}"
 
 
@@ -171,25 +152,11 @@ def _mechanism_part(
     painter = Painter(scene, whole, links, outer)
     laid = in_layers(painter)
     shapes = by_links(laid)
-    points = np.array(shape_corners(shapes) or [0j])
-    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
-    high = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j)
-    wide = max((high - low).real, len(title) * LETTER * WIDE)
-    low -= (wide - (high - low).real) / 2.0
+    low, wide, tall = panel_around(shape_corners(shapes) or [0j], len(title) * LETTER * WIDE)
     shapes = moved_shapes(shapes, -low)
-    own = [_shifted(label, -low) for label in labels_of(painter, laid, LABELS)]
-    tall = (high - low).imag
-    shapes += label_shapes(scene, placed(own, shapes, wide, tall))
-    named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
-    own_links = tuple(name for name in scene.legend if name in links)
-    return PicturePart(
-        (ShapeGroup((named_part, *moved_shapes(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING
-    )
-
-
-def _shifted(label: Label, by: complex) -> Label:
-    own = tuple((a + by, b + by) for a, b in label.own)
-    return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
+    labels = [label.moved(-low) for label in labels_of(painter, laid, LABELS)]
+    shapes += label_shapes(scene, placed(labels, shapes, wide, tall))
+    return headed_part(title, shapes, wide, tall, (name for name in scene.legend if name in links))
 
 
 def loops_picture(scene: Scene, size: float | None) -> Picture:
@@ -282,11 +249,8 @@ def _picture(structure: Structure, panels: Sequence[LoopPanel], notes: Sequence[
     found = structure.loops
     shapes, width, height = in_rows(loop_parts(panels))
     notes = [*notes, *([f"and {len(found) - MOST} more loops"] if len(found) > MOST else [])]
-    texts, height = lines_below(lines_of_text(notes, width - 32.0), height)
-    paper = sheet(width, height)
     title = f"{structure.mechanism.title}: independent loops"
-    described = "; ".join(loop_links(loop) for loop in found)
-    return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
+    return with_notes(shapes, width, height, notes, title, "; ".join(map(loop_links, found)), size)
 
 
 # Panels are at least so wide, for their headings.
@@ -337,10 +301,7 @@ def loop_panel(k: int, loop: Loop, behind: Sequence[Shape], found: Sequence[Corn
 def loop_parts(panels: Sequence[LoopPanel]) -> list[PicturePart]:
     """Return the panels with their headings, all of one size."""
     points = np.array([p for panel in panels for p in shape_corners([*panel.behind, *panel.vectors])])
-    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
-    size = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j) - low
-    wide = max(size.real, NARROWEST)
-    low -= (wide - size.real) / 2.0
+    low, wide, tall = panel_around(points, NARROWEST)
     wrap = textwrap.TextWrapper(int(wide / (SMALL * NARROW)), break_on_hyphens=False, break_long_words=False).wrap
     chains = [wrap(loop_links(panel.loop)) for panel in panels]
     down = LINE * (1 + max(map(len, chains)))
@@ -350,22 +311,22 @@ def loop_parts(panels: Sequence[LoopPanel]) -> list[PicturePart]:
         heads: list[Shape] = [Text(top, f"loop {panel.number}", "heading")]
         heads += [Text(top + 1j * LINE * i, line, "note") for i, line in enumerate(lines, start=1)]
         shapes = moved_shapes([*panel.behind, *panel.vectors], -low)
-        shapes += _texts(panel, low, complex(wide, size.imag))
+        shapes += _texts(panel, low, wide, tall)
         part = ShapeGroup((*heads, *moved_shapes(shapes, 1j * down)), links=panel.loop.links)
-        parts.append(PicturePart((part,), wide, size.imag + down))
+        parts.append(PicturePart((part,), wide, tall + down))
     return parts
 
 
-def _texts(panel: LoopPanel, low: complex, size: complex) -> list[Shape]:
+def _texts(panel: LoopPanel, low: complex, width: float, height: float) -> list[Shape]:
     """The letters at the corners of a loop, and its number."""
     vectors = moved_shapes(panel.vectors, -low)
-    ((_, middle),) = placed([_number(panel.number, panel.corners, low)], vectors, size.real, size.imag).items()
+    ((_, middle),) = placed([_number(panel.number, panel.corners, low)], vectors, width, height).items()
     # vectors beside one line turn clockwise
     turn = -1.0 if _area([corner.at for corner in panel.corners]) < -1.0 else 1.0
     turning = _turning(panel.number, middle, turn)
     faint = moved_shapes([shape for shape in panel.behind if not _is_thin(shape)], -low)
     around_it = CircleShape(middle, ROUND, "pin")
-    found = placed(_named(panel.corners, low), [*faint, *vectors, around_it], size.real, size.imag)
+    found = placed(_named(panel.corners, low), [*faint, *vectors, around_it], width, height)
     return [*turning, *(Text(at, key.partition(" ")[2], "letter") for key, at in found.items())]
 
 
@@ -465,17 +426,9 @@ def groups_in_graph(structure: Structure, size: float | None) -> Picture:
     shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
     notes = [f"{number} {name}" for name, number in numbers.items()]
     notes += ["loose ends: outer pairs"] if structure.groups else []
-    texts, height = lines_below(lines_of_text(notes, width - 32.0), height + LINE)
     title = f"{structure.mechanism.title}, taken apart"
     described = "; ".join(map(group_heading, structure.groups))
-    return Picture(
-        (sheet(width, height), *shapes, *texts),
-        width,
-        height,
-        title,
-        described,
-        legible_size(width, height, checked_size(size)),
-    )
+    return with_notes(shapes, width, height + LINE, notes, title, described, size, legible=True)
 
 
 def _part_edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]) -> list[Shape]:
@@ -509,15 +462,9 @@ def _stubs(pairs: Sequence[Pair], places: Mapping[str, complex], own: Sequence[s
 
 def _graph_part(title: str, shapes: list[Shape], spots: Sequence[complex], links: Sequence[str]) -> PicturePart:
     """A part with its heading, moved to its upper left corner; stubs reach half a step beyond its links."""
-    reach = APART * STUB + 2.0 * NODE
-    low = complex(min(z.real for z in spots), min(z.imag for z in spots)) - (reach + MARGIN / 4.0) * (1 + 1j)
-    high = complex(max(z.real for z in spots), max(z.imag for z in spots)) + (reach + MARGIN / 4.0) * (1 + 1j)
-    wide, tall = max((high - low).real, len(title) * LETTER * WIDE), (high - low).imag
-    low -= (wide - (high - low).real) / 2.0
-    named = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
-    return PicturePart(
-        (ShapeGroup((named, *moved_shapes(shapes, HEADING * 1j - low)), links=tuple(links)),), wide, tall + HEADING
-    )
+    reach = APART * STUB + 2.0 * NODE + MARGIN / 4.0
+    low, wide, tall = panel_around(spots, len(title) * LETTER * WIDE, reach)
+    return headed_part(title, moved_shapes(shapes, -low), wide, tall, links)
 
 
 # The distance of two links that a pair joins, in picture units, and the radius of a link.
@@ -543,12 +490,9 @@ def graph_shapes(
     texts: list[Shape] = [Text(at, key.partition(" ")[2], "code") for key, at in found.items()]
     notes = [f"{number} {name}" for name, number in numbers.items()]
     notes += ["thick lines: driven pairs"] if driven else []
-    said, height = lines_below(lines_of_text(notes, window.width - 32.0), window.height)
-    paper = sheet(window.width, height)
     title = f"{structure.mechanism.title}: kinematic graph"
     described = f"{len(names)} links, {len(structure.pairs)} pairs"
-    shapes = (paper, *lines, *nodes, *texts, *said)
-    return Picture(shapes, window.width, height, title, described, checked_size(size))
+    return with_notes([*lines, *nodes, *texts], window.width, window.height, notes, title, described, size)
 
 
 def link_node(name: str, at: complex, number: int, group: int) -> Shape:

@@ -65,14 +65,15 @@ def svg_document(
 
 
 def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:
-    """Return a picture as part of a page. As wide as there is room, its style that of the page, its links told.
+    """Return a picture as part of a page. As wide as there is room, its style that of the page, its links named.
 
     >>> inline((ShapeGroup((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
     '<g data-links="bar,block">'
     """
     name = escape(f"{title}. {description}" if description else title)
     head = (
-        f'<svg viewBox="0 0 {svg_number(width)} {svg_number(height)}" style="max-width:{svg_number(width * NATURAL)}px;{FONT}" '
+        f'<svg viewBox="0 0 {svg_number(width)} {svg_number(height)}" '
+        f'style="max-width:{svg_number(width * NATURAL)}px;{FONT}" '
         f'role="img" aria-label="{name}">'
     )
     return "\n".join([head, f"<title>{escape(title)}</title>", *elements(shapes, tagged=True), "</svg>"])

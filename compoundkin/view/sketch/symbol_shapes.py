@@ -54,7 +54,7 @@ SAME_WHEEL = 1.0
 def pair_marks(painter: Painter) -> Iterator[Laid]:
     """Return all marks that are shown, a wheel that several pairs share once."""
     drawn: list[tuple[str, complex, float]] = []
-    for seen in painter.scene.seen:
+    for seen in painter.scene.pair_marks:
         if not isinstance(seen.mark, Sliding) and not painter.shows(seen.members[seen.mark.member]):
             continue
         if isinstance(seen.mark, Wheel):
@@ -161,7 +161,7 @@ def cylinder(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Laid]:
 
 
 def is_piston(seen: PairMark) -> bool:
-    """Tell whether a slide on the frame is that of a piston. Its name or that of its link says so.
+    """Return whether a slide on the frame is that of a piston. Its name or that of its link says so.
 
     A slide that has stops is drawn with them.
     """
@@ -200,8 +200,8 @@ def piston(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Laid]:
 
 
 def _has_bore(painter: Painter, seen: PairMark, mark: Sliding) -> bool:
-    """Tell whether a piston is the first one in its bore. Those of a bank of cylinders are behind each other."""
-    seen_before = painter.scene.seen[: painter.scene.seen.index(seen)]
+    """Return whether a piston is the first one in its bore. Those of a bank of cylinders are behind each other."""
+    seen_before = painter.scene.pair_marks[: painter.scene.pair_marks.index(seen)]
     others = [_ends(painter, one.mark) for one in seen_before if isinstance(one.mark, Sliding) and is_piston(one)]
     own = _ends(painter, mark)
     return not any(abs(own[0] - low) < SAME_BORE and abs(own[1] - high) < SAME_BORE for low, high in others)
@@ -280,7 +280,7 @@ SAME_POINT = 1.0
 def wedge_ends(painter: Painter, link: str) -> tuple[complex, ...]:
     """Return the ends of the guides of a bar that make it a wedge. They begin at one of its two points."""
     found: list[complex] = []
-    for seen in painter.scene.seen:
+    for seen in painter.scene.pair_marks:
         if isinstance(seen.mark, Sliding) and seen.members[0] == link != FRAME and not painter.is_rod(seen):
             own = _places(painter, link)
             foot, ends = painter.place(link, seen.mark.at), guide_line(painter, link, seen.mark)
@@ -305,7 +305,7 @@ def driver_arrows(painter: Painter) -> Iterator[Laid]:
         if not painter.shows(step.link) or step.link in scene.mechanism.auxiliary_links:
             continue
         speed = painter.scene.driver_value(step.drive.name, 1) or 1.0
-        marks = [s for s in painter.scene.seen if s.pair.name == step.pair.name]
+        marks = [s for s in painter.scene.pair_marks if s.pair.name == step.pair.name]
         straight = next((s for s in marks if isinstance(s.mark, Sliding | Track)), None)
         letter = step.pair.letters[0]
         at = painter.pin(step.link, letter)

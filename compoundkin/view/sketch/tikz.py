@@ -191,7 +191,8 @@ def _arc(shape: ArcShape, height: float) -> str:
     arm = -chord / 2.0 - 1j * way * off * (chord / abs(chord) if chord else 1.0)
     start = float(np.rad2deg(np.angle(arm)))
     turned = way * 2.0 * float(np.rad2deg(np.arcsin(min(1.0, abs(chord) / 2.0 / radius)))) if chord else 0.0
-    return f"{_place(shape.start, height)} arc[start angle={start:.2f}, delta angle={turned:.2f}, radius={svg_number(radius)}]"
+    options = f"start angle={start:.2f}, delta angle={turned:.2f}, radius={svg_number(radius)}"
+    return f"{_place(shape.start, height)} arc[{options}]"
 
 
 _COMMANDS: Mapping[str, str] = {

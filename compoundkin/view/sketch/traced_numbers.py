@@ -64,7 +64,7 @@ class Traced:
 
 
 def _answered(value: Any, operands: Any, recorded: Callable[[list[Any]], Any]) -> Any:
-    """A value with its note; the value alone where truths are asked for or an operand has no note."""
+    """A value with its note; the value alone where truth values are needed or an operand has no note."""
     if isinstance(value, tuple | bool | np.bool_) or np.asarray(value).dtype.kind == "b":
         return value
     own = next(one.note for one in operands if isinstance(one, Traced))

@@ -11,11 +11,11 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, with_superscripts
 from compoundkin.model.geometry import FRAME
-from compoundkin.view.sketch.labels import SEPARATOR, SIDE, label_around, lines_below, placed, text_half, width_with
+from compoundkin.view.sketch.labels import label_around, placed, text_half
 from compoundkin.view.sketch.painter import link_corners
-from compoundkin.view.sketch.picture import NARROWEST, Picture, Window, checked_size, fitted_window
+from compoundkin.view.sketch.picture import SEPARATOR, SIDE, Picture, checked_size, lines_below, width_with
 from compoundkin.view.sketch.picture_options import Drawable, PictureOptions, pose_notes, scene_of
-from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.scene import NARROWEST, Scene, Window, fitted_window
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, arrow_shapes, sheet
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
 
@@ -49,7 +49,7 @@ class VectorScale:
 
 
 def vector_kinds(vectors: Any) -> tuple[str, ...]:
-    """Return the kinds of vectors asked for; raises InvalidInput for others.
+    """Return the requested kinds of vectors; raises InvalidInput for others.
 
     >>> vector_kinds("velocity")
     ('velocity',)
@@ -101,7 +101,7 @@ def round_below(value: float) -> float:
 
 
 def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], scale: VectorScale) -> list[Shape]:
-    """Return an arrow for each vector that is long enough to be seen."""
+    """Return an arrow for each vector that is long enough visible."""
     found: list[Shape] = []
     for letter, rate in rates.items():
         way = complex(np.conjugate(rate)) * scale.per_unit
@@ -112,13 +112,13 @@ def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], s
 
 
 def scale_shapes(scale: VectorScale, height: float) -> list[Shape]:
-    """Tell what states the scale. An arrow of the round amount, at a height of the picture."""
+    """Return an arrow of the round amount with its text, at a height of the picture."""
     length = scale.amount * scale.per_unit
     line = arrow_shapes(complex(SIDE, height), complex(SIDE + length, height), scale.kind)
     return [*line, Text(complex(1.5 * SIDE + length, height), f"{scale.kind}, {scale.text}", "note", "start")]
 
 
-def vector_polygon(what: Drawable, wishes: PictureOptions) -> Picture:
+def vector_polygon(what: Drawable, options: PictureOptions) -> Picture:
     """Draw the polygon of all points' velocities or accelerations at one pose. The images of the links are drawn too.
 
     From the pole o an arrow leads to the image of each point, named by its letter in lower case; the images of the
@@ -126,11 +126,11 @@ def vector_polygon(what: Drawable, wishes: PictureOptions) -> Picture:
     J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapters 3 and 4 (velocity and
     acceleration images).
     """
-    kinds = vector_kinds(wishes.vectors) or (VELOCITY,)
+    kinds = vector_kinds(options.vectors) or (VELOCITY,)
     if len(kinds) > 1:
         raise InvalidInput(Problem("vectors", "a polygon is one of them", f"one of {', '.join(kinds)}"))
     kind = kinds[0]
-    scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+    scene = scene_of(what, options.at, options.pose, options.design)
     rates = rates_of(scene, kind)
     spread = max((abs(a - b) for a in (0j, *rates.values()) for b in rates.values()), default=0.0)
     longest = max(map(abs, rates.values()), default=0.0)
@@ -148,7 +148,7 @@ def vector_polygon(what: Drawable, wishes: PictureOptions) -> Picture:
     labels = [label_around(text, place, text_half(text, LETTER), 5.0, place - pole or -1 + 1j) for text, place in names]
     found = placed(labels, shapes, window.width, window.height)
     shapes += [Text(place, text, "letter") for text, place in found.items()]
-    return _framed(scene, window, shapes, scale, wishes.size)
+    return _framed(scene, window, shapes, scale, options.size)
 
 
 def _images(scene: Scene, ends: Mapping[str, complex], pole: complex) -> list[Shape]:

@@ -1,7 +1,7 @@
 """Wheels as shapes: gears, ring gears, pulleys and racks; cams and their followers; Geneva wheels.
 
-The dimensions tell a Geneva wheel: at the mouth of its slot the crank stands at right angles to it, and the angle between
-them at the axis of the wheel is that between two slots. The depth of its locking arcs is chosen for the picture.
+The dimensions tell a Geneva wheel: at the mouth of its slot the crank stands at right angles to it, and the angle
+between them at its axis is that between two slots. The depth of its locking arcs is chosen for the picture.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ def wheel_shapes(painter: Painter, seen: PairMark, mark: Wheel) -> Iterator[Laid
 
 
 def is_roller(painter: Painter, seen: PairMark) -> bool:
-    """Tell whether a wheel rolls on a profile. How it is turned is then of no interest."""
-    return any(one.pair is seen.pair and isinstance(one.mark, Outline) for one in painter.scene.seen)
+    """Return whether a wheel rolls on a profile. How it is turned is then of no interest."""
+    return any(one.pair is seen.pair and isinstance(one.mark, Outline) for one in painter.scene.pair_marks)
 
 
 def _axle(painter: Painter, seen: PairMark, middle: complex) -> Iterator[Laid]:
@@ -179,7 +179,7 @@ def guiding_profile(scene: Scene, slide: PairMark) -> PairMark | None:
     guide, block = slide.members
     if guide != FRAME:
         return None
-    for one in scene.seen:
+    for one in scene.pair_marks:
         is_profile = isinstance(one.mark, Outline) or (isinstance(one.mark, Groove) and len(one.mark.line) > 2)
         if is_profile:
             touching = next(link for k, link in enumerate(one.members[:2]) if k != one.mark.member)  # type: ignore[union-attr]
@@ -211,7 +211,7 @@ def knife_edge(painter: Painter, seen: PairMark, mark: Stud) -> Iterator[Laid]:
     link = seen.members[mark.member]
     tip = painter.place(link, mark.at)
     own = [painter.place(link, p) - tip for p in painter.scene.points[link].values()]
-    slide = next((s for s in painter.scene.seen if isinstance(s.mark, Sliding) and s.members[1] == link), None)
+    slide = next((s for s in painter.scene.pair_marks if isinstance(s.mark, Sliding) and s.members[1] == link), None)
     if slide is not None and isinstance(slide.mark, Sliding) and slide.members[0] == FRAME:
         e = painter.along(link, slide.mark.turn)
         away = e * (1.0 if (np.conjugate(e) * (tip - _shaft(painter, _profile_of(painter, seen)))).real >= 0 else -1.0)
@@ -223,13 +223,13 @@ def knife_edge(painter: Painter, seen: PairMark, mark: Stud) -> Iterator[Laid]:
 
 
 def is_edge(painter: Painter, seen: PairMark) -> bool:
-    """Tell whether a mark of a pair is an edge on a disc. A pin in a groove or a ring is none."""
-    on = [s.mark for s in painter.scene.seen if s.pair is seen.pair and isinstance(s.mark, Outline)]
+    """Return whether a mark of a pair is an edge on a disc. A pin in a groove or a ring is none."""
+    on = [s.mark for s in painter.scene.pair_marks if s.pair is seen.pair and isinstance(s.mark, Outline)]
     return any(mark.closed and not mark.is_hollow for mark in on)
 
 
 def _profile_of(painter: Painter, seen: PairMark) -> PairMark:
-    return next(s for s in painter.scene.seen if s.pair is seen.pair and isinstance(s.mark, Outline))
+    return next(s for s in painter.scene.pair_marks if s.pair is seen.pair and isinstance(s.mark, Outline))
 
 
 def _shaft(painter: Painter, cam: PairMark) -> complex:
@@ -245,7 +245,7 @@ def _line(painter: Painter, cam: PairMark) -> Number:
 
 def _radii(painter: Painter, cam: PairMark) -> list[float]:
     """The radius of the roller, if there is one."""
-    marks = (one.mark for one in painter.scene.seen if one.pair is cam.pair)
+    marks = (one.mark for one in painter.scene.pair_marks if one.pair is cam.pair)
     return [float(mark.radius) * painter.window.scale for mark in marks if isinstance(mark, Wheel)]
 
 
@@ -284,7 +284,7 @@ def geneva_of(scene: Scene, seen: PairMark) -> Geneva | None:
     """Return the Geneva wheel whose slot a groove is. None where its dimensions are not those of one."""
     if not isinstance(seen.mark, Groove) or len(seen.mark.line) != 2 or FRAME in seen.members[:2]:
         return None
-    stud = next((s for s in scene.seen if s.pair is seen.pair and isinstance(s.mark, Stud)), None)
+    stud = next((s for s in scene.pair_marks if s.pair is seen.pair and isinstance(s.mark, Stud)), None)
     if stud is None:
         return None
     wheel, crank = seen.members[seen.mark.member], stud.members[stud.mark.member]  # type: ignore[union-attr]
@@ -305,7 +305,7 @@ def geneva_of(scene: Scene, seen: PairMark) -> Geneva | None:
 
 def genevas(scene: Scene) -> list[Geneva]:
     """Return all Geneva wheels."""
-    return [found for seen in scene.seen if (found := geneva_of(scene, seen)) is not None]
+    return [found for seen in scene.pair_marks if (found := geneva_of(scene, seen)) is not None]
 
 
 def around_genevas(scene: Scene) -> Iterator[Number]:

@@ -11,8 +11,8 @@ import compoundkin as ck
 from compoundkin.programs.dimensions import StatedDimensions, free_dimensions, mechanism_with
 from compoundkin.view.sketch.kinematic_sketch import carried_shapes
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import DEVIATION, Window
 from compoundkin.view.sketch.picture_options import scene_in
+from compoundkin.view.sketch.scene import DEVIATION, Window
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Strokes, leaves
 from tests import catalog
 

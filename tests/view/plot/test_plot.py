@@ -373,7 +373,7 @@ def mistakes() -> list[tuple[Callable[[ck.results.Motion], Any], type[Exception]
         (lambda m: ck.plot(m, "G.velocity.lenth"), ck.errors.UnknownName, "G.velocity.lenth"),
         (lambda m: ck.plot(m, "bar.angle.x"), ck.errors.UnknownName, "bar.angle is no vector"),
         (lambda m: ck.plot(m, "G", size=(-1, 3)), ck.errors.InvalidInput, "width and height in inches"),
-        (lambda m: plot.polar(m, "G", size=(np.nan, 3)), ck.errors.InvalidInput, "is no size"),
+        (lambda m: plot.polar(m, "G", size=(np.nan, 3)), ck.errors.InvalidInput, "is not a size"),
         (lambda m: ck.plot(m, "G", against="tme"), ck.errors.UnknownName, "did you mean 'time'"),
         (lambda m: ck.plot(m, "G", against="time"), ck.errors.InvalidInput, "no motion in time"),
         (lambda m: ck.plot(m, "bar", against="G"), ck.errors.InvalidInput, "G.length"),

@@ -180,7 +180,7 @@ def test_of_very_many_designs_some_thousands_are_drawn() -> None:
         (lambda r, t: ck.plots.bands(r, STROKE), "it has one number for each design, none at the poses"),
         (lambda r, t: ck.plots.pareto(r, STROKE, ANGLE), "rocker.angle: it has a value at every pose"),
         (lambda r, t: ck.plots.pareto(r, STROKE, CRANK, greatest=[ROD]), "greatest: 'coupler.C.x' is neither figure"),
-        (lambda r, t: ck.plots.bands(r, ANGLE, percentiles=(101,)), "percentiles: 101 is no percentile"),
+        (lambda r, t: ck.plots.bands(r, ANGLE, percentiles=(101,)), "percentiles: 101 is not a percentile"),
         (lambda r, t: ck.plots.contributions(t, "C.position"), "take C.position.x or C.position.y"),
         (lambda r, t: ck.plots.contributions(t, ANGLE, pose=13), "there is no pose 13 (0 to 12)"),
         (lambda r, t: ck.plots.contributions(t, STROKE, pose=0), "one number of the whole motion"),

@@ -163,7 +163,7 @@ def test_what_cannot_be_constructed_is_told() -> None:
         (six_bar, {"link": "crank"}, "'crank' is in no group; the dyads have"),
         (six_bar, {"ghosts": 3}, "ghosts: it does not go with the kind 'construction'"),
         (catalog.motion("class-iii-six-bar"), {"link": catalog.structure("class-iii-six-bar").groups[0].links[0]},
-         "which is no dyad"),
+         "which is not a dyad"),
         (catalog.motion("class-iii-six-bar"), {}, "there is no dyad"),
     ):  # fmt: skip
         with pytest.raises(ck.errors.InvalidInput, match=why):

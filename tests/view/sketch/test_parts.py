@@ -24,9 +24,8 @@ from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.model.pairs.symbols import Mark, Pin, Sliding, strap_line
 from compoundkin.structure import decompose
 from compoundkin.view.sketch.labels import label_around, placed
-from compoundkin.view.sketch.picture import simplified
 from compoundkin.view.sketch.picture_options import scene_of
-from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.scene import Scene, simplified
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.sketch_style import COLOURS, FRAME, INK, PAPER
 from compoundkin.view.sketch.symbol_shapes import PAINTED
@@ -55,7 +54,7 @@ def test_every_mark_is_drawn() -> None:
 
 @pytest.mark.parametrize("name", shipped_mechanisms.names())
 def test_a_guide_is_as_long_as_the_motion_uses_it(name: str) -> None:
-    for seen in _scene(name).seen:
+    for seen in _scene(name).pair_marks:
         if isinstance(seen.mark, Sliding):
             values = catalog.motion(name).pairs[seen.pair.name].value
             assert (seen.mark.low, seen.mark.high) == pytest.approx((np.nanmin(values), np.nanmax(values)), rel=1e-9)

@@ -118,7 +118,7 @@ def test_pistons_are_what_is_called_so_and_never_leave_their_bores_on_the_side_o
         ("toggle-press", 0),
     ):
         motion = ck.solve(shipped_mechanisms.load_named(name))
-        assert sum(map(is_piston, scene_of(motion, None, None, 0).seen)) == count
+        assert sum(map(is_piston, scene_of(motion, None, None, 0).pair_marks)) == count
     for sense, mechanism in ((1, "slider-crank"), (-1, "slider-crank-crossed")):
         motion = ck.solve(shipped_mechanisms.load_named(mechanism))
         for pose in (0, 17, 36):

@@ -16,7 +16,8 @@ import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
 from compoundkin.model.elements import Link
 from compoundkin.view.notebook import MOST_LINKS
-from compoundkin.view.sketch.labels import NARROW, ROOM, text_half
+from compoundkin.view.sketch.labels import ROOM, text_half
+from compoundkin.view.sketch.picture import NARROW
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, SMALL
 
