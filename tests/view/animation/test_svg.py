@@ -177,7 +177,7 @@ def test_arrows_are_those_of_the_solver_and_turn_round_on_the_way_back() -> None
     for k in poses_alone(animation.timeline):
         pose, way, share = (
             int(animation.timeline.poses[k]),
-            int(animation.timeline.ways[k]),
+            int(animation.timeline.directions[k]),
             animation.timeline.times[k],
         )
         shown = list(drawn(svg, share))[parts:]

@@ -91,7 +91,7 @@ def test_the_chart_of_a_mechanism_has_its_units_title_and_times(tmp_path: Path) 
     ("what", "over", "words"),
     [
         (arm(None), None, "no driver has a law and no cam"),
-        (arm(constant_speed(2.0)), None, "for how long"),
+        (arm(constant_speed(2.0)), None, "the time over which"),
         (arm(constant_speed(2.0)), "rotation", "no cam is made"),
         (cam(), "time", "no driver has a law"),
         ({}, None, "there is no law"),
