@@ -23,8 +23,6 @@ from compoundkin.base.display import hidden_character_problem, short_repr
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 
 P = ParamSpec("P")
-
-
 R = TypeVar("R")
 
 
@@ -110,8 +108,6 @@ def _part(value: object, name: str) -> object:
 
 
 Test: TypeAlias = Callable[[Any], bool]
-
-
 # What gives an object of each class that calls are given.
 OBTAINED_BY: Mapping[str, str] = MappingProxyType(
     {
@@ -146,8 +142,6 @@ class ArgumentType(NamedTuple):
 
 # No machine counts farther, and no list is longer.
 GREATEST = 2**63
-
-
 # Real numbers to Python, but never meant as one.
 _NOT_NUMBERS = (bool, np.timedelta64)
 
@@ -219,12 +213,8 @@ _PLAIN: Mapping[str, ArgumentType] = MappingProxyType(
         "PathLike": ArgumentType(lambda value: isinstance(value, str | os.PathLike), "path"),
     }
 )
-
-
 # What is read as numbers or points by the function itself, which says what is wrong with them.
 _ANYTHING = frozenset({"Any", "Number", "Sizes", "Reach", "Item", "object"})
-
-
 _LISTS = ("Sequence", "Iterable", "tuple")
 
 
@@ -318,8 +308,6 @@ def _union(one: ArgumentType | None, other: ArgumentType | None) -> ArgumentType
 
 
 Floats: TypeAlias = NDArray[np.float64]
-
-
 # What NumPy would read as numbers without a word, by the letter of its kind, and what to do instead.
 _NOT_REAL = {
     "M": ("dates are no numbers", "give seconds, angles or lengths"),

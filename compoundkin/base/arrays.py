@@ -10,11 +10,9 @@ import numpy as np
 
 # A number or an array of numbers; NumPy's stubs cannot say "the same array library as the operand".
 Number: TypeAlias = Any
-
 TURN = 2.0 * np.pi
 # What Python joins to a complex number.
 PLAIN = (float, int, np.number)
-
 # Lengths that can be computed with: the fourth power of one, as in the discriminant of a dyad, is a number still.
 LONGEST, SHORTEST = 1e50, 1e-50
 

@@ -142,12 +142,8 @@ def suggestion(name: object, known: Sequence[str]) -> str:
 
 
 _lock = Lock()
-
-
 # Filters of warnings belong to the whole process: who comes first puts them up, who goes last takes them away.
 _inside: list[ExitStack] = []
-
-
 _count = [0]
 
 

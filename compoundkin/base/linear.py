@@ -14,8 +14,6 @@ from compoundkin.base.arrays import Number
 
 # One row of a matrix over a batch: its entries by column; what is not there is zero.
 Row: TypeAlias = dict[int, Number]
-
-
 # Up to so many unknowns each entry is an array over the batch; beyond, whole matrices are multiplied: the number of
 # calls would grow with the square of the unknowns.
 ONE_BY_ONE = 12

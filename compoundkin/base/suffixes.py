@@ -11,7 +11,6 @@ from typing import Literal, TypeAlias
 from compoundkin.base.errors import InvalidInput, Problem
 
 Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study"]
-
 # Of each kind its suffixes and the form that each means; the first suffix of a form is told to people.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
     {

@@ -12,24 +12,12 @@ import numpy as np
 from compoundkin.base.arrays import Number
 
 Kind: TypeAlias = Literal["points", "links", "pairs", "drives"]
-
-
 Dimension: TypeAlias = Literal["length", "angle", "time", "number", "force", "moment", "power"]
-
-
 # Their units follow from those that a mechanism states.
 OF_FORCES: tuple[Dimension, ...] = ("force", "moment", "power")
-
-
 PER_SECOND = ("", "/s", "/s^2", "/s^3")
-
-
 HIGHEST_ORDER = len(PER_SECOND) - 1
-
-
 RADIANS, DEGREES = "rad", "deg"
-
-
 SUPERSCRIPTS = {"^2": "²", "^3": "³"}
 
 
@@ -54,47 +42,27 @@ POINT = _catalogue(
     ("position", "r", 0), ("velocity", "v", 1), ("acceleration", "a", 2), ("jerk", "j", 3),
     ("x", "x", 0), ("y", "y", 0), ("speed", "|v|", 1),
 )  # fmt: skip
-
-
 LINK = _catalogue(
     ("angle", "θ", 0), ("angular_velocity", "ω", 1), ("angular_acceleration", "α", 2), ("angular_jerk", "α'", 3)
 )
-
-
 PAIR = _catalogue(("value", "q", 0), ("rate", "q'", 1), ("second", "q''", 2), ("third", "q'''", 3))
-
-
 DRIVER: Mapping[str, Attribute] = MappingProxyType(
     {**PAIR, **_catalogue(("speed", "q'", 1), ("acceleration", "q''", 2), ("jerk", "q'''", 3))}
 )
-
-
 # By what a motion calls its tables of them, in the order in which a name is tried.
 CATALOGUE: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
     {"points": POINT, "links": LINK, "pairs": PAIR, "drives": DRIVER}
 )
-
-
 # What the value of a pair or a driver is called besides, by what it is.
 ALIASES: Mapping[Dimension, Mapping[str, Attribute]] = MappingProxyType(
     {"angle": _catalogue(("angle", "q", 0)), "length": _catalogue(("displacement", "q", 0))}
 )
-
-
 # What is derived at each pose of those that have it: by name alone, and no column of a whole table.
 _RATIOS = _catalogue(("velocity_ratio", "m_V", 1, "number"), ("advantage", "m_A", 1, "number"))
-
-
 _TRANSMISSION = _catalogue(("transmission_angle", "μ", 0, "angle"), ("transmission_index", "TI", 0, "number"))
-
-
 _GUIDES = _catalogue(("pressure_angle", "φ", 0, "angle"), ("coriolis", "a_cor", 2, "length"))
-
-
 # What forces have beside motions. It takes accelerations, those of the masses.
 _ON_FRAME = _catalogue(("shaking_force", "F_s", 2, "force"), ("shaking_moment", "M_s", 2, "moment"))
-
-
 _IN_PAIRS = _catalogue(
     ("force", "F", 2, "force"), ("moment", "M", 2, "moment"),
     # by the kind of pair: what presses across it and where, what teeth, strands and rolling wheels pass on
@@ -102,85 +70,41 @@ _IN_PAIRS = _catalogue(
     ("needed_friction", "μ_0", 2, "number"), ("separating", "F_r", 2, "force"), ("tooth_force", "F_z", 2, "force"),
     ("flank", "s", 2, "number"), ("first_pull", "S_1", 2, "force"), ("second_pull", "S_2", 2, "force"),
 )  # fmt: skip
-
-
 _OF_DRIVERS = _catalogue(("effort", "T", 2, "force"), ("power", "P", 2, "power"))
-
-
 FORCES: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
     {"points": {}, "links": _ON_FRAME, "pairs": _IN_PAIRS, "drives": _OF_DRIVERS}
 )
-
-
 DERIVED: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
     {
         **{"points": {}, "links": {**_TRANSMISSION, **_RATIOS, **_ON_FRAME}},
         **{"pairs": {**_GUIDES, **_RATIOS, **_IN_PAIRS}, "drives": {**_RATIOS, **_OF_DRIVERS}},
     }
 )
-
-
 FORCE, MOMENT, NORMAL, ECCENTRICITY, TANGENTIAL, NEEDED_FRICTION, *_OF_WHEELS = _IN_PAIRS
-
-
 SEPARATING, TOOTH_FORCE, FLANK, FIRST_PULL, SECOND_PULL = _OF_WHEELS
-
-
 EFFORT, POWER = _OF_DRIVERS
-
-
 SHAKING_FORCE, SHAKING_MOMENT = _ON_FRAME
-
-
 VELOCITY_RATIO, ADVANTAGE = _RATIOS
-
-
 TRANSMISSION_ANGLE, TRANSMISSION_INDEX = _TRANSMISSION
-
-
 PRESSURE_ANGLE, CORIOLIS = _GUIDES
-
-
 # The words of the derivatives, from the zeroth on, that a whole table has of each.
 OF_POINTS, OF_LINKS, OF_PAIRS = tuple(POINT)[:4], tuple(LINK), tuple(PAIR)
-
-
 OF_DRIVERS = (OF_PAIRS[0], *tuple(DRIVER)[4:])
-
-
 # Those that are asked for by name elsewhere.
 POSITION, VELOCITY, ACCELERATION = OF_POINTS[:3]
-
-
 ANGLE, ANGULAR_VELOCITY, ANGULAR_ACCELERATION = OF_LINKS[:3]
-
-
 VALUE, DISPLACEMENT, TIME = OF_PAIRS[0], *ALIASES["length"], "time"
-
-
 # The length of a point's velocity; the rates of a driver.
 SPEED, RATES = tuple(POINT)[-1], OF_DRIVERS[1:]
-
-
 TABULATED: Mapping[Kind, tuple[str, ...]] = MappingProxyType(
     {"drives": OF_DRIVERS, "points": OF_POINTS, "links": OF_LINKS, "pairs": OF_PAIRS}
 )
-
-
 # The real numbers of a planar vector, as they are called behind its name.
 LENGTH = "length"
-
-
 PARTS: Mapping[str, Callable[[Number], Number]] = MappingProxyType({"x": np.real, "y": np.imag, LENGTH: np.abs})
-
-
 # What a quantity has over a whole motion, as it is called behind its name.
 MOTION_FIGURES = ("least", "greatest", "stroke", "time_ratio", "imbalance_angle")
-
-
 LEAST, GREATEST, STROKE, TIME_RATIO, IMBALANCE = MOTION_FIGURES
-
-
 # What may be the time derivative of an attribute, the first that there is; nothing means the attribute of a bare name.
 RATE_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {

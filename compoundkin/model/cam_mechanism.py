@@ -15,8 +15,6 @@ from compoundkin.model.profiles import DoubleCam, Synthesised
 
 # Five degrees from pose to pose.
 POSES = 73
-
-
 FRAME, CAM, FOLLOWER = "frame", "cam", "follower"
 
 

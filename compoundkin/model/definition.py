@@ -27,8 +27,6 @@ from compoundkin.model.units import Units
 
 # The tables of cylinders and of drivers in a mechanism file.
 CYLINDERS = "cylinders"
-
-
 DRIVES = "drives"
 
 

@@ -185,8 +185,6 @@ def implied_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str,
 
 
 P = ParamSpec("P")
-
-
 Constructed = TypeVar("Constructed")
 
 
@@ -220,8 +218,6 @@ def constructor(name: str, kind: Callable[P, Constructed]) -> Callable[P, Constr
 
 # What a sentence on a field leaves out for those who write Python.
 _UNITS: Mapping[Kind, str] = {"angle": " In radians; a number or an array."}
-
-
 # Kinds of keys that are one real number, or two; arrays of them for several designs.
 _ONE, _TWO = ("length", "angle", "number", "turn", "coordinate", "rate", "span"), ("two", "reach", "sweep")
 

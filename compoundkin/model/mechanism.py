@@ -359,8 +359,6 @@ def _row_of_design(value: Number, shape: tuple[int, ...], design: int) -> Number
 
 
 _OTHER_ATTRIBUTES = {word for kind in ("points", "links", "pairs") for word in (*CATALOGUE[kind], *DERIVED[kind])}
-
-
 # What drivers have alone, such as their efforts.
 DRIVER_ATTRIBUTES = frozenset({*CATALOGUE["drives"], *DERIVED["drives"]} - _OTHER_ATTRIBUTES)
 

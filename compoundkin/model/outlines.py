@@ -17,7 +17,6 @@ from compoundkin.model.geometry import real, vector
 from compoundkin.model.loads.contract import NO_RENAMING
 
 __all__ = ["LinkOutline", "outline"]
-
 OUTLINES = "outlines"
 
 

@@ -44,7 +44,6 @@ __all__ = [
     "as_prescribed",
     "place_table",
 ]
-
 # The axis of each coordinate.
 AXES = {"x": 1 + 0j, "y": 1j}
 
@@ -192,12 +191,8 @@ class PrescribedMotion(ShortRepr):
 
 
 KINDS: tuple[type[Path], ...] = (TimedPlaces, LinePath, CurvePath, FunctionPath)
-
-
 # Those that a mechanism file can hold, by their name there.
 WRITTEN: dict[str, type[Path]] = {kind.kind: kind for kind in KINDS if kind.keys}
-
-
 TIME_NEEDED = "say when it is where: time=, or law= for the length of way in time"
 
 

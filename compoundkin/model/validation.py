@@ -72,11 +72,7 @@ def _naming_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
         seen.add((kind, name))
     for letter in mechanism.carriers:
         if not _is_name(letter):
-            yield Problem(
-                f"points.{letter}",
-                f"{letter!r} is not a name",
-                _PRINTABLE,
-            )
+            yield Problem(f"points.{letter}", f"{letter!r} is not a name", _PRINTABLE)
         if letter in mechanism.links:
             yield Problem(f"links.{letter}", "a link and a point have the same name", "rename one of them")
 
@@ -225,20 +221,12 @@ def _quantity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
 ZERO_LENGTH = 1e-12
-
-
 # What a driver says of its coordinate in numbers.
 DRIVER_NUMBERS = ("values", *RATES)
-
-
 # What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
 _SCALARS = (complex, float, int)
-
-
 # An error names so many links.
 MOST_NAMED = 12
-
-
 # A direction in which points of a drawing hardly ever lie one behind the other.
 _OBLIQUE = cmath.rect(1.0, 1.0)
 
@@ -435,17 +423,11 @@ def missing_places(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]
 
 
 GRAVITY = "gravity"
-
-
 # An inertia below this part of that of a uniform bar or plate through the link's points is most often one in another
 # unit: kg m^2 among millimetres are a millionth, kg cm^2 a hundredth.
 SMALL_INERTIA = 1e-3
-
-
 # What of a load holds numbers, and may be an array over the motion.
 _LOAD_NUMBERS = ("length", "amount", "planar", "point", "spot", "coordinate")
-
-
 MassOrLoad: TypeAlias = Mass | Load | Friction | Pretension
 
 
@@ -581,8 +563,6 @@ def load_warnings(mechanism: Any) -> None:
 
 
 _OUTLINE_LENGTHS = ("width", "radius", "pin")
-
-
 # How many places each list needs.
 _FEWEST_CORNERS = {"through": 2, "polygon": 3}
 

@@ -18,8 +18,6 @@ from compoundkin.base.series import Series, as_series, compose_series, derivativ
 # Two places of a curve whose distances from a point differ by less than the square of this part of the curve cannot
 # be distinguished by samples; Newton starts this close to its answer.
 SAMPLES = 2048
-
-
 # Places where what is given as a curve is tried.
 TRIED = 7
 
@@ -214,8 +212,6 @@ class Analytic(Curve):
 
 # Gauss's rule with this many points measures the arc between two samples to rounding.
 GAUSS = 8
-
-
 # Newton's steps from a place interpolated between two samples to rounding: each doubles its digits.
 STEPS = 4
 

@@ -17,12 +17,8 @@ from compoundkin.base.newton import newton
 
 # Gauss's rule with this many points between two samples has the length to rounding.
 GAUSS = 3
-
-
 # Halvings of the distance of two samples until rounding.
 HALVINGS = 45
-
-
 # A closed curve may miss its own beginning by rounding of what computes it: this part of its size.
 CLOSES = 1e-9
 
@@ -174,8 +170,6 @@ def check_points(s: Number, points: Number, size: float, closed: bool) -> None:
 
 # Sides of the sampled polygon that meet in a corner of it may miss each other by rounding: this part of a side.
 ROUNDING = 1e-9
-
-
 # Newton from the crossing of two sides of the polygon: their error is squared with every step.
 STEPS = 6
 

@@ -16,26 +16,16 @@ from compoundkin.base.curves.samples import check_points, check_range
 from compoundkin.base.errors import InvalidMechanism, Problem
 
 FEWEST = 4
-
-
 # Through fewer points than this goes a cubic spline, through more one of degree five, whose third derivative (the jerk
 # of what follows it) is smooth.
 FEWEST_QUINTIC = 6
-
-
 # Points nearer than this part of the profile's size are one point twice.
 SAME = 1e-12
-
-
 # Lengths of arc measured on the spline before and used for the next one; the first uses chords. Two are enough for the
 # full order of a quintic.
 ROUNDS = 2
-
-
 # Gauss points to measure a piece of arc.
 GAUSS = 8
-
-
 # Samples for each piece of the spline.
 SAMPLES_PER_PIECE = 4
 
@@ -182,12 +172,8 @@ def _arcs(pieces: SplinePieces, s: Number) -> Number:
 
 # High enough that derivatives of order four keep most digits, low enough for a few hundred pieces to be evaluated fast.
 DEGREE = 9
-
-
 # The spline may miss the function by this part of the curve's size: above rounding of the function, below any drawing.
 ACCURACY = 1e-11
-
-
 FEWEST_PIECES, MOST_PIECES = 32, 16384
 
 

@@ -44,9 +44,7 @@ __all__ = [
     "synchronised",
     "time_table",
 ]
-
 Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | MotionTable | PathCoordinate | FunctionLaw
-
 # The laws that files can say.
 WRITTEN: dict[str, type[Any]] = {
     kind.kind: kind for kind in (ConstantSpeed, ConstantAcceleration, Program, TimeTable, MotionTable)

@@ -14,8 +14,6 @@ from compoundkin.base.arrays import Number
 
 # Terms that cancel leave no more than this part of their sizes: a few units in the last place.
 ROUNDING = 1e-15
-
-
 # Rounding leaves no jump of a derivative where there is none above this part of what is natural for the program.
 JUMP = 1e-9
 

@@ -18,24 +18,14 @@ from compoundkin.model.fields import Key
 from compoundkin.model.laws.constant_laws import ComparedByValue, as_number, from_derivatives
 
 Array: TypeAlias = np.ndarray[Any, Any]
-
-
 MOST_DERIVATIVES = 4
-
-
 # Nine points: the error of a third derivative is of the sixth power of the step.
 NODES = np.arange(-4.0, 5.0)
-
-
 # The steps tried, as parts of the range of times; the best is about a fiftieth of the function's own time scale.
 # Their ratio is no simple fraction: else steps of whole periods of the function agree with each other.
 STEPS = 0.0625 * 0.618 ** np.arange(18.0)
-
-
 # Differences of neighbouring steps that disagree by more than this part of the derivative show that there is none.
 AGREEMENT = 1e-2
-
-
 # Two ways to the same value differ by rounding only.
 SAME = 1e-9
 
@@ -274,17 +264,9 @@ def _remainder(a: Any, b: Any) -> Series:
 
 
 _sin = _function(np.sin, np.cos, lambda x: -np.sin(x), lambda x: -np.cos(x))
-
-
 _cos = _function(np.cos, lambda x: -np.sin(x), lambda x: -np.cos(x), np.sin)
-
-
 _sinh = _function(np.sinh, np.cosh, np.sinh, np.cosh)
-
-
 _cosh = _function(np.cosh, np.sinh, np.cosh, np.sinh)
-
-
 UFUNCS: dict[Any, Callable[..., Any]] = {
     np.add: lambda a, b: _series(a) + _series(b),
     np.subtract: lambda a, b: _series(a) - _series(b),

@@ -19,13 +19,9 @@ from compoundkin.model.laws.path_coordinate import PathCoordinate
 from compoundkin.model.laws.table_laws import MotionTable, TimeTable
 
 SEGMENTS = "segments"
-
-
 # Differences are taken over this part of a number, or of the shortest piece where pieces move; each level of
 # extrapolation halves it. Four levels leave the eighth power of it, some 1e-13 of the slope, and as much of rounding.
 STEP, LEVELS = 0.02, 4
-
-
 # Where a law has other pieces, or is none, so near to a number, it is not smooth there.
 NEAREST = 1e-6
 

@@ -28,8 +28,6 @@ from compoundkin.model.laws.cam_laws import (
 )
 
 Array: TypeAlias = np.ndarray[Any, Any]
-
-
 _WORDS = "write laws.rise(...), laws.fall(...), laws.dwell(...)"
 
 
@@ -232,18 +230,10 @@ def _stretched(one: Program, period: float) -> Program:
 
 # The law whose limits say how long it takes.
 LEAST_TIME = "least-time"
-
-
 LIMITS = ("speed", "acceleration", "jerk")
-
-
 NAMES = (*LAWS, LEAST_TIME)
-
-
 # A span below the least time by no more than this part of it is the least time: rounding of what was written down.
 ROUNDING = 1e-9
-
-
 # Beyond these powers of distances and limits are no numbers any more.
 LEAST, MOST = 1e-60, 1e60
 

@@ -18,8 +18,6 @@ from compoundkin.model.laws.constant_laws import ComparedByValue, as_number, che
 
 # Times beyond the ends of a table by no more than this part of its range are its ends: rounding of 0.1 + 0.1 + 0.1.
 SLACK = 1e-9
-
-
 DEGREES = (3, 5)
 
 

@@ -41,7 +41,6 @@ __all__ = [
     "spring",
     "torque",
 ]
-
 # Every kind of load.
 KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper)
 # What each table of a mechanism file may hold.

@@ -23,11 +23,7 @@ from compoundkin.model.pairs.revolute import SEPARATORS
 
 # What functions of a load along a pair may take.
 COORDINATE = "coordinate"
-
-
 VARIABLES = (COORDINATE, "rate", "time")
-
-
 FORWARD, BACK = "forward", "back"
 
 

@@ -35,8 +35,7 @@ class Force(Load):
     )
     fixed_in: str = field(default=FRAME, metadata=value_key("name", "The link with which its direction turns."))
     while_moving: Any = field(
-        default=None,
-        metadata=value_key("point", "A direction: it acts only while its point moves that way."),
+        default=None, metadata=value_key("point", "A direction: it acts only while its point moves that way.")
     )
     on_pin: str = field(default="", kw_only=True)
 

@@ -22,7 +22,6 @@ KINDS: tuple[type[Pair], ...] = (
     *(Revolute, Prismatic, Slot, ArcSlot, Cam, Face),
     *(Gear, Belt, Rack, Rolling, RollingOnCircle),
 )
-
 # The kinds that a mechanism writes out, by their table in a file; pins follow from shared letters.
 WRITTEN: dict[str, type[Pair]] = {kind.table: kind for kind in KINDS if kind.table}
 

@@ -47,8 +47,6 @@ class Line(NamedTuple):
 
 # A pair's sides on its members, in the members' own frames; and the members' poses.
 Ends: TypeAlias = tuple[End, ...]
-
-
 Poses: TypeAlias = tuple[Pose, ...]
 
 

@@ -58,9 +58,7 @@ class Cylinder:
     """
 
     name: str = field(
-        default="",
-        kw_only=True,
-        metadata=value_key("name", "What it is called; LINK cylinder where it is left out."),
+        default="", kw_only=True, metadata=value_key("name", "What it is called; LINK cylinder where it is left out.")
     )
     link: str = field(metadata=link_key("The link that the rod is pinned to."))
     point: str = field(metadata=point_key("link", "The point of that link at which it is."))

@@ -20,7 +20,6 @@ from compoundkin.model.pairs.symbols import Mark, Wheel
 
 # The pressure angle of standard involute teeth.
 STANDARD = float(np.deg2rad(20.0))
-
 # How many teeth the smaller gear shows where only radii are known.
 UNCOUNTED = 18
 

@@ -160,8 +160,7 @@ class Geared(TurnCounting, Replaceable):
         """Return the rows of the sum of angles and of the first angle."""
         turned = ratio(ends)
         return jacobian_of_rows(
-            (0.0, 0.0, turned, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 - turned),
-            (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0),
+            (0.0, 0.0, turned, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 - turned), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0)
         )
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
@@ -263,11 +262,7 @@ def line_of_action(axes: tuple[Number, Number], radii: tuple[Number, Number], si
 
 
 Two = tuple[Number, Number]
-
-
 Sizes = Sequence[Number] | None
-
-
 # Radii fit a centre distance that they meet to this part of it: drawings are given to some five digits.
 FITS = 1e-5
 

@@ -102,12 +102,8 @@ class LoopTerms:
 
 # Values of unknowns by their keys: angles in radians, lengths. Series of them in time give series.
 Values: TypeAlias = Mapping[str, Number]
-
-
 # What is given by a driver is no unknown of the equations, and is treated as one of known value.
 Kind: TypeAlias = Literal["angle", "displacement", "direction", "parameter", "x", "y", "given"]
-
-
 # What unknowns other than the angles of links are called in a text.
 LETTERS: Mapping[Kind, str] = {
     "displacement": "s", "direction": "d", "parameter": "p", "x": "x", "y": "y", "given": "q",

@@ -20,8 +20,6 @@ from compoundkin.model.profiles import Profile, side_of
 
 # One of so many samples of the profile is enough to find where it is crossed or touched; Newton does the rest.
 THINNED = 4
-
-
 # A roller that cuts into the profile elsewhere by this part of the profile's size would touch there first; less is
 # rounding where it touches twice.
 CUTS = 1e-7
@@ -243,8 +241,6 @@ def face_tangencies(
 
 # Poses times samples that are looked at together: their arrays stay in a second-level cache.
 BATCH = 1 << 17
-
-
 # A function of numbers at poses and of samples of a profile, broadcast together.
 SampledFunction: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
 

@@ -17,8 +17,6 @@ from compoundkin.model.pairs.symbols import Mark, known_range
 
 # From where to where: a coordinate, a point of the link with the guide, or None for an end that is open.
 Reach: TypeAlias = "tuple[Number | str | None, Number | str | None] | None"
-
-
 # A full turn of an arc is full but for rounding of the degrees it was written in.
 FULL = TURN * (1.0 + 1e-12)
 

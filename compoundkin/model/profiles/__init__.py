@@ -17,10 +17,8 @@ from compoundkin.model.profiles.profile import (
 from compoundkin.model.profiles.synthesised import Synthesised, synthesise
 
 KINDS: tuple[type[Profile], ...] = (DiscProfile, PointsProfile, FormulaProfile, Synthesised)
-
 # Those that a mechanism file can hold, by their name there.
 WRITTEN: dict[str, type[Profile]] = {kind.kind: kind for kind in KINDS if kind.keys}
-
 __all__ = [
     "KINDS", "WRITTEN", "DiscProfile", "DoubleCam", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
     "conjugate", "constant_breadth", "disc", "formula", "profile", "side_of", "synthesise",

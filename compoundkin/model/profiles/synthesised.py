@@ -352,27 +352,15 @@ def arm_range(pivot: complex, arm: float) -> tuple[float, float]:
 
 
 FOLLOWERS = ("knife", "roller", "flat")
-
-
 # Spans of degrees add up to a full turn but for rounding.
 ROUNDING = 1e-9
-
-
 # A base circle that will do is looked for in these steps (an oscillating face allows but a range of them), from this
 # part of the size of the mechanism up to this many times it; then by halving to six digits.
 GROWTH = 1.1
-
-
 MOST = 1e3
-
-
 DIGITS = 1e-7
-
-
 # Halving stops at the digits above long before this.
 HALVINGS = 60
-
-
 Span = tuple[float, float]
 
 
