@@ -27,9 +27,9 @@ R = TypeVar("R")
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
-    """Return the function, which refuses arguments that do not fit its annotations.
+    """Return the function with its arguments checked against its annotations.
 
-    It raises InvalidInput, which names the argument, what it should be, and what gives such a thing.
+    It raises InvalidInput, which names the argument, the required type, and how to obtain one.
 
     >>> @checked
     ... def twice(number: int) -> int:
@@ -38,22 +38,21 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     Traceback (most recent call last):
     compoundkin.base.errors.InvalidInput: number: 'x' is no whole number
     """
-    forms: list[_ArgumentTypes] = []
+    types: list[_ArgumentTypes] = []
 
     @wraps(function)
-    def held(*args: P.args, **kwargs: P.kwargs) -> R:
-        # read off at the first call, so that importing the package stays quick
-        known = forms[0] if forms else _ArgumentTypes(function)
-        if not forms:
-            forms.append(known)
-        known.hold(args, kwargs)
+    def checking(*args: P.args, **kwargs: P.kwargs) -> R:
+        # annotations are read at the first call, so that importing the package stays quick
+        if not types:
+            types.append(_ArgumentTypes(function))
+        types[0].check(args, kwargs)
         return function(*args, **kwargs)
 
-    return held
+    return checking
 
 
 class _ArgumentTypes:
-    """What the arguments of a function may be, by position and by name."""
+    """The required types of a function's arguments, by position and by name."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self.placed: list[tuple[str, ArgumentType | None]] = []
@@ -71,7 +70,7 @@ class _ArgumentTypes:
                 if parameter.kind is not parameter.KEYWORD_ONLY:
                     self.placed.append((name, form))
 
-    def hold(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> None:
+    def check(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> None:
         """Raise InvalidInput for the first argument that does not fit."""
         for (name, form), value in zip(self.placed, args, strict=False):
             if form is not None and not form.fits(value):
@@ -88,9 +87,9 @@ class _ArgumentTypes:
 
 def refused(where: str, value: object, form: ArgumentType) -> InvalidInput:
     """Return the error of an argument that does not fit."""
-    # what was made of the thing that is meant holds it: a motion has its mechanism
-    held = next((word for word in form.called.split(" or ") if is_called(_part(value, word), word)), None)
-    remedy = f"take its .{held}" if held else form.remedy
+    # a result holds what it was made of: a motion has its mechanism
+    source = next((word for word in form.called.split(" or ") if is_called(_part(value, word), word)), None)
+    remedy = f"take its .{source}" if source else form.remedy
     if isinstance(value, str) and hidden_character_problem(value) and form.fits(""):
         return InvalidInput(Problem(where, hidden_character_problem(value), "leave it out"))
     if isinstance(value, list | tuple) and form.fits(""):
@@ -103,7 +102,7 @@ def refused(where: str, value: object, form: ArgumentType) -> InvalidInput:
 def _part(value: object, name: str) -> object:
     try:
         return getattr(value, name, None)
-    except CompoundkinError:  # configurations of a group alone have no structure, and say so
+    except CompoundkinError:  # configurations of a group alone have no structure
         return None
 
 
@@ -142,7 +141,7 @@ class ArgumentType(NamedTuple):
 
 # No machine counts farther, and no list is longer.
 GREATEST = 2**63
-# Real numbers to Python, but never meant as one.
+# Real numbers to Python, but hardly ever intended as numbers.
 _NOT_NUMBERS = (bool, np.timedelta64)
 
 
@@ -166,8 +165,7 @@ def is_real(value: object) -> bool:
 
 
 def is_masked(value: object) -> bool:
-    """Tell whether a value is an array of which entries may be left out."""
-    # there is none before numpy.ma is loaded, which takes long
+    """Return whether a value is a masked array, without importing numpy.ma, which takes long."""
     masked = sys.modules.get("numpy.ma")
     return masked is not None and isinstance(value, masked.MaskedArray)
 
@@ -178,7 +176,7 @@ def is_finite_real(value: object) -> bool:
 
 
 def is_text(value: object) -> bool:
-    """Tell whether a value is a text of which every character shows."""
+    """Return whether a value is a text without hidden characters."""
     return isinstance(value, str) and not hidden_character_problem(value)
 
 
@@ -191,7 +189,7 @@ def _is_table(value: object) -> bool:
 
 
 def _are_all(fits: Test, value: object) -> bool:
-    """Tell whether a list holds what it should. What can be read only once is not looked into."""
+    """Return whether every entry of a list fits. An iterator that can be read only once is not tested."""
     # the edges of a graph are a set and a table at once
     is_table = isinstance(value, Mapping) and not isinstance(value, Set)
     if isinstance(value, str | bytes) or is_table or not isinstance(value, Iterable):
@@ -213,13 +211,13 @@ _PLAIN: Mapping[str, ArgumentType] = MappingProxyType(
         "PathLike": ArgumentType(lambda value: isinstance(value, str | os.PathLike), "path"),
     }
 )
-# What is read as numbers or points by the function itself, which says what is wrong with them.
+# Annotations whose values the called function itself reads, with errors of its own.
 _ANYTHING = frozenset({"Any", "Number", "Sizes", "Reach", "Item", "object"})
 _LISTS = ("Sequence", "Iterable", "tuple")
 
 
 def is_called(value: object, word: str) -> bool:
-    """Tell whether a value is of a class that is called so in words."""
+    """Return whether a value is an instance of a class, given by its name in words."""
     return any(in_words(kind.__name__) == word for kind in type(value).__mro__)
 
 
@@ -236,7 +234,7 @@ class Annotation:
         self.names = names
 
     def form(self, annotation: object) -> ArgumentType | None:
-        """Return what an annotation asks for; None where only the function can tell."""
+        """Return the type that an annotation requires; None where the called function checks it."""
         if annotation is inspect.Parameter.empty:
             return None
         return self._of(ast.parse(str(annotation), mode="eval").body)
@@ -257,7 +255,7 @@ class Annotation:
         return _PLAIN.get(name) or self._named(name)
 
     def _named(self, name: str) -> ArgumentType | None:
-        """Return what a class asks for: one of its kind, what has the members of a protocol, one of an alias."""
+        """Return the type that a name requires: a class, the members of a protocol, or an alias."""
         meant = self.names.get(name)
         if meant is not None and not isinstance(meant, type):
             return self.form(meant)
@@ -267,7 +265,7 @@ class Annotation:
         return ArgumentType(partial(is_called, word=in_words(name)), in_words(name), OBTAINED_BY.get(name, ""))
 
     def _table(self, node: ast.expr) -> ArgumentType:
-        """Return what a table of such things asks for; what is wrong with numbers in it, its function says better."""
+        """Return the type of a table of such values; the called function reports details of numbers in it."""
         form = None if ast.unparse(node) in _PLAIN else self._of(node)
         if form is None:
             return _PLAIN["Mapping"]
@@ -276,7 +274,7 @@ class Annotation:
         )
 
     def _list(self, nodes: list[ast.expr]) -> ArgumentType:
-        """Return what a list of such things asks for; ``tuple[float, float]`` has just two."""
+        """Return the type of a list of such values; ``tuple[float, float]`` has just two."""
         many = isinstance(nodes[-1], ast.Constant) or len(nodes) == 1
         forms = [self._of(node) for node in nodes if not isinstance(node, ast.Constant)]
         tests = [_is_anything if form is None else form.fits for form in forms]
@@ -294,7 +292,7 @@ def _is_anything(value: object) -> bool:
 
 
 def _are_each(tests: list[Test], value: object) -> bool:
-    """Tell whether so many values are each what they should be."""
+    """Return whether a list has as many values as tests, and each passes its own."""
     if not isinstance(value, list | tuple | np.ndarray) or getattr(value, "ndim", 1) == 0 or len(value) != len(tests):
         return False
     return all(fits(one) for fits, one in zip(tests, value, strict=True))
@@ -358,7 +356,7 @@ def check_design(design: Any, count: int) -> None:
 
 
 def _convertible(value: Any, array: NDArray[Any]) -> Any:
-    """The array that is converted; what is an object stays itself, to be shown where it is no number."""
+    """Return the array to convert; an object stays itself, so that an error can show it."""
     return value if array.dtype.kind == "O" else array
 
 

@@ -11,7 +11,7 @@ import numpy as np
 # A number or an array of numbers; NumPy's stubs cannot say "the same array library as the operand".
 Number: TypeAlias = Any
 TURN = 2.0 * np.pi
-# What Python joins to a complex number.
+# Numbers that Python itself makes complex.
 PLAIN = (float, int, np.number)
 # Lengths that can be computed with: the fourth power of one, as in the discriminant of a dyad, is a number still.
 LONGEST, SHORTEST = 1e50, 1e-50
@@ -58,7 +58,7 @@ def cross(a: Number, b: Number) -> Number:
 
 
 def is_number(value: Number, number: int) -> bool:
-    """Tell whether a coefficient is a Python number of this value. An array never is, whatever its entries."""
+    """Return whether a coefficient is a Python number of this value; an array never is."""
     return isinstance(value, (float, complex, int)) and value == number
 
 

@@ -14,9 +14,9 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 def bisect_brackets(
     holds: Callable[[Number], Number], inside: Number, outside: Number, halvings: int, enough: float = 0.0
 ) -> tuple[Number, Number]:
-    """Halve brackets so often, keeping something that `holds` at their first ends only.
+    """Bisect brackets at whose first ends a condition `holds`, and at whose second ends it does not.
 
-    They end sooner where all are narrower than the part `enough` of their first end.
+    There are at most `halvings` steps; fewer where all brackets are narrower than the part `enough` of their first end.
 
     >>> inside, outside = bisect_brackets(lambda x: x * x < 2.0, np.array([0.0, 1.0]), np.array([3.0, 2.0]), 40)
     >>> inside.round(9).tolist()
@@ -49,7 +49,7 @@ def false_position(
         if not np.any((np.abs(value) > flat) & (high - low > flat)):
             break
         before = value * f_low > 0
-        # the end that stays a second time counts half, so that it gives way
+        # the value at an end that stays a second time is halved, so that this end moves next
         f_low, f_high = (
             np.where(before, value, np.where(kept < 0, f_low / 2.0, f_low)),
             np.where(before, np.where(kept > 0, f_high / 2.0, f_high), value),
@@ -69,9 +69,10 @@ def golden_section_minimum(
     """Find the least values of functions in brackets by golden section: places and values.
 
     `f(s, which)` gives the values of the functions `which` (a mask) at places; `going(values, widths)` says which
-    brackets are worth more steps. The others stand still.
+    brackets need more steps. The others stay.
 
-    >>> where, value = golden_section_minimum(lambda s, _: (s - 1.0) ** 2, np.zeros(1), np.full(1, 3.0), 60, lambda v, w: w > 1e-6)
+    >>> low, high = np.zeros(1), np.full(1, 3.0)
+    >>> where, value = golden_section_minimum(lambda s, _: (s - 1.0) ** 2, low, high, 60, lambda v, w: w > 1e-6)
     >>> where.round(6)
     array([1.])
     """
@@ -107,7 +108,8 @@ def newton_maximum(
     bound is always reached. After one below the part `last_step` of the bounds, what is left is rounding.
     Source: W. H. Press et al., Numerical Recipes, 3rd ed., section 9.4, `rtsafe`.
 
-    >>> newton_maximum(lambda s, _: (np.cos(s), -np.sin(s)), (np.zeros(1), np.ones(1), np.full(1, 2.0)), 1e-8, 60).round(9)
+    >>> bounds = np.zeros(1), np.ones(1), np.full(1, 2.0)
+    >>> newton_maximum(lambda s, _: (np.cos(s), -np.sin(s)), bounds, 1e-8, 60).round(9)
     array([1.57079633])
     """
     a: Number = bounds[0]

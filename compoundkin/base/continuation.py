@@ -1,4 +1,4 @@
-"""Solutions followed while a system changes: predictor and corrector, a step of its own length for every path.
+"""Continuation: solutions traced while a system changes, by predictor and corrector with a step length for every path.
 
 Source: E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003, chapters 2 and 6.
 """
@@ -16,7 +16,7 @@ from compoundkin.base.newton import NewtonResult, System, newton
 
 
 class StepLengths(NamedTuple):
-    """The lengths of steps. One is halved where a step fails, doubled after `easy` successes in a row.
+    """The control of step lengths: halved where a step fails, doubled after `easy` successes in a row.
 
     A path is given up where its step falls to `shortest`, or after `most` steps of all.
     """
@@ -29,7 +29,7 @@ class StepLengths(NamedTuple):
 
 
 class StepResult(NamedTuple):
-    """The steps of some paths. Their lengths, whether they are good, and whether their paths have arrived."""
+    """The steps of some paths: their lengths, whether they succeeded, and whether their paths have arrived."""
 
     length: Number
     good: Number

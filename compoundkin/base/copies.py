@@ -45,10 +45,7 @@ class CopiesFunction(CopiesFields):
 
 
 def unchecked(item: Copied, **changes: Any) -> Copied:
-    """Return a copy of a frozen dataclass with other fields, unchecked.
-
-    What was found of it since is found again.
-    """
+    """Return a copy of a frozen dataclass with other fields, unchecked and without cached properties."""
     own: Any = item
     copied = object.__new__(type(item))
     copied.__dict__.update({field.name: getattr(item, field.name) for field in fields(own)}, **changes)

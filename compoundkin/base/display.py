@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-# What can be asked for, and the function that answers, as "module:function": loaded when it is asked for.
+# Display functions by name, as "module:function"; a module is imported on first use.
 _DISPLAYS: dict[str, str] = {}
 
 
-def register(**ways: str) -> None:
+def register(**functions: str) -> None:
     """Enter functions that show objects, each as ``module:function``."""
-    _DISPLAYS.update(ways)
+    _DISPLAYS.update(functions)
 
 
 def display_function(name: str) -> Callable[..., Any]:
@@ -34,7 +34,7 @@ def import_function(function: str) -> Callable[..., Any]:
 
 
 def count_phrase(number: int, one: str, many: str = "") -> str:
-    """Say how many there are, in the singular where it is one.
+    """Return a count with its noun, in the singular for one.
 
     >>> count_phrase(1, "driver"), count_phrase(2, "branch", "branches")
     ('1 driver', '2 branches')
@@ -43,7 +43,7 @@ def count_phrase(number: int, one: str, many: str = "") -> str:
 
 
 def abbreviated_list(texts: Sequence[str], most: int = 8) -> str:
-    """Say some texts, and how many more there are.
+    """Return the first texts of a list, and how many more there are.
 
     >>> abbreviated_list(["A", "B"]), abbreviated_list(["A", "B", "C", "D"], 2)
     ('A, B', 'A, B and 2 more')
@@ -56,7 +56,7 @@ class DisplaysHtml:
     """What a notebook shows of an object: tables and pictures as HTML."""
 
     def _repr_html_(self) -> str | None:
-        """As HTML; None where the text says it better, or where it would take long."""
+        """As HTML; None where the text is better, or where HTML would take long."""
         made: str | None = display_function("html")(self)
         return made
 
@@ -87,17 +87,17 @@ class ShortRepr:
     __slots__ = ()
 
     def __repr__(self) -> str:
-        told = ""
+        text = ""
         for name in _parts(self):
-            part = f"{', ' if told else ''}{name}={short_repr(getattr(self, name))}"
-            if len(told) + len(part) > _OF_ALL:
-                return f"{type(self).__name__}({told}, ...)"
-            told += part
-        return f"{type(self).__name__}({told})"
+            part = f"{', ' if text else ''}{name}={short_repr(getattr(self, name))}"
+            if len(text) + len(part) > _OF_ALL:
+                return f"{type(self).__name__}({text}, ...)"
+            text += part
+        return f"{type(self).__name__}({text})"
 
 
 def _parts(thing: Any) -> list[str]:
-    """What is told of an object: its fields, or where it is no dataclass its members, by their names."""
+    """Return the names of an object's fields, or of its members where it is not a dataclass."""
     if is_dataclass(thing):
         return [field.name for field in fields(thing) if field.repr]
     return [name for name in getattr(thing, "__slots__", None) or vars(thing) if not name.startswith("_")]

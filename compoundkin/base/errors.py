@@ -14,7 +14,7 @@ from compoundkin.base.display import escaped_text
 
 @dataclass(frozen=True)
 class Problem:
-    """The place and nature of one thing that is wrong. It also says what is known there, how to mend it.
+    """One problem: where it is, what it is, and how to mend it.
 
     >>> print(Problem("drives[0].link", "there is no link 'crnk'", "did you mean 'crank'?"))
     drives[0].link: there is no link 'crnk'; did you mean 'crank'?
@@ -47,7 +47,7 @@ class CompoundkinError(Exception):
         super().__init__(self._text())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # as the text alone it would lose its problems on the way from another process
+        # the text alone would lose its problems between processes
         return type(self), (self.problems, self.heading)
 
     def _text(self) -> str:
@@ -58,7 +58,7 @@ class CompoundkinError(Exception):
 
 
 class InvalidMechanism(CompoundkinError, ValueError):
-    """A mechanism or a mechanism file says something that cannot be meant."""
+    """A mechanism or a mechanism file is not valid."""
 
 
 class InvalidInput(CompoundkinError, ValueError):
@@ -74,16 +74,13 @@ class NotDetermined(CompoundkinError):
 
 
 class NotAssembled(CompoundkinError):
-    """No pose, or not the pose asked for, can be assembled."""
+    """No pose, or not the requested pose, can be assembled."""
 
     exit_code = 3
 
 
 class StudyStopped(CompoundkinError):
-    """A run of a study that came to no end.
-
-    Workers died, or a disk was full; what was written stays.
-    """
+    """A study stopped before its end: workers died, or a disk was full. What was written stays."""
 
 
 class UnassembledPoses(UserWarning):
@@ -95,7 +92,7 @@ class ChangePointWarning(UserWarning):
 
 
 class DrawnBeyondEnd(UserWarning):
-    """The pose drawn is beyond an end of a guide."""
+    """The drawn pose is beyond an end of a guide."""
 
 
 class FewDigits(UserWarning):
@@ -107,7 +104,7 @@ class WedgedPoses(UserWarning):
 
 
 class LikelySlip(UserWarning):
-    """A value that can be meant but is most often a slip."""
+    """A value that is possible but most often a slip."""
 
 
 class UnmetConstraints(UserWarning):
@@ -126,7 +123,7 @@ def warn(text: str, category: type[Warning]) -> None:
 
 
 def suggestion(name: object, known: Sequence[str]) -> str:
-    """Return the remedy for an unknown name. It is the closest known one, or the list of what there is.
+    """Return the remedy for an unknown name: the closest known one, or the list of known ones.
 
     >>> suggestion("crnk", ["crank", "rod"])
     "did you mean 'crank'?"
@@ -155,8 +152,8 @@ def suppress_pose_warnings() -> Iterator[None]:
         if _count[0] == 1:
             _inside.append(ExitStack())
             _inside[0].enter_context(warnings.catch_warnings())
-            for told in (UnassembledPoses, FewDigits):
-                warnings.simplefilter("ignore", told)
+            for category in (UnassembledPoses, FewDigits):
+                warnings.simplefilter("ignore", category)
     try:
         yield
     finally:

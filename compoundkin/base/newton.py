@@ -15,7 +15,7 @@ System: TypeAlias = Callable[[Number], tuple[Number, Number]]
 
 
 class NewtonResult(NamedTuple):
-    """Where Newton's steps led from every start, and how they came to rest.
+    """The result of Newton's method from every start, with the sizes of its steps.
 
     `x` (..., d) are the unknowns, `last` (...) the sizes of the last steps, `longest` those of the longest ones;
     `matrix` belongs to the unknowns before the last step.
@@ -42,8 +42,8 @@ def newton(
 ) -> NewtonResult:
     """Solve square systems from many starts at once. It goes on until no step is larger than `converged`.
 
-    `size` measures a step at the unknowns that it led to; `limited` may shorten it before it is made. A start whose
-    matrix is singular gets NaN, and holds up no other.
+    `size` measures a step at the new unknowns; `limited` may shorten a step before it is taken. A start whose
+    matrix is singular gives NaN without effect on the others.
 
     >>> found = newton(lambda x: (x * x - 2.0, 2.0 * x[..., None]), np.array([[1.0], [-3.0]]), 1e-8, 9)
     >>> found.x.ravel().round(9).tolist(), bool((found.last <= 1e-8).all())
@@ -73,7 +73,7 @@ SLOW = 0.1
 
 
 class ChordStop(NamedTuple):
-    """The rule by which chord steps are taken and stop. Steps are weighted, so that they are pure numbers.
+    """The rule by which chord steps are taken and stop. Steps are weighted to be dimensionless.
 
     A start has `converged` where no unknown's last step was larger and no residual is above `closed`. After a step
     below `chord` the matrix has hardly changed and is used once more, as long as each step is a fraction of the one
@@ -142,7 +142,7 @@ def elementwise_largest(values: list[Number]) -> Number:
 
 
 class StoppingRule(NamedTuple):
-    """When least-squares steps come to rest; all sizes are of the largest entry.
+    """The rule by which a least-squares iteration stops; all sizes are those of the largest entry.
 
     `exact`: a residual or step that is rounding, so that none could be less. `rounding`: where a step gains nothing
     below this, what is left is rounding too. `longest`: no step is longer. `patience`: so many steps must leave less
@@ -157,7 +157,7 @@ class StoppingRule(NamedTuple):
 
 
 class LeastSquaresResult(NamedTuple):
-    """The best that least-squares steps led to. It has its largest residual, and how many steps it took."""
+    """The best point of a least-squares iteration, its largest residual and its number of steps."""
 
     x: Number
     residual: float

@@ -238,7 +238,9 @@ def implicit_series(start: Number, order: int, slope: Number, residual: Callable
 
     `slope` is the derivative of the residual by s at `start`; the coefficients are not finite where it is zero.
 
-    >>> implicit_series(2.0, 2, 4.0, lambda s: s * s - Series((4.0, 4.0, 2.0)[: s.order + 1])).c  # root of 4 + 4 t + 2 t^2
+    The root of 4 + 4 t + 2 t^2 that begins with 2:
+
+    >>> implicit_series(2.0, 2, 4.0, lambda s: s * s - Series((4.0, 4.0, 2.0)[: s.order + 1])).c
     (2.0, 1.0, 0.25)
     """
     found = [start]

@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 from compoundkin.base.errors import InvalidInput, Problem
 
 Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study"]
-# Of each kind its suffixes and the form that each means; the first suffix of a form is told to people.
+# Of each kind its suffixes and the format that each means; messages name the first suffix of a format.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
     {
         "mechanism": {".toml": "toml", ".json": "json"},
@@ -32,14 +32,14 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
         "study": {".toml": "toml", ".json": "json"},
     }
 )
-# Kinds whose files are told apart from what they are of.
+# Kinds that messages call "mechanism files", not "mechanisms".
 _OF_FILES: tuple[Kind, ...] = ("mechanism", "study")
 # What a name without a suffix means, where there is one form that everybody expects.
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 
 
 def file_format(kind: Kind, path: str | os.PathLike[str]) -> str:
-    """Return the form that a file's suffix tells. Raises InvalidInput where such a thing is not saved so.
+    """Return the format that a file's suffix means. Raises InvalidInput for a suffix of another kind.
 
     >>> file_format("animation", "six-bar.GIF"), file_format("page", "six-bar")
     ('gif', 'html')
@@ -71,7 +71,7 @@ def suffix_of(path: str | os.PathLike[str]) -> str:
 
 
 def suffix_for(kind: Kind, form: str) -> str:
-    """Return the suffix that is told to people for a form.
+    """Return the preferred suffix of a format.
 
     >>> suffix_for("report", "markdown")
     '.md'
@@ -80,7 +80,7 @@ def suffix_for(kind: Kind, form: str) -> str:
 
 
 def alternatives(kind: Kind) -> str:
-    """Return the suffixes of a kind, as helps tell them.
+    """Return the suffixes of a kind in words, for help texts.
 
     >>> alternatives("animation")
     '.gif, .mp4 or .svg'

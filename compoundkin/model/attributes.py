@@ -167,8 +167,8 @@ def with_superscripts(unit: str) -> str:
 def derivative_order(name: str) -> int:
     """Tell from its name how many time derivatives a quantity takes.
 
-    >>> derivative_order("G.velocity"), derivative_order("bar.angular_jerk"), derivative_order("G"), derivative_order("G.velocity.x")
-    (1, 3, 0, 1)
+    >>> [derivative_order(name) for name in ("G.velocity", "bar.angular_jerk", "G", "G.velocity.x")]
+    [1, 3, 0, 1]
     """
     of = motion_figure(name)[0]
     word = vector_and_part(of)[0].rpartition(".")[2] if "." in of else ""

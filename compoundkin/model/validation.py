@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -27,10 +27,20 @@ from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.prescribed_motion import PrescribedMotion
 
 _PRINTABLE = "use printable text without dots, commas or outer blanks"
+# Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
+ZERO_LENGTH = 1e-12
+# The numbers that a driver states of its coordinate.
+DRIVER_NUMBERS = ("values", *RATES)
+# Numbers that are no arrays are tested without NumPy: most mechanisms hold nothing else.
+_SCALARS = (complex, float, int)
+# An error names so many links.
+MOST_NAMED = 12
+# A direction in which points of a drawing hardly ever lie one behind the other.
+_OBLIQUE = cmath.rect(1.0, 1.0)
 
 
 def definition_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find all problems, in the order of the words."""
+    """Find all problems of links, pairs, drivers and expectations, in the order of the elements."""
     yield from _element_problems(mechanism)
     yield from _naming_problems(mechanism)
     yield from point_problems(mechanism)
@@ -45,23 +55,16 @@ def definition_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 
 def _element_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find what is not a word at all."""
+    known = "known: link, the pairs such as slide, cylinder, drive, drawn, mode, expect, mass, the loads, outline"
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
-            yield Problem(
-                f"items[{index}]",
-                f"{item!r} is not a word",
-                "known: link, the pairs such as slide, cylinder, drive, drawn, mode, expect, mass, the loads, outline",
-            )
+            yield Problem(f"items[{index}]", f"{item!r} is not a word", known)
 
 
 def _naming_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     if FRAME not in mechanism.links:
-        yield Problem(
-            "links",
-            f"no link is called {FRAME!r}",
-            f"call the fixed link {FRAME!r}; {suggestion(FRAME, list(mechanism.links))}",
-        )
+        remedy = f"call the fixed link {FRAME!r}; {suggestion(FRAME, list(mechanism.links))}"
+        yield Problem("links", f"no link is called {FRAME!r}", remedy)
     seen: set[tuple[str, str]] = set()
     for where, kind, name in _named_elements(mechanism):
         if not _is_name(name):
@@ -78,7 +81,7 @@ def _naming_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 
 def _named_elements(mechanism: MechanismDefinition) -> Iterator[tuple[str, str, str]]:
-    """Yield the place, sort and name of everything that has one. Pairs of all kinds share their names."""
+    """Yield the place, sort and name of each named element. Pairs of all kinds share one namespace."""
     for item in mechanism.parts:
         if isinstance(item, Link) and item.name not in mechanism.auxiliary_links:
             yield f"links.{item.name}", "link", item.name
@@ -90,7 +93,11 @@ def _named_elements(mechanism: MechanismDefinition) -> Iterator[tuple[str, str, 
 
 
 def _is_name(name: str) -> bool:
-    return bool(name) and name == name.strip() and name.isprintable() and not set(name) & set(".,")
+    return bool(name) and name == name.strip() and _is_printable(name)
+
+
+def _is_printable(name: str) -> bool:
+    return name.isprintable() and not set(name) & set(".,")
 
 
 def _auxiliary_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
@@ -121,7 +128,7 @@ def _pair_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 
 def _unconnected_links(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find links that no pair joins to anything: most often a misspelt letter."""
+    """Find links that no pair joins to another, most often by a misspelt letter."""
     paired = {name for names in mechanism.pins.values() for name in names}
     paired |= {name for pair in mechanism.written_pairs for name in pair.members}
     if len(mechanism.links) < 2:
@@ -180,7 +187,7 @@ def _mode_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 
 def _expectation_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Published numbers that cannot be held against anything."""
+    """Find expected values that cannot be compared with anything."""
     drives = [drive.name for drive in mechanism.drives]
     # a misspelt drive takes its name from the link; that problem is reported already
     named = all(drive.link in mechanism.links for drive in mechanism.drives)
@@ -202,12 +209,12 @@ def _expectation_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 
 def _quantity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Outputs and published numbers of what there is not. A multiple pin's pairs are named by their links."""
+    """Find outputs and expected quantities of unknown elements. A multiple pin's pairs are named by their links."""
     named = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
     known = dict.fromkeys([*named, *(drive.name for drive in mechanism.drives)])
-    asked = [(f"outputs[{k}]", name) for k, name in enumerate(mechanism.outputs)]
-    asked += [(f"expected[{k}].quantity", e.quantity) for k, e in enumerate(mechanism.expectations)]
-    for where, name in asked:
+    named_quantities = [(f"outputs[{k}]", name) for k, name in enumerate(mechanism.outputs)]
+    named_quantities += [(f"expected[{k}].quantity", e.quantity) for k, e in enumerate(mechanism.expectations)]
+    for where, name in named_quantities:
         owner = name.split("(")[0].split(".")[0]
         if owner not in known:
             yield Problem(where, f"there is no point, link, pair or driver {owner!r}", suggestion(owner, list(known)))
@@ -219,20 +226,8 @@ def _quantity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
                           f"write {owner}.angle, {owner}.position or another in full")  # fmt: skip
 
 
-# Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
-ZERO_LENGTH = 1e-12
-# What a driver says of its coordinate in numbers.
-DRIVER_NUMBERS = ("values", *RATES)
-# What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
-_SCALARS = (complex, float, int)
-# An error names so many links.
-MOST_NAMED = 12
-# A direction in which points of a drawing hardly ever lie one behind the other.
-_OBLIQUE = cmath.rect(1.0, 1.0)
-
-
 def point_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find points that are misspelt in the drawing, no numbers, or coincident."""
+    """Find points that are misspelt in the drawing, not numbers, or coincident."""
     size = _size(mechanism)
     if 0.0 < size < SHORTEST:
         yield _off_scale("links", f"the farthest point is at {size:g}")
@@ -271,7 +266,7 @@ def is_finite(value: Any) -> bool:
 
 
 def is_too_great(value: Any) -> bool:
-    """Return whether a finite value is beyond what can be computed with. Of an array, any."""
+    """Return whether a finite value, or any entry of an array, is too great to compute with."""
     return bool(np.max(np.abs(value)) > LONGEST)
 
 
@@ -284,7 +279,7 @@ def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
 
 
 def _lengths(mechanism: MechanismDefinition, name: str, size: float) -> Iterator[Problem]:
-    """Pinned points of one link that coincide. A link of no length between two pairs."""
+    """Find pinned points of one link that coincide: a link of no length between two pairs."""
     link = mechanism.links[name]
     place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
     pinned = [(k, p) for k, p in place.items() if k in mechanism.pins and p is not None]
@@ -306,7 +301,7 @@ def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
 
 
 def _close_along_line(points: list[complex], nearer: float) -> Iterator[tuple[int, int]]:
-    """Yield the pairs of points that coincide. Each is held against those next to it along one direction only."""
+    """Yield the pairs of points that coincide, comparing each with its neighbours along one direction only."""
     along = sorted(((p * _OBLIQUE).real, i) for i, p in enumerate(points) if cmath.isfinite(p))
     for here, (t, i) in enumerate(along):
         for there in range(here + 1, len(along)):
@@ -324,14 +319,14 @@ def _size(mechanism: MechanismDefinition) -> float:
 
 
 def _largest_value(value: Any) -> float:
-    """Return the greatest absolute value, of what is finite."""
+    """Return the greatest finite absolute value."""
     if isinstance(value, _SCALARS):
         return abs(value) if cmath.isfinite(value) else 0.0
     return float(np.max(np.abs(np.asarray(value))[np.isfinite(value)], initial=0.0))
 
 
 def invalid_numbers(pair: Pair, where: str) -> Iterator[Problem]:
-    """Find what a pair holds in place of real numbers or flags."""
+    """Find values of a pair that are not real numbers or flags."""
     for key in pair.keys:
         for value in _numbers_of(pair, key):
             if not is_finite(value) or np.iscomplexobj(value):
@@ -355,7 +350,7 @@ def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
 
 
 def drive_problems(drive: Drive, where: str) -> Iterator[Problem]:
-    """Find a driver's numbers that are none, or that stand beside a law."""
+    """Find invalid numbers of a driver, and numbers beside a law."""
     for key in DRIVER_NUMBERS:
         value = getattr(drive, key)
         if value is not None and not is_finite(value):
@@ -390,28 +385,33 @@ def shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in mechanism.placed_pairs:
         numbers = ((key, value) for key in pair.keys for value in _numbers_of(pair, key))
-        # what is no array at all is told of already
+        # what is not an array at all is reported already
         shapes += [(f"{where}.{key.name}", np.shape(value)) for key, value in numbers if is_finite(value)]
     for place, drive in placed_drives(mechanism):
-        shapes += [
-            (f"{place}.{k}", np.shape(getattr(drive, k))) for k in DRIVER_NUMBERS if getattr(drive, k) is not None
-        ]
+        numbers_of_drive = ((k, getattr(drive, k)) for k in DRIVER_NUMBERS)
+        shapes += [(f"{place}.{k}", np.shape(value)) for k, value in numbers_of_drive if value is not None]
+    yield from _broadcast_problems(shapes)
+
+
+def _broadcast_problems(shapes: Iterable[tuple[str, tuple[int, ...]]]) -> Iterator[Problem]:
+    """Find arrays, by their places and shapes, that do not broadcast with those before them."""
     total: tuple[int, ...] = ()
     for where, shape in shapes:
-        if not shape:
-            continue
         try:
-            total = np.broadcast_shapes(total, shape)
+            total = np.broadcast_shapes(total, shape) if shape else total
         except ValueError:
-            yield Problem(
-                where,
-                f"shape {shape} does not broadcast with {total}",
-                "give a new axis to designs: the last axis is the motion",
-            )
+            what = f"shape {shape} does not broadcast with {total}"
+            yield Problem(where, what, "give a new axis to designs: the last axis is the motion")
+
+
+def _point_shapes(mechanism: MechanismDefinition) -> list[tuple[str, tuple[int, ...]]]:
+    """Return the shapes of points that are arrays, with their places."""
+    return [(f"links.{name}.points.{letter}", np.shape(place)) for name, link in mechanism.links.items()
+            for letter, place in link.points.items() if isinstance(place, np.ndarray)]  # fmt: skip
 
 
 def missing_places(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]:
-    """Name links whose points have no place, and say how to give them one."""
+    """Find links with points without a place, and say how to give them one."""
     for number, (name, letters) in enumerate(unplaced.items()):
         if number == MOST_NAMED:
             yield Problem("links", f"{len(unplaced) - number} more links have points without a place")
@@ -432,7 +432,7 @@ MassOrLoad: TypeAlias = Mass | Load | Friction | Pretension
 
 
 def load_problems(mechanism: MechanismDefinition, names: NamedParts, has_units: bool) -> list[Problem]:
-    """Return what is wrong with masses and loads. They need units, well written or not."""
+    """Return the problems of masses and loads, which need units."""
     found = [] if has_units else list(_without_units(mechanism))
     for where, item in placed_loads(mechanism):
         numbers = list(_invalid_load_numbers(where, item))
@@ -456,10 +456,10 @@ def placed_loads(mechanism: MechanismDefinition) -> Iterator[tuple[str, MassOrLo
 
 
 def _without_units(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find masses and forces of a mechanism that does not say what they are in."""
-    said = next((item for _, item in placed_loads(mechanism)), None)
-    if said is not None:
-        what = f"it has a {said.title}, and masses and forces need units"
+    """Find masses and forces of a mechanism without units."""
+    first = next((item for _, item in placed_loads(mechanism)), None)
+    if first is not None:
+        what = f"it has a {first.title}, and masses and forces need units"
         yield Problem("units", what, 'write units={"length": "mm", "mass": "kg", "force": "N"}')
 
 
@@ -485,7 +485,7 @@ def load_designs(mechanism: MechanismDefinition) -> Iterator[tuple[str, Any]]:
 
 
 def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
-    """Find what is empty or not finite, and a mass that would change along the motion."""
+    """Find values that are empty or not finite, and a mass that would change along the motion."""
     for key, value in _load_numbers(item):
         if not is_finite(value):
             yield Problem(f"{where}.{key}", "the value is empty or not finite")
@@ -498,7 +498,7 @@ def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
 
 
 def _unknown_tables(where: str, item: MassOrLoad, names: NamedParts) -> Iterator[Problem]:
-    """Find tables over what there is not."""
+    """Find tables over unknown coordinates."""
     for key in item.amounts if isinstance(item, Load) else ():
         for table in tables_of(getattr(item, key)):
             if table.over not in ("", TIME) and names.coordinate(table.over) is None:
@@ -507,12 +507,12 @@ def _unknown_tables(where: str, item: MassOrLoad, names: NamedParts) -> Iterator
 
 
 def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:
-    """Find two masses of a link, two frictions of a pair by whichever names, and names of two loads."""
+    """Find two masses of a link, two frictions of a pair by whichever name, and two loads of one name."""
     seen = set[tuple[str, object]]()
     for where, item in placed_loads(mechanism):
         kind = "load" if isinstance(item, Load) else item.title
-        if isinstance(item, Load) and not (item.name.isprintable() and not set(item.name) & set(".,")):
-            yield Problem(f"{where}.name", f"{item.name!r} is not a name", "use printable text without dots, commas")
+        if isinstance(item, Load) and not _is_printable(item.name):
+            yield Problem(f"{where}.name", f"{item.name!r} is not a name", _PRINTABLE)
         if (kind, meant := _load_identity(item, names)) in seen and isinstance(item, Load):
             yield Problem(where, f"the name {item.name!r} is used twice", "names are unique: give one of them a name")
         elif (kind, meant) in seen:
@@ -521,7 +521,7 @@ def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterat
 
 
 def _load_identity(item: MassOrLoad, names: NamedParts) -> object:
-    """Return what an item may be once of: a name, or the two links of a pair and where."""
+    """Return what may have one such item only: a name, or a pair by its links and points."""
     pair = names.pair(item.pair) if isinstance(item, Friction | Pretension) else None
     return item.name if pair is None else (pair.title, pair.letters, frozenset(pair.members))
 
@@ -537,23 +537,16 @@ def _gravity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 def _load_shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Find arrays of loads that do not broadcast with each other and with the points of links."""
-    total: tuple[int, ...] = ()
-    points = [(f"links.{name}.points.{letter}", np.shape(place)) for name, link in mechanism.links.items()
-              for letter, place in link.points.items() if isinstance(place, np.ndarray)]  # fmt: skip
-    held = [(f"{where}.{key}", np.shape(value)) for where, item in placed_loads(mechanism)
+    shapes = [(f"{where}.{key}", np.shape(value)) for where, item in placed_loads(mechanism)
             for key, value in _load_numbers(item)]  # fmt: skip
-    for place, shape in [*points, *held] if any(shape for _, shape in held) else ():
-        try:
-            total = np.broadcast_shapes(total, shape)
-        except ValueError:
-            what = f"shape {shape} does not broadcast with {total}"
-            yield Problem(place, what, "give a new axis to designs: the last axis is the motion")
+    if any(shape for _, shape in shapes):
+        yield from _broadcast_problems([*_point_shapes(mechanism), *shapes])
 
 
 def load_warnings(mechanism: Any) -> None:
     """Warn of inertias that are far too small for their links."""
-    told = [item for item in mechanism.items if isinstance(item, Mass) and item.inertia is not None]
-    for item in told if not mechanism.unplaced else ():
+    stated = [item for item in mechanism.items if isinstance(item, Mass) and item.inertia is not None]
+    for item in stated if not mechanism.unplaced else ():
         points = list(mechanism.geometry.points[item.link].values())
         uniform = np.asarray(mechanism.masses[item.link].mass * uniform_body(points).inertia)
         if np.any((np.asarray(item.inertia) > 0.0) & (item.inertia < SMALL_INERTIA * uniform)):
@@ -568,7 +561,7 @@ _FEWEST_CORNERS = {"through": 2, "polygon": 3}
 
 
 def outline_problems(mechanism: MechanismDefinition, names: NamedParts) -> list[Problem]:
-    """Return what is wrong with outlines, well written or not."""
+    """Return the problems of outlines."""
     found: list[Problem] = []
     for where, item in placed_outlines(mechanism):
         numbers = list(_invalid_outline_numbers(where, item))
@@ -601,7 +594,7 @@ def _outline_numbers(item: LinkOutline) -> Iterator[tuple[str, Any]]:
 
 
 def _invalid_outline_numbers(where: str, item: LinkOutline) -> Iterator[Problem]:
-    """Find what is empty or not finite, not above zero, or would change along the motion."""
+    """Find values that are empty, not finite, not positive, or that would change along the motion."""
     for key, value in _outline_numbers(item):
         if not is_finite(value):
             yield Problem(f"{where}.{key}", "the value is empty or not finite")
@@ -615,7 +608,7 @@ def _invalid_outline_numbers(where: str, item: LinkOutline) -> Iterator[Problem]
 
 
 def _outline_reference_problems(where: str, item: LinkOutline, names: NamedParts) -> Iterator[Problem]:
-    """Find unknown links and points, and what an outline leaves out."""
+    """Find unknown links and points, and missing dimensions."""
     yield from name_problems(item, names.letters, where, NameWording())
     letters = names.letters.get(item.link, ())
     for key, fewest in _FEWEST_CORNERS.items():
@@ -633,7 +626,7 @@ def _outline_reference_problems(where: str, item: LinkOutline, names: NamedParts
 
 
 def _outline_place_problems(where: str, item: LinkOutline, mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find a disc without a middle, a middle of nothing, and a pin that joins nothing."""
+    """Find a disc without a centre, a centre without a disc, and a pin that joins nothing."""
     letters = mechanism.links[item.link].letters if item.link in mechanism.links else ()
     choice = f"name a point: {', '.join(letters)}"
     if item.radius is not None and item.at is None:
@@ -658,8 +651,8 @@ def is_joined(mechanism: MechanismDefinition, letter: str) -> bool:
 def _repeated_outlines(mechanism: MechanismDefinition) -> Iterator[Problem]:
     seen = set[str]()
     for where, item in placed_outlines(mechanism):
-        if not (item.name.isprintable() and not set(item.name) & set(".,")):
-            yield Problem(f"{where}.name", f"{item.name!r} is not a name", "use printable text without dots, commas")
+        if not _is_printable(item.name):
+            yield Problem(f"{where}.name", f"{item.name!r} is not a name", _PRINTABLE)
         if item.name in seen:
             yield Problem(where, f"the name {item.name!r} is used twice", "give one of both outlines a name")
         seen.add(item.name)
@@ -667,16 +660,9 @@ def _repeated_outlines(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 def _outline_shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Find arrays of outlines that do not broadcast with each other and with the points of links."""
-    total: tuple[int, ...] = ()
-    points = [(f"links.{name}.points.{letter}", np.shape(place)) for name, link in mechanism.links.items()
-              for letter, place in link.points.items() if isinstance(place, np.ndarray)]  # fmt: skip
-    held = [(where, np.shape(value)) for where, value in outline_designs(mechanism)]
-    for place, shape in [*points, *held] if held else ():
-        try:
-            total = np.broadcast_shapes(total, shape)
-        except ValueError:
-            what = f"shape {shape} does not broadcast with {total}"
-            yield Problem(place, what, "give a new axis to designs: the last axis is the motion")
+    shapes = [(where, np.shape(value)) for where, value in outline_designs(mechanism)]
+    if shapes:
+        yield from _broadcast_problems([*_point_shapes(mechanism), *shapes])
 
 
 def crossed_polygons(mechanism: Any) -> Iterator[Problem]:
@@ -693,7 +679,7 @@ def crossed_polygons(mechanism: Any) -> Iterator[Problem]:
 
 
 def _crosses(corners: Number) -> bool:
-    """Tell whether two sides of a polygon, (corners, ...), have a point in common that is no common corner."""
+    """Return whether two sides of a polygon (corners, ...) share a point other than their common corner."""
     count = len(corners)
     start, stop = corners, np.roll(corners, -1, axis=0)
     one, other = np.triu_indices(count, 1)
@@ -711,7 +697,7 @@ def _crosses(corners: Number) -> bool:
 
 
 def _boxes_overlap(a: Number, b: Number, c: Number, d: Number) -> Number:
-    """Tell which sides have boxes that meet: on one line the products above say nothing."""
+    """Return which sides have bounding boxes that meet; for sides on one line the products above vanish."""
     return (
         (np.minimum(a.real, b.real) <= np.maximum(c.real, d.real))
         & (np.minimum(c.real, d.real) <= np.maximum(a.real, b.real))

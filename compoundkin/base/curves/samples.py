@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
@@ -48,7 +48,7 @@ class Samples:
         return 0.5 * float(np.sum((np.conj(self.points) * after).imag))
 
     def length(self, speed: Callable[[Number], Number]) -> float:
-        """Measure the arc of a curve whose derivative is as long as `speed` says."""
+        """Return the length of arc of a curve whose derivative has the length `speed`."""
         starts = self.s if self.closed else self.s[:-1]
         nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
         places = starts[:, None] + 0.5 * self.step * (nodes + 1.0)
@@ -91,7 +91,8 @@ class Samples:
 def hull_indices(points: Number) -> Number:
     """Find the corners of the convex hull, counterclockwise. There are two if all points lie on a line.
 
-    Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979.
+    Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, Information Processing
+    Letters 9 (1979) 216-219.
 
     >>> hull_indices(np.array([0j, 1, 2, 1 + 1j, 2 + 2j, 2j]))
     array([0, 2, 4, 5])
@@ -102,16 +103,16 @@ def hull_indices(points: Number) -> Number:
 
 
 def _hull_chain(order: list[int], points: list[complex]) -> list[int]:
+    """Return the corners of half a hull, in an order of points, by left turns."""
     chain: list[int] = []
     for k in order:
-        while len(chain) > 1 and not _turns_left(points[chain[-2]], points[chain[-1]], points[k]):
+        while len(chain) > 1:
+            last = points[chain[-1]]
+            if ((last - points[chain[-2]]).conjugate() * (points[k] - last)).imag > 0.0:
+                break
             chain.pop()
         chain.append(k)
     return chain
-
-
-def _turns_left(a: complex, b: complex, c: complex) -> bool:
-    return ((b - a).conjugate() * (c - b)).imag > 0.0
 
 
 def spans(
@@ -153,15 +154,11 @@ def check_range(low: float, high: float) -> None:
 
 
 def check_points(s: Number, points: Number, size: float, closed: bool) -> None:
-    """Raise `InvalidMechanism` unless points are finite and close a closed curve.
-
-    It is closed where the last is the first.
-    """
-    lost = ~(np.abs(points) <= LONGEST)
-    if lost.any():
-        raise InvalidMechanism(
-            Problem(f"s = {s[lost][0]:g}", "the point of the curve is not a finite number, or beyond 1e50")
-        )
+    """Raise `InvalidMechanism` unless points are finite and the last of a closed curve is the first."""
+    invalid = ~(np.abs(points) <= LONGEST)
+    if invalid.any():
+        what = "the point of the curve is not a finite number, or beyond 1e50"
+        raise InvalidMechanism(Problem(f"s = {s[invalid][0]:g}", what))
     gap = abs(points[-1] - points[0])
     if closed and gap > CLOSES * size:
         what = f"the curve ends {gap:g} away from where it begins"
@@ -268,21 +265,8 @@ def _parts(z: Number) -> Number:
 def convex_hull(points: Iterable[complex]) -> list[complex]:
     """Return the corners around points, counterclockwise; both ends of points on a line.
 
-    Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, Information Processing
-    Letters 9 (1979) 216-219.
-
     >>> convex_hull([0j, 1 + 0j, 0.5 + 0.2j, 1j])
     [0j, (1+0j), 1j]
     """
     ordered = sorted(dict.fromkeys(points), key=lambda p: (p.real, p.imag))
-    return ordered if len(ordered) < 3 else _half(ordered) + _half(ordered[::-1])
-
-
-def _half(run: Sequence[complex]) -> list[complex]:
-    """Return the corners below a run of points, without the last one."""
-    chain: list[complex] = []
-    for p in run:
-        while len(chain) > 1 and (np.conjugate(chain[-1] - chain[-2]) * (p - chain[-1])).imag <= 0:
-            chain.pop()
-        chain.append(p)
-    return chain[:-1]
+    return ordered if len(ordered) < 3 else [ordered[k] for k in hull_indices(np.array(ordered))]

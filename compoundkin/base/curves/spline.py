@@ -135,17 +135,15 @@ def spline_points(given: Sequence[complex] | Number, closed: bool) -> Number:
     try:
         points = np.array(given, dtype=complex)
     except (TypeError, ValueError):
-        raise InvalidMechanism(
-            Problem("points", "the points of a curve are complex numbers", "write x + 1j * y")
-        ) from None
+        what = "the points of a curve are complex numbers"
+        raise InvalidMechanism(Problem("points", what, "write x + 1j * y")) from None
     if points.ndim != 1:
         what = f"a curve is one list of points, these have the shape {points.shape}"
-        raise InvalidMechanism(
-            Problem("points", what, "write every point as x + 1j * y, and one curve for each design")
-        )
-    lost = np.flatnonzero(~np.isfinite(points))
-    if lost.size:
-        raise InvalidMechanism([Problem(f"points[{k}]", f"{points[k]} is not a finite point") for k in lost])
+        remedy = "write every point as x + 1j * y, and one curve for each design"
+        raise InvalidMechanism(Problem("points", what, remedy))
+    invalid = np.flatnonzero(~np.isfinite(points))
+    if invalid.size:
+        raise InvalidMechanism([Problem(f"points[{k}]", f"{points[k]} is not a finite point") for k in invalid])
     if closed and points.size > 1 and abs(points[-1] - points[0]) <= SAME * np.max(np.abs(points - points[0])):
         points = points[:-1]
     if points.size < FEWEST:

@@ -101,7 +101,8 @@ def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
 def integrate_acceleration(parts: Sequence[AccelerationPiece]) -> tuple[PositionPiece, ...]:
     """Return the positions that accelerations make, from rest, with a rise of 1.
 
-    >>> [piece.start for piece in integrate_acceleration((AccelerationPiece(0.5, (1.0,)), AccelerationPiece(0.5, (-1.0,))))]
+    >>> parabolic = AccelerationPiece(0.5, (1.0,)), AccelerationPiece(0.5, (-1.0,))
+    >>> [piece.start for piece in integrate_acceleration(parabolic)]
     [0.0, 0.5]
     """
     start = place = speed = 0.0

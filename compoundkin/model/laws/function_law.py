@@ -36,8 +36,8 @@ class FunctionLaw(CopiesFunction, ComparedByValue):
 
     The latter is a tuple.
     A tuple may go to the jerk. Derivatives that it does not return are exact where the function is written with
-    NumPy's ordinary functions; otherwise they are differences (see `differentiate_function`). Raises InvalidInput where it
-    fails, or returns something of another shape or not finite.
+    NumPy's ordinary functions; otherwise they are differences (see `differentiate_function`). Raises InvalidInput where
+    it fails, or returns something of another shape or not finite.
 
     >>> FunctionLaw(lambda t: np.sin(2.0 * t)).coordinate(np.array([0.0]), order=3).derivative(3).tolist()
     [-8.0]
@@ -142,8 +142,11 @@ def _by_differences(f: Callable[[Any], Any], times: Array, order: int) -> list[A
     spread = float(np.ptp(times)) or 1.0
     steps = spread * STEPS
     tried = [_sampled(f, times[..., None] + NODES * step) for step in steps]
-    return [_best_difference(np.stack([s @ w / h**k for s, h in zip(tried, steps, strict=True)]), tried, steps, times, k)
-            for k, w in enumerate(_weights(order), 1)]  # fmt: skip
+    found = []
+    for k, weights in enumerate(_weights(order), 1):
+        differences = np.stack([s @ weights / h**k for s, h in zip(tried, steps, strict=True)])
+        found.append(_best_difference(differences, tried, steps, times, k))
+    return found
 
 
 def _sampled(f: Callable[[Any], Any], places: Array) -> Array:
