@@ -25,16 +25,18 @@ class CopiesFields:
 class CopiesFunction(CopiesFields):
     """A frozen dataclass with a Python function, which perhaps cannot be pickled."""
 
-    held: ClassVar[str]  # the field with the function
+    function_field: ClassVar[str]  # the field with the function
 
     def __getstate__(self) -> dict[str, Any]:
-        function: Callable[..., Any] = getattr(self, self.held)
+        function: Callable[..., Any] = getattr(self, self.function_field)
         try:
             pickle.dumps(function)
         except (pickle.PicklingError, AttributeError, TypeError):
             name = getattr(function, "__qualname__", repr(function))
             what = f"the function {name!r} cannot be pickled"
-            raise InvalidInput(Problem(self.held, what, "define it with def, not in another function")) from None
+            raise InvalidInput(
+                Problem(self.function_field, what, "define it with def, not in another function")
+            ) from None
         return super().__getstate__()
 
     def __copy__(self) -> Self:

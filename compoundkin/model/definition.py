@@ -31,14 +31,14 @@ DRIVES = "drives"
 
 
 class LoadDefinition:
-    """The masses, gravity, loads and outlines of a mechanism, checked or not."""
+    """The masses, gravity, loads and outlines of a mechanism, validated or not."""
 
     items: tuple[Item, ...]
     units: Units | None
 
     @property
     def stated_units(self) -> Units:
-        """The units of length, mass and force, which forces need. Raises InvalidInput where they are not stated."""
+        """The units of length, mass and force. Raises InvalidInput for a mechanism without units, which forces need."""
         if self.units is None:
             remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
             raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
@@ -56,10 +56,10 @@ class LoadDefinition:
 
     @cached_property
     def masses(self) -> dict[str, Mass]:
-        """The masses by their links, what they leave out taken from their links' points."""
-        given = [item for item in self.items if isinstance(item, Mass)]
+        """The masses by their links, completed from the links' points."""
+        stated = [item for item in self.items if isinstance(item, Mass)]
         return {item.link: item if item.is_complete else item.completed(self.geometry.points[item.link])
-                for item in given}  # fmt: skip
+                for item in stated}  # fmt: skip
 
     @cached_property
     def gravity(self) -> Number:
@@ -77,12 +77,12 @@ class LoadDefinition:
 
     @cached_property
     def loads(self) -> dict[str, Load]:
-        """The loads by name. Those on pins are on a link, those along pairs know their links."""
+        """The loads by name, completed with the links they act on."""
         return {item.name: item.completed(self.names) for item in self.items if isinstance(item, Load)}
 
     @cached_property
     def frictions(self) -> dict[str, Friction]:
-        """The frictions by their pairs. The letter of a multiple pin stands for all its pairs."""
+        """The frictions by their pairs, or by the letter of a multiple pin for all its pairs."""
         return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Friction)}
 
     @cached_property
@@ -92,17 +92,17 @@ class LoadDefinition:
 
     @cached_property
     def outlines(self) -> dict[str, LinkOutline]:
-        """The outlines by name; of a link there may be several."""
+        """The outlines by name; a link may have several."""
         return {item.name: item for item in self.items if isinstance(item, LinkOutline)}
 
     def _pair_meant(self, name: str) -> str:
-        """Return the name of the pair that a name means, be it that of its driver."""
+        """Return the name of a pair that is given by its own name or by that of its driver."""
         pair = self.names.pair(name)
         return name if pair is None else pair.name
 
 
 class MechanismDefinition(LoadDefinition):
-    """A mechanism as written, checked or not. Its words, sorted and looked up by name."""
+    """The elements of a mechanism, validated or not, sorted and by name."""
 
     title: str
     unit: str
@@ -119,14 +119,14 @@ class MechanismDefinition(LoadDefinition):
 
     @cached_property
     def rigid_links(self) -> dict[str, Link]:
-        """The links that are written out, by name. Those are all but barrels and rods of cylinders."""
+        """The links by name, without barrels and rods of cylinders."""
         return {item.name: item for item in self.items if isinstance(item, Link)}
 
     @cached_property
     def parts(self) -> tuple[Item, ...]:
-        """The words, with what stands for cylinders and leads points.
+        """The elements, with cylinders and prescribed motions replaced by their links, pairs and drivers.
 
-        Those are links, pairs between them, and their drivers. One that is badly written is left out.
+        Invalid cylinders and prescribed motions are left out.
         """
         bad = self.invalid_cylinders
         found: list[Item] = []
@@ -136,26 +136,26 @@ class MechanismDefinition(LoadDefinition):
             elif isinstance(item, Drive) and item.link not in bad:
                 found.append(self.resolved(item))
             elif isinstance(item, PrescribedMotion):
-                found += self._led(item) if item in self.prescribed_motions.values() else ()
+                found += self._auxiliary_elements(item) if item in self.prescribed_motions.values() else ()
             elif not isinstance(item, Cylinder | Drive):
                 found.append(item)
         return tuple(found)
 
     @cached_property
     def invalid_cylinders(self) -> set[str]:
-        """The cylinders that are badly written, and stand for nothing."""
+        """The names of cylinders that are not valid."""
         names = [item.name for item in self.items if isinstance(item, Cylinder)]
         wrong = {name for name, item in self.cylinders.items() if any(item.problems(self._letters, ""))}
         return wrong | {name for name in names if names.count(name) > 1}
 
     @cached_property
     def _letters(self) -> dict[str, tuple[str, ...]]:
-        """The points of the links that are written out."""
+        """The points of the rigid links."""
         return {name: item.letters for name, item in self.rigid_links.items()}
 
     @cached_property
     def prescribed_motions(self) -> dict[str, PrescribedMotion]:
-        """What is prescribed of points and links by name, all that is well written."""
+        """The valid prescribed motions of points and links, by name."""
         items = [item for item in self.items if isinstance(item, PrescribedMotion)]
         names = [item.name for item in items]
         return {item.name: item for item in items
@@ -163,11 +163,11 @@ class MechanismDefinition(LoadDefinition):
 
     @cached_property
     def auxiliary_links(self) -> frozenset[str]:
-        """The links that are only thought, to lead points and to turn links."""
+        """The auxiliary links of prescribed motions."""
         return frozenset(name for item in self.prescribed_motions.values() for name in item.links)
 
-    def _led(self, item: PrescribedMotion) -> Iterator[Item]:
-        """Yield the links, pairs and drivers that lead a point or turn a link."""
+    def _auxiliary_elements(self, item: PrescribedMotion) -> Iterator[Item]:
+        """Yield the auxiliary links, pairs and drivers of a prescribed motion."""
         *links, last = item.links
         yield from (Link(name, {}) for name in links)
         yield Link(last, item.carried)
@@ -176,18 +176,18 @@ class MechanismDefinition(LoadDefinition):
             yield Drive(name, link, on, name, law=law)
 
     def resolved(self, drive: Drive) -> Drive:
-        """Return the driver of a cylinder as that of its slide. Any other is left as it is."""
+        """Return the driver of a cylinder as that of its slide, any other unchanged."""
         one = self.cylinders.get(drive.link)
         return drive if one is None else replace(drive, link=one.rod, on=one.barrel, pair=one.name)
 
     @cached_property
     def links(self) -> dict[str, Link]:
-        """The links by name. The frame, and the barrels and rods of cylinders, are among them."""
+        """All links by name, with the frame and the barrels and rods of cylinders."""
         return {item.name: item for item in self.parts if isinstance(item, Link)}
 
     @cached_property
     def written_pairs(self) -> tuple[Pair, ...]:
-        """The pairs that are written out: all but the pins."""
+        """All pairs but the pins, which follow from shared letters."""
         letters = {name: item.letters for name, item in self.links.items()}
         return tuple(pair.completed(letters) for pair in pairs_among(self.parts))
 
@@ -203,7 +203,7 @@ class MechanismDefinition(LoadDefinition):
 
     @cached_property
     def expectations(self) -> tuple[Expectation, ...]:
-        """The published numbers that come with it."""
+        """The published values to compare with."""
         return tuple(item for item in self.items if isinstance(item, Expectation))
 
     @cached_property
@@ -213,7 +213,7 @@ class MechanismDefinition(LoadDefinition):
 
     @cached_property
     def unplaced(self) -> dict[str, tuple[str, ...]]:
-        """The points neither given nor drawn, by their links."""
+        """The points with neither coordinates nor a place in the drawing, by their links."""
         without = {
             name: tuple(letter for letter, p in item.points.items() if p is None and letter not in self.sketch)
             for name, item in self.links.items()
@@ -245,14 +245,14 @@ class MechanismDefinition(LoadDefinition):
 
     @cached_property
     def real_pins(self) -> dict[str, tuple[str, ...]]:
-        """The pins without the links that are only thought."""
+        """The pins without auxiliary links."""
         real = {letter: tuple(name for name in names if name not in self.auxiliary_links)
                 for letter, names in self.pins.items()}  # fmt: skip
         return {letter: names for letter, names in real.items() if len(names) > 1}
 
     @cached_property
     def real_pairs(self) -> tuple[Pair, ...]:
-        """The pairs that are written out by the user."""
+        """The pairs without those of auxiliary links."""
         return tuple(pair for pair in self.written_pairs if self.auxiliary_links.isdisjoint(pair.members))
 
     @cached_property
@@ -279,7 +279,7 @@ class MechanismDefinition(LoadDefinition):
 
     @cached_property
     def placed_pairs(self) -> tuple[tuple[str, Pair], ...]:
-        """Each written pair with its place in a file. What leads points has none."""
+        """Each pair of the user with its place in a file."""
         count: dict[str, int] = {}
         found = []
         for pair in self.real_pairs:
@@ -290,7 +290,7 @@ class MechanismDefinition(LoadDefinition):
         return tuple(found)
 
     def drivable(self, drive: Drive) -> list[str]:
-        """Return the names of the pairs that a drive can mean."""
+        """Return the names of the pairs that a driver may refer to."""
         drive = self.resolved(drive)
         pins = self.pins_between(drive.link, drive.on)
         between = self.pairs_between.get(frozenset((drive.link, drive.on)), ())
@@ -300,7 +300,7 @@ class MechanismDefinition(LoadDefinition):
 
 @dataclass(frozen=True)
 class Pins:
-    """Makes the pairs at the pins of a mechanism."""
+    """The revolute pairs at the pins of a mechanism."""
 
     mechanism: MechanismDefinition
 
@@ -352,7 +352,7 @@ def pin_at(letter: str) -> Pair:
 
 
 def driven_pair(pins: Pins, drive: Drive) -> Drivable:
-    """Return the pair that a drive prescribes. A written one, or the pin between precisely its two links."""
+    """Return the pair that a driver prescribes: a written one, or the pin between its two links."""
     mechanism = pins.mechanism
     (name,) = mechanism.drivable(drive)
     if name in mechanism.pins_between(drive.link, drive.on):
@@ -362,7 +362,7 @@ def driven_pair(pins: Pins, drive: Drive) -> Drivable:
 
 
 def pair_by_name(mechanism: MechanismDefinition, name: str) -> tuple[Pair, int] | None:
-    """Return the pair that a name means, and the sign of its coordinate. None where it means none.
+    """Return the pair of a name and the sign of its coordinate, or None.
 
     It is the name of a pair, a pin's letter, ``J(crank-rod)`` for two links of a multiple pin, or that of a driver,
     whose coordinate may run against its pair's.
@@ -388,14 +388,14 @@ def pair_by_name(mechanism: MechanismDefinition, name: str) -> tuple[Pair, int] 
 
 
 def matching_pairs(pairs: Mapping[str, Pair], meant: Pair) -> Iterator[Pair]:
-    """Yield those of a motion's pairs that join the same links alike. Either link may come first."""
+    """Yield the pairs of the same kind that join the same links at the same points, in either order."""
     for own in pairs.values():
         if own.letters == meant.letters and set(own.members) == set(meant.members) and own.title == meant.title:
             yield own
 
 
 def driver_independent_name(mechanism: MechanismDefinition, name: str) -> str:
-    """Return a name of a driver's coordinate that lasts without the driver."""
+    """Return a name of a driver's coordinate that does not depend on the driver."""
     found = pair_by_name(mechanism, name)
     if found is None or found[1] < 0:
         return name
@@ -405,15 +405,15 @@ def driver_independent_name(mechanism: MechanismDefinition, name: str) -> str:
 
 @dataclass(frozen=True)
 class MechanismNames:
-    """What a mechanism has of links, points and pairs, for loads that name them."""
+    """The names of a mechanism's links, points and pairs, for loads that refer to them."""
 
     mechanism: MechanismDefinition
 
     @cached_property
     def letters(self) -> dict[str, tuple[str, ...]]:
-        """The points of each link, without links that are only thought."""
-        thought = self.mechanism.auxiliary_links
-        return {name: item.letters for name, item in self.mechanism.links.items() if name not in thought}
+        """The points of each link, without auxiliary links."""
+        auxiliary = self.mechanism.auxiliary_links
+        return {name: item.letters for name, item in self.mechanism.links.items() if name not in auxiliary}
 
     @property
     def carriers(self) -> dict[str, tuple[str, ...]]:
@@ -422,26 +422,23 @@ class MechanismNames:
 
     @property
     def pairs(self) -> list[str]:
-        """The names by which pairs may be meant.
-
-        They are without those of two links of a multiple pin.
-        """
+        """The names of pairs, without those between two links of a multiple pin."""
         pins = [letter for letter in self.mechanism.real_pins if len(self.mechanism.pins[letter]) == 2]
         written = [pair.name for pair in self.mechanism.real_pairs]
         return [*pins, *written, *(drive.name for drive in self.mechanism.drives)]
 
     def at_pin(self, letter: str) -> list[str]:
-        """Return the names of the pairs at a multiple pin. What leads it counts as a link."""
+        """Return the names of the pairs at a multiple pin; an auxiliary link counts as one of its links."""
         links, all_links = self.mechanism.real_pins.get(letter, ()), self.mechanism.pins.get(letter, ())
         pins = Pins(self.mechanism)
         return [pins.pair(letter, *two).name for two in combinations(links, 2)] if len(all_links) > 2 else []
 
     def pair(self, name: str) -> Pair | None:
-        """Return the pair that a name means, or None. Pairs that are only thought take no loads."""
+        """Return the pair of a name, or None. Pairs of auxiliary links take no loads."""
         pair = self.coordinate(name)
         return None if pair is None or not self.mechanism.auxiliary_links.isdisjoint(pair.members) else pair
 
     def coordinate(self, name: str) -> Pair | None:
-        """Return the pair of which a name means the coordinate, or None."""
+        """Return the pair whose coordinate a name refers to, or None."""
         found = pair_by_name(self.mechanism, name)
         return None if found is None else found[0]

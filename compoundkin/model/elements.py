@@ -111,11 +111,11 @@ def drive(
     `law` is one of `constant_speed`, `constant_acceleration`, `program`, `time_table`, or a Python function
     of an array of times. Raises InvalidMechanism for anything else.
 
-    The other way round, `link` may be a point: it is led `along` places at times `time`, or along a line or a curve
-    (two places, four or more, a profile) by a `law` of the length of way, or along a Python function of time that
-    returns complex places. Or it is led by one coordinate `x` or `y`, or both, each a law, a function, a number; so is
-    the `angle` of a link that no pair joins to `on`. Coordinates and angles are those in the link `on`. What drives
-    is then found by solving.
+    The other way round, `link` may be a point whose motion is prescribed: `along` places at times `time`, along a line
+    or a curve (two places, four or more, a profile) by a `law` of the length of arc, or along a Python function of time
+    that returns complex places. Or one of its coordinates `x` and `y` is prescribed, or both, each by a law, a function
+    or a number; so is the `angle` of a link that no pair joins to `on`. Coordinates and angles are those in the link
+    `on`. The drivers' values are then found by solving.
 
     >>> drive("crank").name
     'crank'
@@ -126,35 +126,35 @@ def drive(
     """
     given = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
     where = f"drives.{name or link}"
-    told = {"along": along, "x": x, "y": y, "angle": angle}
-    if time is not None or any(said is not None for said in told.values()):
+    prescribed = {"along": along, "x": x, "y": y, "angle": angle}
+    if time is not None or any(value is not None for value in prescribed.values()):
         beside = [
             key for key, one in {"pair": pair or None, **given}.items() if one is not None and key not in _DEFAULT_RATES
         ]
         beside += [key for key, default in _DEFAULT_RATES.items() if not np.array_equal(given[key], default)]
-        return _prescribed_motion(where, link, on, name, told, time, law, beside)
+        return _prescribed_motion(where, link, on, name, prescribed, time, law, beside)
     numbers = {key: real(f"{where}.{key}", value) for key, value in given.items()}
     return Drive(name or link, link, on, pair, **numbers, law=as_law(f"{where}.law", law))
 
 
-# What a driver's rates are where they are not given.
+# The rates of a driver where none are given.
 _DEFAULT_RATES = {"speed": 1.0, "acceleration": 0.0, "jerk": 0.0}
 
 
 def _prescribed_motion(
-    where: str, what: str, on: str, name: str, told: dict[str, Any], time: Any, law: Any, beside: list[str]
+    where: str, what: str, on: str, name: str, prescribed: dict[str, Any], time: Any, law: Any, beside: list[str]
 ) -> PrescribedMotion:
-    """Return what leads a point or turns a link."""
+    """Return the prescribed motion of a point or of a link."""
     if beside:
         how = f"leave {', '.join(beside)} out"
-        raise InvalidMechanism(Problem(f"{where}.{beside[0]}", "what is prescribed says how it moves", how))
-    along = told["along"]
+        raise InvalidMechanism(Problem(f"{where}.{beside[0]}", "its motion is prescribed already", how))
+    along = prescribed["along"]
     if along is None and (time is not None or law is not None):
-        what_is = "times and a law of the way are those of a path"
+        what_is = "times and a law of the length of arc are those of a path"
         raise InvalidMechanism(Problem(where, what_is, "give along=, or the law itself as x=, y= or angle="))
     path = None if along is None else as_path(f"{where}.along", along, time, as_law(f"{where}.law", law))
-    laws = {word: as_prescribed(f"{where}.{word}", told[word]) for word in ("x", "y", "angle")}
-    is_link = told["angle"] is not None
+    laws = {word: as_prescribed(f"{where}.{word}", prescribed[word]) for word in ("x", "y", "angle")}
+    is_link = prescribed["angle"] is not None
     return PrescribedMotion(name or what, "" if is_link else what, what if is_link else "", on, path, **laws)
 
 
@@ -197,7 +197,7 @@ class Drawn(ShortRepr):
 
 @dataclass(frozen=True)
 class Expectation:
-    """A published number that a quantity has at given driver values, to a tolerance.
+    """A published value of a quantity at given driver values, with a tolerance.
 
     `at` holds driver values (radians or lengths) and, for "speed", "acceleration", keys such as "crank.speed".
     Angles in `value` are radians.
@@ -218,7 +218,8 @@ Item: TypeAlias = (
 def link(name: str, *letters: str, **points: Any) -> Link:
     """Return a link with its points. ``A=(x, y)`` or complex numbers in the link's frame, or letters alone.
 
-    The places of letters alone are read off the drawing; without any, the mechanism has a structure, but no dimensions.
+    Points given by letters alone are read off the drawing; without a drawing the mechanism has a structure but no
+    dimensions.
     Raises InvalidMechanism for a point that is not a planar vector.
 
     >>> link("crank", E=(0, 0), D=(14, 0)).points["D"]
@@ -228,13 +229,8 @@ def link(name: str, *letters: str, **points: Any) -> Link:
     """
     both = [letter for letter in letters if letter in points]
     if both or (letters and points) or len(set(letters)) < len(letters):
-        raise InvalidMechanism(
-            Problem(
-                f"links.{name}",
-                "points are given twice, or partly as drawn",
-                "give all by letters or all by coordinates",
-            )
-        )
+        what = "points are given twice, or partly as drawn"
+        raise InvalidMechanism(Problem(f"links.{name}", what, "give all by letters or all by coordinates"))
     placed = _points(f"links.{name}.points", points)
     return Link(name, placed if placed else dict.fromkeys(letters))
 
@@ -263,9 +259,7 @@ def mode(sign: int, *links: str) -> Mode:
 
 @checked
 def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectation:
-    """Return a published number to hold the solved motion against.
-
-    At the given driver values.
+    """Return a published value to compare the solved motion with, at the given driver values.
 
     >>> expect("block.angle", 0.5, 1e-3, crank=1.0).at
     (('crank', 1.0),)

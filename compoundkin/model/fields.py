@@ -14,7 +14,7 @@ from typing import Any, Literal, ParamSpec, TypeVar
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, suggestion
 
-# What a value is: how a file writes it and how Python holds it.
+# The kinds of values: their form in a file and their type in Python.
 #   name     text                                         str
 #   text     text                                         str
 #   names    list of texts                                tuple of str
@@ -141,7 +141,7 @@ def point_fields(kind: type[Any]) -> Mapping[str, str]:
 
 @dataclass(frozen=True)
 class NameWording:
-    """How a kind says what is wrong with its names."""
+    """The words with which a kind reports problems of its names."""
 
     verb: str = "run"
     two_links: str = "name two links"
@@ -174,7 +174,7 @@ def name_problems(
 
 
 def implied_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
-    """Return the points that are left to be understood. They are the only ones of their links."""
+    """Return the points that are left out because they are the only ones of their links."""
     found = {}
     for field, link in point_fields(type(item)).items():
         points = links.get(getattr(item, link), ())
@@ -189,7 +189,7 @@ Constructed = TypeVar("Constructed")
 
 
 def constructor(name: str, kind: Callable[P, Constructed]) -> Callable[P, Constructed]:
-    """Return the function by which users write a kind. Its fields are the arguments, their sentences the text.
+    """Return the function with which users write a kind. Its fields are the arguments, their texts the docstring.
 
     >>> from compoundkin.model.pairs.slot import Slot
     >>> constructor("slot", Slot)("crank", on="arm", at="B", through="C").name
@@ -204,7 +204,7 @@ def constructor(name: str, kind: Callable[P, Constructed]) -> Callable[P, Constr
         try:
             signature.bind(*args, **kwargs)
         except TypeError as error:
-            # said of the word that was written, not of the class behind it
+            # name the function, not the class
             raise TypeError(f"{name}(): {error}") from None
         return make(*args, **kwargs)
 
@@ -216,14 +216,14 @@ def constructor(name: str, kind: Callable[P, Constructed]) -> Callable[P, Constr
     return checked(made)
 
 
-# What a sentence on a field leaves out for those who write Python.
+# Units that the text of a field leaves out, for users of Python.
 _UNITS: Mapping[Kind, str] = {"angle": " In radians; a number or an array."}
 # Kinds of keys that are one real number, or two; arrays of them for several designs.
 _ONE, _TWO = ("length", "angle", "number", "turn", "coordinate", "rate", "span"), ("two", "reach", "sweep")
 
 
 def stated_numbers(item: Any) -> dict[str, Any]:
-    """Return the numbers that an item states: "offset", or "radii.0" of two.
+    """Return the numbers of an item by name: "offset", or "radii.0" of two.
 
     >>> from compoundkin.model.pairs import gear
     >>> sorted(stated_numbers(gear("sun", "planet", carrier="arm", teeth=(20, 40))))
@@ -240,9 +240,7 @@ def stated_numbers(item: Any) -> dict[str, Any]:
 
 
 def changed_fields(item: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of an item that these numbers change.
-
-    They are named as `stated_numbers` does.
+    """Return the fields of an item that these numbers change, named as by `stated_numbers`.
 
     >>> from compoundkin.model.pairs import gear
     >>> changed_fields(gear("sun", "planet", carrier="arm", teeth=(20, 40)), {"teeth.1": 30})

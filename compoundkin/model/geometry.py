@@ -59,7 +59,7 @@ def _span(points: list[Number]) -> float:
 def link_from_drawing(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:
     """Return a link's drawn pose, and its points in its own frame.
 
-    The origin is the first letter; the x axis points to the second. A single letter shows no direction, so no pose.
+    The origin is the first letter; the x axis points to the second. A single letter has no direction, so no pose.
     """
     if len(letters) == 1:
         return None, {letters[0]: 0j}
@@ -78,11 +78,11 @@ def link_from_drawing(letters: tuple[str, ...], sketch: Mapping[str, Number]) ->
 
 def pose_from_points(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> Pose | None:
     """Return the pose of a link drawn at two points or more, or None."""
-    shown = [name for name in points if name in sketch]
-    if len(shown) < 2:
+    drawn = [name for name in points if name in sketch]
+    if len(drawn) < 2:
         return None
-    a = shown[0]
-    b = next((k for k in shown[1:] if np.all(sketch[k] != sketch[a]) and np.all(points[k] != points[a])), None)
+    a = drawn[0]
+    b = next((k for k in drawn[1:] if np.all(sketch[k] != sketch[a]) and np.all(points[k] != points[a])), None)
     if b is None:
         return None
     turned = (sketch[b] - sketch[a]) * np.conjugate(points[b] - points[a])
@@ -137,10 +137,10 @@ def _planar(where: str, value: Any) -> Any:
     if isinstance(value, tuple | list) and len(value) == 2:
         x, y = (real_numbers(where, v, InvalidMechanism) for v in value)
         if isinstance(value, list) and x.shape == y.shape == (1,):
-            told = f"{where}: {value} is read as x = {x[0]:g}, y = {y[0]:g} of one design"
-            warn(f"{told}; two designs are written ({value}, 0)", LikelySlip)
+            text = f"{where}: {value} is read as x = {x[0]:g}, y = {y[0]:g} of one design"
+            warn(f"{text}; two designs are written ({value}, 0)", LikelySlip)
         try:
-            with np.errstate(invalid="ignore"):  # infinite coordinates are told where they have no meaning
+            with np.errstate(invalid="ignore"):  # infinite coordinates are reported where they have no meaning
                 return x + 1j * y
         except ValueError:
             raise _point_error(where, value) from None

@@ -37,16 +37,16 @@ from compoundkin.model.validation import (
     outline_problems,
 )
 
-# What is written of a mechanism beside its items.
+# The attributes of a mechanism beside its items.
 _ABOUT = ("title", "source", "description", "outputs", "time", "unit", "units")
 
 
 class Mechanism(MechanismDefinition, DisplaysPicture):
-    """Links, pairs and drivers, written with the words of this module. Checked as a whole when it is made.
+    """Links, pairs and drivers, validated as a whole on construction.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
-    `time` holds the times (seconds) at which it is solved unless a call says otherwise.
-    Equality compares what is written, array by array.
+    `time` holds the times (seconds) at which it is solved by default.
+    Equality compares all elements, array by array.
 
     Raises InvalidMechanism, listing every problem with its place.
 
@@ -107,7 +107,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         points: dict[str, Mapping[str, Number]] = {}
         poses: dict[str, Pose] = {}
         fixed = self.links[FRAME].points
-        seen = {**{k: p for k, p in fixed.items() if p is not None}, **self.sketch}
+        sketch = {**{k: p for k, p in fixed.items() if p is not None}, **self.sketch}
         for name, item in self.links.items():
             if name == FRAME:
                 poses[name] = FIXED
@@ -118,14 +118,15 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
                     poses[name] = pose
             else:
                 points[name] = {k: p for k, p in item.points.items() if p is not None}
-                pose = pose_from_points(points[name], seen) if self.sketch else None
+                pose = pose_from_points(points[name], sketch) if self.sketch else None
                 if pose is not None:
                     poses[name] = pose
-        return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen, self._profiles)
+        as_drawn = frozenset(name for name, item in self.links.items() if item.is_drawn)
+        return Geometry(points, poses, as_drawn, sketch, self._profiles)
 
     @cached_property
     def drawn_poses(self) -> Mapping[str, Pose]:
-        """The poses of links that the drawing shows. A pair may tell the angle of a link of one point.
+        """The poses of links in the drawing. The angle of a link of one point may follow from a pair.
 
         >>> from compoundkin.model.elements import drawn, link
         >>> from compoundkin.model.pairs import slide
@@ -150,9 +151,9 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         return MechanismNames(self)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
-        """Return a copy with items in the place of those of their names.
+        """Return a copy in which items replace those of the same name.
 
-        A word with no counterpart is added; `title`, `unit`, `source`, `description`, `outputs`, `time` by keyword.
+        An item without a counterpart is added; `title`, `unit`, `source`, `description`, `outputs`, `time` by keyword.
 
         >>> from compoundkin.model.elements import drive, link
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
@@ -160,19 +161,19 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         (2+0j)
         """
         keys = {_identity(item): item for item in items}
-        kept = [keys.pop(_identity(item), item) for item in self.items]
+        replaced = [keys.pop(_identity(item), item) for item in self.items]
         words = {**{k: getattr(self, k) for k in _ABOUT[1:-2]}, **({} if "units" in changes else self.unit_words)}
         title = changes.pop("title", self.title)
-        return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
+        return Mechanism(title, *replaced, *keys.values(), **{**words, **changes})
 
     def without_prescribed_motion(self) -> Mechanism:
-        """Return the mechanism itself, without what leads its points and turns its links."""
-        gone = (PrescribedMotion, Expectation)
-        return Mechanism(self.title, *(item for item in self.items if not isinstance(item, gone)), **self.unit_words)
+        """Return the mechanism without prescribed motions and expectations."""
+        removed = (PrescribedMotion, Expectation)
+        return Mechanism(self.title, *(item for item in self.items if not isinstance(item, removed)), **self.unit_words)
 
     @property
     def unit_words(self) -> dict[str, Any]:
-        """What is said of its units where another mechanism is made of it."""
+        """The keywords of its units, to construct a variant of it."""
         return {"unit": self.unit} if self.units is None else {"units": self.units}
 
     def link(self, name: str) -> Link:
@@ -185,7 +186,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         return isinstance(other, Mechanism) and nested_equal(_plain(self), _plain(other))
 
     def __getstate__(self) -> dict[str, Any]:
-        # what is written; what was found of it since is found again
+        # the definition without cached properties
         return {name: getattr(self, name) for name in (*_ABOUT, "items")}
 
     def __hash__(self) -> int:
@@ -193,7 +194,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
 
     @property
     def in_numbers(self) -> str:
-        """How many links and cylinders it is written with, in words."""
+        """The numbers of its links and cylinders, in words."""
         cylinders = f" and {count_phrase(len(self.cylinders), 'cylinder')}" if self.cylinders else ""
         return f"{count_phrase(len(self.rigid_links), 'link')}{cylinders}"
 
@@ -210,7 +211,7 @@ def _identity(item: Item) -> tuple[Any, ...]:
 
 
 def _plain(mechanism: Mechanism) -> list[Any]:
-    """Return what is written, as nested builtins and arrays, for comparison."""
+    """Return the definition as nested builtins and arrays, for comparison."""
     about = [getattr(mechanism, k) for k in _ABOUT]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [
@@ -221,7 +222,7 @@ def _plain(mechanism: Mechanism) -> list[Any]:
         for item in mechanism.items
         if not isinstance(item, Drawn)
     ]
-    # the order between different words says nothing; that within one kind does
+    # the order of elements matters within one kind only
     return [*about, *drawing, *sorted(written, key=lambda entry: str(entry[0]))]
 
 
@@ -235,21 +236,21 @@ def poses_from_drawing(
 
     `points` are those of the links in their own frames. A link of two drawn letters has its pose from them; one of a
     single letter has its angle from a slide, a gear or a wheel that rolls, where the other members' poses are known.
-    Both go on from link to link; a link that nothing tells is left out.
+    Both continue from link to link; a link whose pose does not follow is left out.
     """
-    telling = _PosePropagation(points, sketch, known)
-    # angles that count turns last: a slide tells an angle whatever the turn
-    for pair, ends in sorted(pairs, key=lambda told: as_turn_counting(told[0]) is not None):
+    propagation = _PosePropagation(points, sketch, known)
+    # pairs that count turns come last: the angle from a slide does not depend on turns
+    for pair, ends in sorted(pairs, key=lambda entry: as_turn_counting(entry[0]) is not None):
         for link in pair.members:
-            telling.pairs[link].append((pair, ends))
-    return telling.poses_of_all()
+            propagation.pairs[link].append((pair, ends))
+    return propagation.poses_of_all()
 
 
 class _PosePropagation:
-    """What is told so far, and what may still tell more."""
+    """Known poses and points of the drawing, from which further poses follow."""
 
     def __init__(self, points: Points, sketch: Mapping[str, Number], known: Mapping[str, Pose]) -> None:
-        self.points, self.seen, self.poses = points, dict(sketch), dict(known)
+        self.points, self.places, self.poses = points, dict(sketch), dict(known)
         self.pairs: dict[str, list[tuple[Pair, Ends]]] = {link: [] for link in points}
         self.carriers: dict[str, list[str]] = {}
         for link, letters in points.items():
@@ -259,7 +260,7 @@ class _PosePropagation:
             self._see(link)
 
     def poses_of_all(self) -> dict[str, Pose]:
-        """Return the poses of all links that are told, in one way or another."""
+        """Return the poses of all links that follow from the drawing."""
         waiting = deque(link for link in self.points if link not in self.poses)
         while waiting:
             link = waiting.popleft()
@@ -271,12 +272,12 @@ class _PosePropagation:
 
     def _see(self, link: str) -> None:
         for letter, point in self.points[link].items():
-            if letter not in self.seen:
-                self.seen[letter] = self.poses[link].at(point).c[0]
+            if letter not in self.places:
+                self.places[letter] = self.poses[link].at(point).c[0]
 
     def _concerned(self, link: str) -> Iterator[str]:
-        """Note where a link's letters are; the links of which more may be known now."""
-        new = [letter for letter in self.points[link] if letter not in self.seen]
+        """Add the places of a link's letters, and yield the links that may follow now."""
+        new = [letter for letter in self.points[link] if letter not in self.places]
         self._see(link)
         for letter in new:
             yield from self.carriers[letter]
@@ -285,25 +286,25 @@ class _PosePropagation:
 
     def _pose(self, link: str) -> Pose | None:
         points = self.points[link]
-        drawn = next((letter for letter in points if letter in self.seen), None)
+        drawn = next((letter for letter in points if letter in self.places), None)
         if drawn is None:
             return None
-        shown = pose_from_points(points, self.seen)
-        if shown is not None:
-            return shown
+        pose = pose_from_points(points, self.places)
+        if pose is not None:
+            return pose
         for pair, ends in self.pairs[link]:
             orienting = as_orienting(pair)
-            seen = DrawnPair(ends, tuple(self.poses.get(name) for name in pair.members), self.seen)
+            seen = DrawnPair(ends, tuple(self.poses.get(name) for name in pair.members), self.places)
             angle = orienting.drawn_angle(seen, pair.members.index(link)) if orienting else None
             if angle is not None:
                 u = np.cos(angle) + 1j * np.sin(angle)
                 counted = constant(angle) if as_turn_counting(pair) else None
-                return Pose(constant(self.seen[drawn] - u * points[drawn]), constant(u), counted)
+                return Pose(constant(self.places[drawn] - u * points[drawn]), constant(u), counted)
         return None
 
 
 def values_of_design(value: Any, shape: tuple[int, ...], design: int) -> Any:
-    """Return a design's part of numbers, arrays, or tables of them.
+    """Return one design's values of a number, an array, or a table of them.
 
     Arrays broadcast with a motion's shape; those of one axis are the same for all designs.
 
@@ -320,7 +321,7 @@ def values_of_design(value: Any, shape: tuple[int, ...], design: int) -> Any:
 
 
 def mechanism_of_design(mechanism: Mechanism, shape: tuple[int, ...], design: int) -> Mechanism:
-    """Return the mechanism that one of several designs is. The shape is that of its motion.
+    """Return the mechanism of one of several designs. The shape is that of its motion.
 
     >>> from compoundkin.model.elements import drive, link
     >>> lengths = np.array([[1.0], [2.0]])
@@ -329,7 +330,7 @@ def mechanism_of_design(mechanism: Mechanism, shape: tuple[int, ...], design: in
     (2+0j)
     """
     with warnings.catch_warnings():
-        # what there is to say was said of the whole
+        # warnings were given for the whole
         warnings.simplefilter("ignore")
         return Mechanism(
             mechanism.title,
@@ -343,12 +344,12 @@ def mechanism_of_design(mechanism: Mechanism, shape: tuple[int, ...], design: in
 
 
 def _item_of_design(item: Any, shape: tuple[int, ...], design: int) -> Any:
-    """Return an item with the numbers of one design, itself where it has no others."""
+    """Return an item with the numbers of one design; itself where all designs share them."""
     if not is_dataclass(item) or isinstance(item, type):
         return item
-    held = {field.name: getattr(item, field.name) for field in fields(item) if field.init}
-    own = {name: values_of_design(value, shape, design) for name, value in held.items()}
-    changed = {name: value for name, value in own.items() if value is not held[name]}
+    values = {field.name: getattr(item, field.name) for field in fields(item) if field.init}
+    own = {name: values_of_design(value, shape, design) for name, value in values.items()}
+    changed = {name: value for name, value in own.items() if value is not values[name]}
     return replace(item, **changed) if changed else item
 
 
@@ -359,14 +360,14 @@ def _row_of_design(value: Number, shape: tuple[int, ...], design: int) -> Number
 
 
 _OTHER_ATTRIBUTES = {word for kind in ("points", "links", "pairs") for word in (*CATALOGUE[kind], *DERIVED[kind])}
-# What drivers have alone, such as their efforts.
+# Attributes of drivers alone, such as their efforts.
 DRIVER_ATTRIBUTES = frozenset({*CATALOGUE["drives"], *DERIVED["drives"]} - _OTHER_ATTRIBUTES)
 
 
 def available_outputs(mechanism: Mechanism, drivers: Collection[str]) -> list[str]:
-    """Return the outputs that there are with these drivers.
+    """Return the outputs that exist with these drivers.
 
-    An effort or a power of a link that does not drive any more is none of them.
+    Efforts and powers of links that no longer drive are left out.
     """
     known = {*mechanism.carriers, *mechanism.links, *(pair.name for pair in mechanism.written_pairs)}
     return [name for name in mechanism.outputs if _is_available(name, known, drivers)]

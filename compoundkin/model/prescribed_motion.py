@@ -50,14 +50,14 @@ AXES = {"x": 1 + 0j, "y": 1j}
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PrescribedMotion(ShortRepr):
-    """A point led along a path or by one coordinate, or a link turned.
+    """The prescribed motion of a point, along a path or by its coordinates, or of a link's angle.
 
     Coordinates and angles are those in the link `on`.
 
-    A led point is thought on a cross slide: a carriage that moves along the x axis, on it a holder that moves along the
-    y axis, to which the point is pinned. A point of which one coordinate is led runs in a slot of its carriage. A link
-    that is turned is thought to shift on a turntable. None of these is written, drawn or given a mass; their drivers
-    are called by what is led, "G.x".
+    Auxiliary links realise it. A point is pinned to the holder of a cross slide: a carriage moves along the x axis,
+    and on it the holder along the y axis. A point with one prescribed coordinate runs in a slot of its carriage. A
+    link with a prescribed angle shifts on a turntable. None of these is written, drawn or has a mass; their drivers
+    are named after the prescribed coordinate, "G.x".
     """
 
     name: str
@@ -82,20 +82,20 @@ class PrescribedMotion(ShortRepr):
 
     @cached_property
     def laws(self) -> Mapping[str, Law]:
-        """The laws of what is prescribed, by its word: x, y or angle."""
+        """The laws of the prescribed coordinates, by name: x, y or angle."""
         if self.along is not None:
             return {part: PathCoordinate(self.along, part) for part in PARTS}
-        said = (("x", self.x), ("y", self.y), (ANGLE, self.angle))
-        return {word: law for word, law in said if law is not None}
+        laws = (("x", self.x), ("y", self.y), (ANGLE, self.angle))
+        return {word: law for word, law in laws if law is not None}
 
     @property
     def drivers(self) -> Mapping[str, str]:
-        """The names of its drivers by what they prescribe, such as "G.x"."""
+        """The names of its drivers, such as "G.x", by the coordinates that they prescribe."""
         return {word: f"{self.name}.{word}" for word in self.laws}
 
     @property
     def links(self) -> tuple[str, ...]:
-        """The links that are thought, the one on which they are first."""
+        """The auxiliary links in the order of their chain."""
         if self.point and len(self.laws) > 1:
             return f"{self.name} carriage", f"{self.name} holder"
         if self.point:
@@ -104,17 +104,17 @@ class PrescribedMotion(ShortRepr):
 
     @property
     def carried(self) -> Mapping[str, complex]:
-        """The points of its last link: the led one, unless one coordinate is."""
+        """The points of its last link: the prescribed one, where both coordinates are."""
         return {self.point: 0j} if self.point and len(self.laws) > 1 else {}
 
     def pairs(self, links: Mapping[str, tuple[str, ...]]) -> tuple[Pair, ...]:
-        """Return the pairs that are thought. `links` maps each link that is written to its points."""
+        """Return the auxiliary pairs. `links` maps each rigid link to its points."""
         names = tuple(self.drivers.values())
         if not self.point:
             return self._turning(names[0], links[self.link][0])
         first, last = self.links[0], self.links[-1]
         words = list(self.laws)
-        slides = [self._slide(*told) for told in zip(names, words, self.links, (self.on, first), strict=False)]
+        slides = [self._slide(*each) for each in zip(names, words, self.links, (self.on, first), strict=False)]
         if first != last:
             return tuple(slides)
         carrier = next(name for name, letters in links.items() if self.point in letters)
@@ -143,31 +143,31 @@ class PrescribedMotion(ShortRepr):
                      for (word, law), link, base in zip(self.laws.items(), self.links, on, strict=False))  # fmt: skip
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, and what cannot be led. `links` maps each link to its points."""
+        """Find unknown links and points, and impossible prescriptions. `links` maps each link to its points."""
         if self.on not in links:
             yield Problem(f"{where}.on", f"there is no link {self.on!r}", suggestion(self.on, list(links)))
-        yield from self._unsaid(where)
+        yield from self._amount_problems(where)
         yield from self._point_problems(links, where) if self.point else self._link_problems(links, where)
         if self.along is not None:
             yield from self.along.problems(f"{where}.along")
         for name in self.links:
             if name in links:
                 how = "give the drive a name of its own"
-                yield Problem(f"{where}.name", f"a link is called {name!r}, as what leads {self.name!r}", how)
+                yield Problem(f"{where}.name", f"a link is called {name!r}, as an auxiliary link of {self.name!r}", how)
 
-    def _unsaid(self, where: str) -> Iterator[Problem]:
-        """Find too little or too much that is prescribed."""
+    def _amount_problems(self, where: str) -> Iterator[Problem]:
+        """Find motions that are not or doubly prescribed."""
         if bool(self.point) == bool(self.link):
-            yield Problem(where, "it is not said what is driven", "name a link, or a point and where it is led")
+            yield Problem(where, "nothing is driven", "name a link, or a point and its motion")
         elif not self.laws:
             how = "write along, x or y" if self.point else "write angle"
-            yield Problem(where, f"it is not said how {self.name!r} is led", how)
+            yield Problem(where, f"the motion of {self.name!r} is missing", how)
         elif self.point and self.angle is not None:
             yield Problem(f"{where}.{ANGLE}", "a point has no angle", "name a link, or write along, x or y")
         elif self.link and ANGLE not in self.laws:
-            yield Problem(where, "a link is led by its angle", "name one of its points to lead that")
+            yield Problem(where, "the motion of a link is prescribed by its angle", "name one of its points for a path")
         elif self.along is not None and (self.x is not None or self.y is not None):
-            yield Problem(f"{where}.along", "a path leads both coordinates", "leave x and y out")
+            yield Problem(f"{where}.along", "a path prescribes both coordinates", "leave x and y out")
 
     def _point_problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         carriers = [name for name, letters in links.items() if self.point in letters]
@@ -178,7 +178,7 @@ class PrescribedMotion(ShortRepr):
         elif not carriers:
             yield Problem(f"{where}.point", f"there is no point {self.point!r}", suggestion(self.point, known))
         elif self.on in carriers:
-            what = f"{self.point} is a point of {self.on!r}, on which it would be led"
+            what = f"{self.point} is a point of {self.on!r}, in which its motion would be prescribed"
             yield Problem(f"{where}.point", what, "name a point that moves there")
 
     def _link_problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
@@ -193,7 +193,7 @@ class PrescribedMotion(ShortRepr):
 KINDS: tuple[type[Path], ...] = (TimedPlaces, LinePath, CurvePath, FunctionPath)
 # Those that a mechanism file can hold, by their name there.
 WRITTEN: dict[str, type[Path]] = {kind.kind: kind for kind in KINDS if kind.keys}
-TIME_NEEDED = "say when it is where: time=, or law= for the length of way in time"
+TIME_NEEDED = "give its times with time=, or the length of arc in time with law="
 
 
 @checked
@@ -207,7 +207,7 @@ def place_table(times: Any, places: Any, *, degree: int = 5, repeat: bool = Fals
 
 
 def as_path(where: str, along: Any, time: Any, law: Law | None) -> Path:
-    """Return what a point is led along as a path. Raises InvalidMechanism naming `where` for anything else.
+    """Return the path of a point. Raises InvalidMechanism naming `where` for anything that is not one.
 
     >>> as_path("drives.G.along", lambda t: 1j * t, None, None).kind
     'function'
@@ -223,38 +223,37 @@ def as_path(where: str, along: Any, time: Any, law: Law | None) -> Path:
 def _path_from(where: str, along: Any, time: Any, law: Law | None) -> Path:
     if isinstance(along, Path) or callable(along):
         if time is not None or law is not None:
-            raise InvalidMechanism(Problem(where, "it says itself when it is where", "leave time and law out"))
+            raise InvalidMechanism(Problem(where, "it is a function of time already", "leave time and law out"))
         return along if isinstance(along, Path) else FunctionPath(along)
     if time is not None and law is not None:
-        raise InvalidMechanism(Problem(where, "times and a law both say when it is where", "leave one of them out"))
+        raise InvalidMechanism(
+            Problem(where, "times and a law both prescribe the motion along it", "leave one of them out")
+        )
     if isinstance(along, Profile) and law is None:
-        raise InvalidMechanism(Problem(where, "a curve is no motion", "give law=, the length of way in time"))
+        raise InvalidMechanism(Problem(where, "a curve is not a motion", "give law=, the length of arc in time"))
     if isinstance(along, Profile) and law is not None:
         return CurvePath(along, law)
     places = _places(where, along)
     if time is not None:
         return TimedPlaces(real_numbers(f"{where}.time", time, InvalidMechanism), places)
     if law is None:
-        raise InvalidMechanism(Problem(where, "places are no motion", TIME_NEEDED))
+        raise InvalidMechanism(Problem(where, "places are not a motion", TIME_NEEDED))
     if len(places) < 4:
         return LinePath(places, law)
     return CurvePath(PointsProfile(places, closed=places[0] == places[-1]), law)
 
 
 def as_prescribed(where: str, law: Any) -> Law | None:
-    """Return as a law what is prescribed.
-
-    It is a law, a Python function of time, or a number that stays.
-    """
+    """Return the law of a prescribed coordinate: a law, a Python function of time, or a constant number."""
     if law is None or callable(law) or isinstance(law, Law):
         return as_law(where, law)
-    held = real_numbers(where, law, InvalidMechanism)
-    if held.ndim:
+    number = real_numbers(where, law, InvalidMechanism)
+    if number.ndim:
         how = "write laws.time_table(times, values)"
-        raise InvalidMechanism(Problem(where, "several values are no motion without times", how))
-    if not np.isfinite(held):
-        raise InvalidMechanism(Problem(where, f"{held} is no value to hold", "write a finite number"))
-    return constant_speed(0.0, float(held))
+        raise InvalidMechanism(Problem(where, "several values are not a motion without times", how))
+    if not np.isfinite(number):
+        raise InvalidMechanism(Problem(where, f"{number} is not a finite number", "write a finite number"))
+    return constant_speed(0.0, float(number))
 
 
 def _places(where: str, places: Any) -> tuple[complex, ...]:
@@ -270,14 +269,14 @@ def _places(where: str, places: Any) -> tuple[complex, ...]:
 
 @dataclass(frozen=True, eq=False)
 class CrossSlide(Prismatic):
-    """A slide along an axis through the origin of its link. Its displacement is a coordinate of a led point."""
+    """A slide along an axis through the origin of its link. Its displacement is a coordinate of a point."""
 
     axis: complex = field(default=1 + 0j, kw_only=True)
     against: str = field(default=FRAME, kw_only=True)
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The point that is led."""
+        """The point with the prescribed motion."""
         return (self.at,)
 
     def ends(self, geometry: Geometry) -> Ends:
@@ -292,23 +291,23 @@ class CrossSlide(Prismatic):
         return (np.conjugate(self.axis) * place).real
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Return the way along the axis, from the origin."""
+        """Return the vector along the axis, from the origin."""
         return replace(super().loop_terms(ends), labels=("origin", self.at))
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """Return nothing: it is thought, not built."""
+        """Return no symbols: the pair is auxiliary."""
         return ()
 
 
 @dataclass(frozen=True, eq=False)
 class CrossSlot(Slot):
-    """A slot along an axis through the origin of a carriage. A point that is led by one coordinate runs in it."""
+    """A slot along an axis through the origin of a carriage. A point with one prescribed coordinate runs in it."""
 
     axis: complex = field(default=1 + 0j, kw_only=True)
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The point that is led."""
+        """The point with the prescribed motion."""
         return (self.at,)
 
     def ends(self, geometry: Geometry) -> Ends:
@@ -316,26 +315,26 @@ class CrossSlot(Slot):
         return End(0j, self.axis), End(geometry.points[self.link][self.at])
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """Return nothing: it is thought, not built."""
+        """Return no symbols: the pair is auxiliary."""
         return ()
 
 
 @dataclass(frozen=True)
 class Turntable(Revolute):
-    """A pin at the origin of its link. Its angle is that of the link `led`, which may shift on it without turning."""
+    """A pin at the origin of its link. Its angle is that of `turned_link`, which shifts on it without turning."""
 
-    led: str
+    turned_link: str
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return the two origins."""
         return End(0j), End(0j)
 
     def drawn_value(self, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]) -> Number | None:
-        """Return the angle at which the led link is drawn."""
-        if self.led not in drawn or self.first not in drawn:
+        """Return the angle at which the link is drawn."""
+        if self.turned_link not in drawn or self.first not in drawn:
             return None
-        return np.angle(drawn[self.led].u.c[0] * np.conjugate(drawn[self.first].u.c[0]))
+        return np.angle(drawn[self.turned_link].u.c[0] * np.conjugate(drawn[self.first].u.c[0]))
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """Return nothing: it is thought, not built."""
+        """Return no symbols: the pair is auxiliary."""
         return ()

@@ -44,7 +44,7 @@ class Path(CopiesFields, ComparedByValue, ABC):
         return ()
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """Find what makes it no path."""
+        """Find the problems of the path."""
         return iter(())
 
 
@@ -99,7 +99,7 @@ class TimedPlaces(ShortRepr, Path):
 
 
 def _path_problem(problem: Problem) -> Problem:
-    """Return a problem of one coordinate as that of the places."""
+    """Return a problem of one coordinate as a problem of the places."""
     where = problem.where.replace("law.values", "along.places").replace("law", "along")
     return replace(problem, where=where, what=problem.what.replace("values", "places"))
 
@@ -121,7 +121,7 @@ class TraversedCurve(Path):
 
     @property
     def curve(self) -> Curve:
-        """The curve that is run along."""
+        """The curve that is traversed."""
         raise NotImplementedError
 
     @cached_property
@@ -135,8 +135,8 @@ class TraversedCurve(Path):
 
     def place(self, t: Number, order: int) -> Series:
         """Return place and derivatives at times t (seconds). Raises InvalidInput beyond the ends of an open curve."""
-        gone = self.law.coordinate(t, order)
-        length, whole = np.asarray(gone.c[0]), self._arc.whole
+        arc = self.law.coordinate(t, order)
+        length, whole = np.asarray(arc.c[0]), self._arc.whole
         slack = SLACK * whole
         if not self.curve.closed and np.any(beyond := (length < -slack) | (length > whole + slack)):
             k = np.flatnonzero(np.ravel(beyond))[0]
@@ -144,14 +144,12 @@ class TraversedCurve(Path):
             what = f"at {when:g} s the law is at the length {where:.6g} of a path that is {whole:.6g} long"
             raise InvalidInput(Problem("along.law", what, "let it go from 0 to that length, or give fewer times"))
         shape = np.shape(t)
-        return self._arc.place(Series(tuple(np.broadcast_to(c, shape) for c in gone.c)))
+        return self._arc.place(Series(tuple(np.broadcast_to(c, shape) for c in arc.c)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LinePath(ShortRepr, TraversedCurve):
-    """The straight line from one place to another, run along by a law.
-
-    The law is that of the distance from the first.
+    """The straight line from one place to another, traversed by a law of the distance from the first.
 
     >>> from compoundkin.model.laws import constant_speed
     >>> LinePath((0j, 3 + 4j), constant_speed(5.0)).place(np.array([0.5]), order=1).c[1].tolist()
@@ -177,8 +175,8 @@ class LinePath(ShortRepr, TraversedCurve):
     def curve(self) -> Curve:
         """The line, by the distance from its beginning."""
         start, end = self.places
-        way = (end - start) / abs(end - start)
-        return Analytic(lambda s: s * way + start, 0.0, abs(end - start), closed=False)
+        along = (end - start) / abs(end - start)
+        return Analytic(lambda s: s * along + start, 0.0, abs(end - start), closed=False)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -202,9 +200,9 @@ class CurvePath(ShortRepr, TraversedCurve):
         return self.profile.curve
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """Find what makes it no curve; it may cross itself."""
+        """Find the problems of the curve; it may cross itself."""
         try:
-            self.profile.curve  # noqa: B018 - what is no curve says so when it is made
+            self.profile.curve  # noqa: B018 - an invalid curve raises when it is built
         except InvalidMechanism as error:
             yield from (replace(problem, where=f"{where}.profile.{problem.where}") for problem in error.problems)
 
@@ -218,10 +216,10 @@ class FunctionComponent:
 
     def __call__(self, t: Any) -> Any:
         """Return the coordinate at times."""
-        made = self.function(t)
-        if isinstance(made, tuple | list):
-            raise TypeError("it returns several arrays, no complex places; return x + 1j * y")
-        return getattr(made, self.part, made)
+        places = self.function(t)
+        if isinstance(places, tuple | list):
+            raise TypeError("it returns several arrays, not complex places; return x + 1j * y")
+        return getattr(places, self.part, places)
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +228,7 @@ class FunctionPath(CopiesFunction, Path):
 
     function: Callable[[Any], Any]
 
-    held: ClassVar[str] = "function"
+    function_field: ClassVar[str] = "function"
     kind: ClassVar[str] = "function"
     keys: ClassVar[tuple[Key, ...]] = ()
     span: ClassVar[None] = None

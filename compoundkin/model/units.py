@@ -14,7 +14,7 @@ _FOOT, _POUND, STANDARD_GRAVITY = 0.3048, 0.45359237, 9.80665
 LENGTHS = {"m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": _FOOT / 12.0, "ft": _FOOT}
 MASSES = {
     **{"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": _POUND, "lbm": _POUND, "oz": _POUND / 16.0},
-    # what a pound-force gives one foot, one inch per second squared
+    # a pound-force accelerates these by one foot, one inch per second squared
     **{"slug": _POUND * STANDARD_GRAVITY / _FOOT, "blob": _POUND * STANDARD_GRAVITY / (_FOOT / 12.0)},
 }
 FORCES = {
@@ -41,7 +41,7 @@ class Units:
 
     @property
     def inertia(self) -> float:
-        """The force that a unit of mass takes for a unit of acceleration."""
+        """The force that gives a unit of mass a unit of acceleration."""
         return LENGTHS[self.length] * MASSES[self.mass] / FORCES[self.force]
 
     @property
@@ -67,9 +67,9 @@ class Units:
 
 
 def as_units(given: Any) -> Units | None:
-    """Return units as given: by names, as a mapping or as such an object. None where nothing is given.
+    """Return units from a mapping of names or a `Units` object, None from None.
 
-    Raises InvalidMechanism for what is unknown or missing.
+    Raises InvalidMechanism for unknown or missing units.
 
     >>> as_units({"length": "in", "mass": "blob", "force": "lbf"}).inertia
     1.0
@@ -83,7 +83,7 @@ def as_units(given: Any) -> Units | None:
 
 
 def checked_units(given: Any, unit: str) -> tuple[Units | None, list[Problem]]:
-    """Return units as given, and what is wrong with them. A `unit` of length beside them is one too many.
+    """Return units and their problems. A `unit` of length beside them is one of these.
 
     >>> checked_units({"length": "mm", "mass": "kg", "force": "N"}, "mm")[1][0].what
     'units name the unit of length already'

@@ -75,7 +75,7 @@ def test_what_leads_a_pin_balances_it() -> None:
 
 
 def test_what_rubs_at_a_led_pin_is_refused() -> None:
-    with pytest.raises(ck.errors.InvalidMechanism, match="the pin P is led: what presses there is not known"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="the motion of the pin P is prescribed"):
         led_five_bar(ck.friction("P", 0.1, radius=5))
     with pytest.raises(ck.errors.InvalidMechanism, match=r"name two of them: P\(outer-other\)"):
         led_five_bar(ck.damper(pair="P", rate=0.1))

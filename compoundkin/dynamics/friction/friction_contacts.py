@@ -49,7 +49,7 @@ class LoadedContact:
         It is the wrench on the second member.
         """
         radius = 0.0 if self.friction.radius is None else at.fitted(self.friction.radius)
-        return self.pair.rubbed(*self.sides(at), radius).times(at.fitted(self.friction.coefficient))
+        return self.pair.friction_wrench(*self.sides(at), radius).times(at.fitted(self.friction.coefficient))
 
     def normal_forces(self, at: LoadedBlock, wrench: Wrench) -> tuple[Number, ...]:
         """Return the forces that press its links together, of the wrench of the pair."""
@@ -64,7 +64,7 @@ class LoadedContact:
     def sliding(self, at: LoadedBlock) -> Number:
         """Return the speed of the second member against the first where they rub. A pin's is by its size."""
         _, poses = self.sides(at)
-        unit = self.pair.rubbed(*self.sides(at), at.motion.size)
+        unit = self.pair.friction_wrench(*self.sides(at), at.motion.size)
         return unit.power(poses[1]) - unit.power(poses[0])
 
 

@@ -380,7 +380,7 @@ class LiftOff(ShortRepr):
         if pair is None:
             raise InvalidInput(Problem(self.name, "it has no follower", "name a spring: preload('spring')"))
         poses = tuple(loaded.block.world[link] for link in pair.members)
-        place = pair.led(loaded.block.ends[self.name], poses)
+        place = pair.follower_point(loaded.block.ends[self.name], poses)
         link, oscillates, along = direction_of(motion, pair, place)
         if oscillates is not False:
             what = f"the follower {link!r} does not move straight"

@@ -48,7 +48,7 @@ def direction_of(motion: HasQuantities, pair: ProfileContact, contact: Number) -
     carried = {passive.link: passive.on for passive in structure.passive}
     name = carried.get(name, name)
     poses = tuple(motion.poses[member] for member in pair.members)
-    point = contact if name == pair.on else pair.led(motion.inputs.ends[pair.name], poses)
+    point = contact if name == pair.on else pair.follower_point(motion.inputs.ends[pair.name], poses)
     guides = [guide for guide in structure.pairs if _guides(guide, name, {pair.link, pair.on, *carried})]
     if len(guides) == 1 and guides[0].is_simple:
         oscillates = guides[0].free_is_angle

@@ -51,7 +51,7 @@ def contact_point(contact: Contact, block: Block, is_led: bool) -> tuple[Number,
     """
     ends, poses = block.ends[contact.name], tuple(block.world[name] for name in contact.members)
     place, normal, _ = contact.touch(ends, poses)
-    return contact.led(ends, poses) if is_led else place.c[0], normal.c[0]
+    return contact.follower_point(ends, poses) if is_led else place.c[0], normal.c[0]
 
 
 def _folded(force: Number, motion: Number) -> Number:

@@ -45,7 +45,7 @@ class FunctionLaw(CopiesFunction, ComparedByValue):
 
     f: Callable[[Any], Any]
 
-    held: ClassVar[str] = "f"
+    function_field: ClassVar[str] = "f"
     kind: ClassVar[str] = "function"
     keys: ClassVar[tuple[Key, ...]] = ()
     span: ClassVar[None] = None

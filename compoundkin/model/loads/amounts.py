@@ -39,7 +39,7 @@ class LoadFunction(CopiesFunction):
     f: Callable[..., Any]
     count: int
 
-    held: ClassVar[str] = "f"
+    function_field: ClassVar[str] = "f"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, LoadFunction) and self.f is other.f

@@ -1,4 +1,4 @@
-"""Coulomb friction in pairs: what is written of it."""
+"""Coulomb friction in pairs."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ class Friction(PairProperty):
     table: ClassVar[str] = "frictions"
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, a pin without a radius, and what is negative."""
+        """Find an unknown pair, a pin without a radius, and negative numbers."""
         several = written.at_pin(self.pair)
         pair = written.pair(several[0] if several else self.pair)
         if pair is None:
             yield from self.unknown(written, where)
         elif not set(written.carriers.get(pair.letters[0], ())) <= set(written.letters) and pair.is_simple:
-            what = f"the pin {pair.letters[0]} is led: what presses there is not known"
+            what = f"the motion of the pin {pair.letters[0]} is prescribed: the force in it is not known"
             yield Problem(f"{where}.pair", what, "leave it out")
         elif self.title not in pair.takes:
             what = f"{self.pair!r} is a {pair.title}, whose friction is not known here"

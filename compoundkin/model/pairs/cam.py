@@ -117,7 +117,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
         """Return the parameter of the profile at the contact."""
         return self._foot(ends, poses)[2].c[0]
 
-    def led(self, ends: Ends, poses: Poses) -> Number:
+    def follower_point(self, ends: Ends, poses: Poses) -> Number:
         """Return the middle of the roller."""
         return poses[1].at(ends[1].point).c[0]
 

@@ -17,7 +17,7 @@ from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, Replaceabl
 
 
 class Touch(NamedTuple):
-    """Where two links touch or would touch, in the world. A point of their common normal, and their distance there.
+    """The contact of two links, or where they are nearest, in the world.
 
     `normal` is a unit vector from the profile's link to the other; `gap` is zero where they touch.
     """
@@ -43,14 +43,14 @@ class Contact(Replaceable):
 
     @abstractmethod
     def touch(self, ends: Ends, poses: Poses) -> Touch:
-        """Find where the two links touch; away from contact, where they are nearest."""
+        """Return the contact of the two links; away from contact, where they are nearest."""
 
     @abstractmethod
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
-        """Return the derivatives of the coordinate by each link's x, y, theta. They are a row of the Jacobian."""
+        """Return the Jacobian's row of the coordinate: its derivatives by each link's x, y, theta."""
 
-    def led(self, ends: Ends, poses: Poses) -> Number:
-        """Return the point led: a pin, a roller's middle, an edge, a face's contact."""
+    def follower_point(self, ends: Ends, poses: Poses) -> Number:
+        """Return the point of the follower: a pin, a roller's centre, an edge, a face's contact."""
         return self.touch(ends, poses).place.c[0]
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
@@ -63,7 +63,7 @@ class Contact(Replaceable):
         return jacobian_of_rows(passing_rates(poses, place, normal), self.sliding(ends, poses))
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
-        """Return a force that presses along the common normal, and the coordinate's effort.
+        """Return a unit force along the common normal, and the coordinate's effort.
 
         A roller's contact lies where the normal through its middle meets the profile.
         """
@@ -87,7 +87,7 @@ class Contact(Replaceable):
 
 
 def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Number:
-    """Return a profile's centre of curvature at a parameter; inf if straight. Its place is in the world."""
+    """Return a profile's centre of curvature in the world at a parameter; infinite where it is straight."""
     along = curve.tangent(s).c[0] * u
     return place + 1j * along / curve.curvature(s)
 
@@ -103,33 +103,32 @@ def passing_rates(poses: Poses, place: Number, along: Number) -> tuple[Number, .
 
 
 def as_contact(pair: Pair) -> Contact | None:
-    """Return a pair as one of two links that touch, or None."""
+    """Return a pair as a contact, or None."""
     return pair if isinstance(pair, Contact) else None
 
 
 class FrictionPair(Pair):
-    """A pair whose links rub on each other as it moves."""
+    """A pair with Coulomb friction."""
 
     needs_radius: ClassVar[bool] = False  # whether friction takes a radius, as that of a pin
 
     @abstractmethod
-    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
-        """Return the wrench on the second member of friction by a press of one. It is along the pair's free motion.
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return the friction wrench on the second member for a unit normal force, along the pair's free motion.
 
-        Where friction acts on a pin it is a couple, the `radius`.
+        At a pin it is a couple, the `radius`.
         """
 
     @abstractmethod
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
-        """Return the forces that press the links together.
+        """Return the normal forces between the links, linear in the wrench on the second member.
 
-        They are linear in the wrench, that on the second member. Each is a number with a sign or a vector; friction
-        goes by the sum of their sizes.
+        Each is a signed number or a vector; friction is proportional to the sum of their magnitudes.
         """
 
 
 def as_friction_pair(pair: Pair) -> FrictionPair | None:
-    """Return a pair as one whose links rub, or None."""
+    """Return a pair as one with friction, or None."""
     return pair if isinstance(pair, FrictionPair) else None
 
 
@@ -138,7 +137,7 @@ class FrictionPin(FrictionPair):
 
     needs_radius = True
 
-    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
         """Return a couple."""
         return Wrench(0j, radius)
 
@@ -148,19 +147,16 @@ class FrictionPin(FrictionPair):
 
 
 class FrictionGuide(FrictionPair):
-    """A block in a guide. With a length it touches at the two ends of that, else at its point."""
+    """A block in a guide, in contact at both ends of its length where it has one, else at its point."""
 
     takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
-    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
-        """Return a force of one along the guide, through the block's point."""
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a unit force along the guide, through the block's point."""
         return Wrench.at(poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0])
 
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
-        """Return the normal force, or those at both ends of a long guide.
-
-        These carry the moment as well.
-        """
+        """Return the normal force, or those at both ends of a long guide, which carry the moment as well."""
         normal = dot(1j * poses[0].carry(ends[0]).along.c[0], wrench.force)
         if length is None:
             return (normal,)
@@ -169,10 +165,10 @@ class FrictionGuide(FrictionPair):
 
 
 class FrictionContact(Contact, FrictionPair):
-    """Two links that touch at a place and slide there."""
+    """A contact at which two links slide on each other."""
 
-    def rubbed(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
-        """Return a force of one across the common normal, where they touch."""
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a unit force across the common normal at the contact."""
         touch = self.touch(ends, poses)
         return Wrench.at(touch.place.c[0], -1j * touch.normal.c[0])
 

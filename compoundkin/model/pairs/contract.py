@@ -26,7 +26,7 @@ from compoundkin.model.pairs.symbols import Mark
 
 
 class Point(NamedTuple):
-    """A relative instant centre at ``(x / w, y / w)``. It is at infinity in the direction (x, y) where w is zero.
+    """A relative instant centre at ``(x / w, y / w)``, at infinity in the direction (x, y) where w is zero.
 
     The free coordinate's rate times (x, y, w) is the motion of the second member relative to the first: the
     velocity of the point p is ``1j * (w * p - (x + 1j * y))`` times that rate.
@@ -38,7 +38,7 @@ class Point(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A line that a relative instant centre lies on. It is ``a x + b y + c w = 0``, such as a common normal."""
+    """A line ``a x + b y + c w = 0`` through a relative instant centre, such as a common normal."""
 
     a: Number
     b: Number
@@ -74,7 +74,7 @@ class Pair(ABC):
     keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
 
     def __post_init__(self) -> None:
-        """A pair that is given no name has that of its links."""
+        """A pair without a name is named after its links."""
         if not self.name:
             object.__setattr__(self, "name", self.called)
 
@@ -90,20 +90,20 @@ class Pair(ABC):
 
     @property
     def called(self) -> str:
-        """Its name where none is given."""
+        """Its default name."""
         return "/".join(getattr(self, name) for name in link_fields(type(self))[:2])
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find what is wrong with the pair as written. `links` maps each link to its point names."""
+        """Find problems of the pair's definition. `links` maps each link to its point names."""
         yield from name_problems(self, links, where, self.wording)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Pair:
-        """Return the pair with the points that its words leave open; itself without any."""
+        """Return the pair with omitted points filled in; itself where there are none."""
         found = implied_points(self, links)
         return replace(self, **found) if found else self
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find what is wrong with its dimensions. Such are teeth that do not fit, a profile that crosses itself."""
+        """Find problems of its dimensions, such as teeth that do not fit or a profile that crosses itself."""
         return iter(())
 
     @abstractmethod
@@ -119,11 +119,9 @@ class Pair(ABC):
         """Return the (first) free relative coordinate as a series."""
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Return the derivatives of `closure` and then of `coordinate`.
+        """Return the derivatives of `closure` and then of `coordinate` by x, y, theta of each member.
 
-        They go by x, y, theta of the first member, then of the second.
-
-        Shape (..., held + 1, 3 members), at the leading coefficient of the poses. By series, unless a kind knows it.
+        Shape (..., held + 1, 3 members), at the leading coefficient of the poses. By series by default.
         """
         fixed = tuple(End(*(side.c[0] if isinstance(side, Series) else side for side in end)) for end in ends)
         still = [pose.trimmed(0) for pose in poses]
@@ -136,7 +134,7 @@ class Pair(ABC):
         return jacobian_of_rows(*zip(*columns, strict=True))
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
-        """Return unit wrenches on the second member, the opposites on the first. Those by which it holds come first.
+        """Return unit wrenches on the second member; their opposites act on the first.
 
         There is one for each held coordinate; the last is that of an effort along the free coordinate. By the
         Jacobian, unless a kind knows the place where its force acts.
@@ -149,15 +147,15 @@ class Pair(ABC):
 
     @property
     def acts_at(self) -> str:
-        """What the point is called about which the moment of its force is told."""
+        """The name of the reference point of its moment."""
         return self.letters[0]
 
     def acting_place(self, ends: Ends, poses: Poses) -> Number:
-        """Return that point in the world."""
+        """Return the reference point in the world."""
         return poses[1].at(ends[1].point).c[0]
 
     def centre(self, ends: Ends, poses: Poses) -> Point | Line:
-        """Return the relative instant centre of the first two members. It is a point, or a line it must lie on.
+        """Return the relative instant centre of the first two members: a point, or a line through it.
 
         At the leading coefficient of the poses; which of the two it is depends on the kind of pair only. By the
         Jacobian, unless a kind knows it; with a carrier the members turn about their own points.
@@ -177,35 +175,29 @@ class Pair(ABC):
         return Point(*((other * at - turn * before) / rate for before, at in zip(one, two, strict=True)))
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
-        """Tell whether a closed pair is in the way that is meant. Its closure alone does not tell."""
+        """Return whether a closed pair is assembled as intended, which its closure alone does not determine."""
         return True
 
     @abstractmethod
     def generic(self, rng: np.random.Generator) -> Ends:
-        """Draw ends of random geometry in the world for rank tests. The pair is closed at their pose."""
+        """Return random ends in the world, at which the pair is closed, for rank tests."""
 
     @property
     def rank_key(self) -> Hashable:
-        """All that the rank of its generic Jacobian may depend on."""
+        """The key on which the rank of its generic Jacobian depends."""
         return type(self)
 
     def loop_terms(self, ends: Ends) -> LoopTerms | None:
-        """Return what it adds to vector loops. None to have it from its lower pairs, or else from its closure."""
+        """Return its terms in vector loops; None to use its lower pairs, or else its closure."""
         return None
 
     def round_at(self, link: str) -> str | None:
-        """Return the point about which a member may turn freely.
-
-        The turn has no effect on the pair, such as that about a roller's pin.
-        """
+        """Return the point about which a member may turn without effect on the pair, such as a roller's pin."""
         return None
 
     @abstractmethod
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """Return the symbols of the pair, in the members' frames.
-
-        `ends` are numbers, `poses` a whole motion (poses,).
-        """
+        """Return the symbols of the pair, in the members' frames, for ends of numbers and poses (poses,)."""
 
 
 def jacobian_of_rows(*rows: tuple[Number, ...]) -> Number:
@@ -227,7 +219,7 @@ class DrawnNumbers(Pair):
 
     @abstractmethod
     def read_off(self, ends: Ends, geometry: Geometry) -> Mapping[str, Number]:
-        """Return the fields that are drawn and not stated, by the pair's sides."""
+        """Return the fields that are drawn and not stated, by the pair's ends."""
 
 
 class DrawnGuide(DrawnNumbers):
@@ -243,8 +235,8 @@ class DrawnGuide(DrawnNumbers):
             return {}
         guide, block = ends
         away = np.conjugate(guide.along.c[0]) * (guide.point - geometry.points[self.on][self.through])
-        found = {"offset": away.imag, "turn": 0.0 - np.angle(block.along.c[0])}
-        return {name: value for name, value in found.items() if getattr(self, name) is None}
+        drawn = {"offset": away.imag, "turn": 0.0 - np.angle(block.along.c[0])}
+        return {name: value for name, value in drawn.items() if getattr(self, name) is None}
 
 
 class DrawnPhase(DrawnNumbers):
@@ -262,23 +254,20 @@ def drawn_fields(pair: Pair, ends: Ends, geometry: Geometry) -> Mapping[str, Num
 
 
 class Drivable(Pair):
-    """A pair that a driver may prescribe: nothing but its coordinate is free."""
+    """A pair that a driver may prescribe: its coordinate is its only freedom."""
 
     takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @abstractmethod
     def placed(self, ends: Ends, free: Series) -> Pose:
-        """Return the second member's pose when the coordinate is `free`. It is in the first one's frame."""
+        """Return the second member's pose in the first one's frame, for the coordinate `free`."""
 
     def driven_by(self, link: str) -> int:
         """Return +1 if driving `link` drives the coordinate itself, else -1."""
         return 1
 
     def effort(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
-        """Return the torque or thrust of a wrench on the second member.
-
-        It is along the coordinate: the power of the wrench as that moves at unit rate.
-        """
+        """Return the torque or thrust of a wrench on the second member: its power at unit rate of the coordinate."""
         x, y, w = self.centre(ends, poses)
         return wrench.force.real * y - wrench.force.imag * x + wrench.moment * w
 
@@ -287,27 +276,21 @@ class Drivable(Pair):
         return self.coordinate(ends, poses).c[0]
 
     def drawn_value(self, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]) -> Number | None:
-        """Return the free coordinate by poses and points that are drawn elsewhere. None where it is its members'."""
+        """Return the free coordinate by other poses and points of the drawing; None where it is that of its members."""
         return None
 
     def drawn_length(self, sketch: Mapping[str, Number]) -> Number | None:
-        """Return the size of the free coordinate that drawn points alone show. It has no sign.
-
-        None where they do not, without the links' poses.
-        """
+        """Return the absolute value of the free coordinate by drawn points alone, None where it takes poses."""
         return None
 
 
 def as_drivable(pair: Pair) -> Drivable | None:
-    """Return a pair as one that can be driven, or None."""
+    """Return a pair as a drivable one, or None."""
     return pair if isinstance(pair, Drivable) else None
 
 
 class DrawnPair(NamedTuple):
-    """A pair as a drawing shows it.
-
-    It has its ends, the poses of its members as far as they are known, and where letters are drawn.
-    """
+    """A pair in a drawing: its ends, the known poses of its members, and the places of letters."""
 
     ends: Ends
     poses: tuple[Pose | None, ...]
@@ -315,46 +298,40 @@ class DrawnPair(NamedTuple):
 
 
 class Orienting(Pair):
-    """A pair that tells a member's angle from the others' poses. Such are slides, gears, wheels."""
+    """A pair from which a member's angle follows by the others' poses, such as a slide, a gear, a wheel."""
 
     @abstractmethod
     def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
-        """Return the angle of the member `own`, or None if it is not told."""
+        """Return the angle of the member `own`, or None if it does not follow."""
 
 
 def as_orienting(pair: Pair) -> Orienting | None:
-    """Return a pair as one that tells angles, or None."""
+    """Return a pair as an orienting one, or None."""
     return pair if isinstance(pair, Orienting) else None
 
 
 class TurnCounting(DrawnPhase, Orienting):
-    """A pair that asks for its members' angles with full turns. Such are gears, belts, racks, wheels that roll."""
+    """A pair that needs its members' angles with full turns, such as a gear, a belt, a rack, a rolling wheel."""
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """Return the ends with members' angles by whole `turns` from the drawn ones."""
+        """Return the ends for members' angles that are whole `turns` from the drawn ones."""
         return ends
 
     def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
-        """Return the ends of a driven pair for whole `turns` of its coordinate. They count from the drawn one."""
+        """Return the ends of a driven pair for whole `turns` of its coordinate from the drawn one."""
         return ends
 
     def is_affine(self, lower: Pair, own: int) -> bool:
-        """Tell whether `closure` grows in proportion to another pair's coordinate.
-
-        The other pair is `lower`, on which the member `own` is.
-        """
+        """Return whether `closure` is linear in the coordinate of the pair `lower` of the member `own`."""
         return False
 
     def distance_error(self, ends: Ends, poses: Poses) -> Series | None:
-        """Return a length that other pairs must keep at zero.
-
-        The pair does not hold it itself; None where there is none.
-        """
+        """Return a length that other pairs must hold at zero, or None."""
         return None
 
 
 def as_turn_counting(pair: Pair) -> TurnCounting | None:
-    """Return a pair as one that counts turns, or None."""
+    """Return a pair as a turn-counting one, or None."""
     return pair if isinstance(pair, TurnCounting) else None
 
 
@@ -367,14 +344,12 @@ class Guided(Pair):
 
 
 def guided_point(pair: Pair, ends: Ends) -> Number | None:
-    """Return the point that runs along a guide, of the second member. None where none does."""
+    """Return the point of the second member that runs along a guide, or None."""
     return pair.guided(ends) if isinstance(pair, Guided) else None
 
 
 class Equivalent(NamedTuple):
-    """The lower pairs and the link between them for a higher pair.
-
-    The two pairs stand for it at every pose, not at one only.
+    """The lower pairs, and the link between them, that are equivalent to a higher pair at every pose.
 
     `pairs` join `link` to the first and to the second member; `ends` are their sides by their names.
     """
@@ -385,7 +360,7 @@ class Equivalent(NamedTuple):
 
 
 class Osculation(NamedTuple):
-    """The centres of curvature of two members' profiles where they touch. They are in the world.
+    """The centres of curvature of two members' profiles at their contact, in the world.
 
     None for a straight one. A bar between the centres, or a block on the straight profile pinned at the other one's
     centre, gives the members the same velocities and accelerations. `normal` is a unit vector between the centres.
@@ -397,63 +372,60 @@ class Osculation(NamedTuple):
 
 
 class Replaceable(Pair):
-    """A higher pair for which lower pairs stand. They do at every pose, or for velocities and accelerations at one."""
+    """A higher pair with equivalent lower pairs, at every pose or for velocities and accelerations at one."""
 
     def equivalent(self, ends: Ends) -> Equivalent | None:
-        """Return the lower pairs for it at every pose. Only some dimensions allow such."""
+        """Return the equivalent lower pairs; None where the dimensions allow none."""
         return None
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
-        """Return the centres of curvature where they are known.
-
-        They are those at the leading coefficient of the poses.
-        """
+        """Return the centres of curvature at the leading coefficient of the poses, or None."""
         return None
 
 
 def lower_equivalent(pair: Pair, ends: Ends) -> Equivalent | None:
-    """Return the lower pairs for a pair at every pose. None where there are no such pairs."""
+    """Return the lower pairs equivalent to a pair at every pose, or None."""
     return pair.equivalent(ends) if isinstance(pair, Replaceable) else None
 
 
 def osculation(pair: Pair, ends: Ends, poses: Poses) -> Osculation | None:
-    """Return the centres of curvature of a higher pair, where they are known."""
+    """Return the centres of curvature of a higher pair, or None."""
     return pair.osculation(ends, poses) if isinstance(pair, Replaceable) else None
 
 
 class TransmittingPair(Pair):
-    """A pair whose force comes with others that do no work. Teeth part the wheels, strands pull pulleys together."""
+    """A pair whose transmitted force comes with forces that do no work: teeth part wheels, strands pull pulleys."""
 
     @abstractmethod
     def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
-        """Return how much of its unit wrench a wrench on the second member has."""
+        """Return the share of its unit wrench in a wrench on the second member."""
 
     @abstractmethod
     def accompanying(self, ends: Ends, poses: Poses, transmitted: Number, pretension: Number | None = None) -> Wrench:
-        """Return what comes with a transmitted force, on the second member. The opposite is on the first.
+        """Return the wrench without work that comes with a transmitted force, on the second member.
 
         `pretension` is the pull in each strand at rest, None for a chain that hangs loose.
         """
 
 
 def as_transmitting_pair(pair: Pair) -> TransmittingPair | None:
-    """Return a pair as one whose force comes with others, or None."""
+    """Return a pair as a transmitting one, or None."""
     return pair if isinstance(pair, TransmittingPair) else None
 
 
 def constraint_scales(pair: Pair, size: float) -> tuple[float, ...]:
-    """Return how large each held coordinate is if it is not zero. That is 1 for angles, the size for lengths."""
+    """Return the scale of each held coordinate: 1 for angles, the size for lengths."""
     return tuple(1.0 if k in pair.held_angles else size for k in range(pair.held))
 
 
 class RollingContact(Pair):
-    """A wheel that rolls without slip. What presses it and what turns it act at the contact."""
+    """A wheel that rolls without slip; its normal and tangential forces act at the contact."""
 
     force_words: ClassVar[tuple[str, ...]] = (NORMAL, TANGENTIAL)
 
     @abstractmethod
     def contact(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
-        """Return where the wheel touches, and the normal there. It is a unit vector into the wheel."""
+        """Return the place of contact, and the unit normal there into the wheel."""
 
     @property
     def acts_at(self) -> str:
@@ -466,34 +438,31 @@ class RollingContact(Pair):
 
 
 class BeltDrive(TransmittingPair):
-    """A pair of pulleys with a belt, whose two strands pull."""
+    """Two pulleys with a belt, whose two strands pull."""
 
     @abstractmethod
     def strands(self, ends: Ends, poses: Poses) -> tuple[Wrench, Wrench]:
-        """Return what a unit pull in each strand does to the second pulley."""
+        """Return the wrench of a unit pull in each strand on the second pulley."""
 
 
 def as_belt_drive(pair: Pair) -> BeltDrive | None:
-    """Return a pair as one whose strands pull, or None."""
+    """Return a pair as a belt drive, or None."""
     return pair if isinstance(pair, BeltDrive) else None
 
 
 def line_rows(rows: Number, z: Number) -> list[tuple[Number, Number, Number]]:
-    """Return (a, b, c) by each row of a Jacobian.
-
-    A twist of the member about (x, y, w) changes ``a x + b y + c w``.
-    """
+    """Return the line (a, b, c) of each row of a Jacobian: a twist about (x, y, w) changes ``a x + b y + c w``."""
     across = np.moveaxis(rows, (-2, -1), (0, 1))
     return [(-y, x, turn + y * z.real - x * z.imag) for x, y, turn in across]
 
 
 def line_at(line: tuple[Number, ...], place: tuple[Number, ...]) -> Number:
-    """Return what a line gives at a place, in homogeneous coordinates."""
+    """Return the value of a line at a place in homogeneous coordinates."""
     return sum(own * at for own, at in zip(line, place, strict=True))
 
 
 def unit_motions(pose: Pose) -> Iterator[Pose]:
-    """Yield a pose as it moves at unit rate in x, y and angle."""
+    """Yield a pose that moves at unit rate in x, in y and in angle."""
     yield Pose(Series((pose.z.c[0], 1.0 + 0j)), pose.u, pose.theta)
     yield Pose(Series((pose.z.c[0], 1j)), pose.u, pose.theta)
     theta = None if pose.theta is None else Series((pose.theta.c[0], 1.0))

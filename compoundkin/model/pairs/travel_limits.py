@@ -22,7 +22,7 @@ FULL = TURN * (1.0 + 1e-12)
 
 
 class TravelLimited(Pair):
-    """A pair whose guide may say from where to where it reaches. Beyond its ends it is not assembled."""
+    """A pair whose guide may have ends, beyond which it is not assembled."""
 
     on: str
     reach: Reach
@@ -34,7 +34,7 @@ class TravelLimited(Pair):
         return (np.conjugate(along) * (geometry.points[self.on][letter] - guide.point)).real
 
     def bounds(self, geometry: Geometry) -> tuple[Number, Number]:
-        """Return the coordinates at which the guide begins and ends. They are infinite where it is open."""
+        """Return the coordinates at which the guide begins and ends, infinite at an open end."""
         assert self.reach is not None
         open_ends = (-np.inf, np.inf)
         low, high = (
@@ -44,20 +44,17 @@ class TravelLimited(Pair):
         return low, high
 
     def inside(self, bounds: tuple[Number, Number], ends: Ends, poses: Poses) -> tuple[Number, Number]:
-        """Return how far it is from both ends of the guide. Negative is beyond."""
+        """Return the distances from both ends of the guide, negative beyond them."""
         value = self.coordinate(ends, poses).c[0]
         return value - bounds[0], bounds[1] - value
 
     def passed(self, here: str, there: str, is_end: bool) -> str:
-        """Say that a pose is beyond an end, both coordinates being told."""
+        """Return the message that a pose is beyond an end, with both coordinates."""
         word = "beyond the end" if is_end else "before the beginning"
         return f"{self.letters[0]} at {here} is {word} of {self.name}, {there}"
 
     def drawn_extent(self, bounds: tuple[Number, Number], values: Number) -> tuple[float, float, tuple[bool, bool]]:
-        """Return from where to where the guide is drawn, and which ends it has.
-
-        It goes to its ends, or as far as it is used.
-        """
+        """Return from where to where the guide is drawn, to its ends or as far as it is used, and which ends it has."""
         used = known_range(values)
         low, high = (
             one if np.isfinite(one) else other
@@ -69,13 +66,10 @@ class TravelLimited(Pair):
     def with_ends(
         self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
     ) -> tuple[Mark, ...]:
-        """Return the symbols of the pair, the guide as long as it is."""
+        """Return the symbols of the pair with its whole guide."""
 
     def reach_problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find a reach that is none.
-
-        It has not two ends, or unknown points, or ends before it begins.
-        """
+        """Find invalid travel limits: not two, of unknown points, or in the wrong order."""
         if self.reach is None:
             return
         place, known = f"{where}.reach", links.get(self.on, ())
@@ -100,8 +94,8 @@ class TravelLimited(Pair):
         low, high = bounds
         if not np.all(np.asarray(low) < np.asarray(high)):
             assert self.reach is not None
-            told = " to ".join(_end_text(end, value) for end, value in zip(self.reach, bounds, strict=True))
-            what = f"the guide has no length from {told}: it must end after it begins"
+            limits = " to ".join(_end_text(end, value) for end, value in zip(self.reach, bounds, strict=True))
+            what = f"the guide has no length from {limits}: it must end after it begins"
             yield Problem(place, what, "give the lesser coordinate first")
 
 
@@ -120,14 +114,14 @@ class TravelLimitedArc(TravelLimited):
         return low, low + np.mod(high - low, TURN) if named else _counterclockwise_end(low, high)
 
     def inside(self, bounds: tuple[Number, Number], ends: Ends, poses: Poses) -> tuple[Number, Number]:
-        """Return how far it is from both ends of the arc. Negative is beyond."""
+        """Return the distances from both ends of the arc, negative beyond them."""
         low, high = bounds
         half = (high - low) / 2.0
         off = wrapped(self.coordinate(ends, poses).c[0] - (low + high) / 2.0)
         return half + off, half - off
 
     def reach_problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find a reach that is none, or of a single end."""
+        """Find invalid travel limits, and a single one."""
         yield from super().reach_problems(links, where)
         if self.reach is not None and sum(end is None for end in self.reach) == 1:
             yield Problem(f"{where}.reach", "an arc needs both of its ends", "say where it begins and where it ends")
@@ -141,22 +135,22 @@ class TravelLimitedArc(TravelLimited):
 
 
 def _counterclockwise_end(low: Number, high: Number) -> Number:
-    """The end of an arc: counterclockwise of its beginning, so that 200 to 90 degrees goes through zero."""
+    """Return the end of an arc, counterclockwise of its beginning, so that 200 to 90 degrees goes through zero."""
     return np.where(np.asarray(high) < low, low + np.mod(high - np.asarray(low), TURN), high)[()]
 
 
 def as_travel_limited(pair: Pair) -> TravelLimited | None:
-    """Return a pair as one whose guide has ends, or None."""
+    """Return a pair as one with travel limits, or None."""
     return pair if isinstance(pair, TravelLimited) and pair.reach is not None else None
 
 
 def bounds_name(pair: Pair) -> str:
-    """Return the name under which a guide's ends stand beside the pairs' sides. Names of pairs have no dots."""
+    """Return the key of a guide's limits among the pairs' ends. Names of pairs have no dots."""
     return f"{pair.name}.reach"
 
 
 def reach_key(kind: Kind, doc: str) -> dict[str, Any]:
-    """Return the metadata of the field that says how far a guide reaches."""
+    """Return the metadata of the field with the travel limits."""
     both = "Beyond these two places there is no pose; each a coordinate, or a point of the link with the guide"
     return value_key(kind, f"{doc} {both}.")
 
@@ -166,5 +160,5 @@ def _as_number(end: Any) -> Number:
 
 
 def _end_text(end: Number | str | None, value: Number) -> str:
-    shown = f"{float(np.ravel(value)[0]):.6g}"
-    return f"{end!r} at {shown}" if isinstance(end, str) else shown
+    number = f"{float(np.ravel(value)[0]):.6g}"
+    return f"{end!r} at {number}" if isinstance(end, str) else number

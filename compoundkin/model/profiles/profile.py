@@ -36,10 +36,10 @@ class Profile(CopiesFields, ABC):
     @cached_property
     def curve(self) -> Curve:
         """The curve, in the coordinates of its link. Raises InvalidMechanism for what is no curve."""
-        return self._made()
+        return self._built_curve()
 
     @abstractmethod
-    def _made(self) -> Curve: ...
+    def _built_curve(self) -> Curve: ...
 
     @property
     def circle(self) -> tuple[complex, float] | None:
@@ -56,11 +56,11 @@ class Profile(CopiesFields, ABC):
         if found:
             place = found[0].point
             what = f"the profile crosses itself at ({place.real:.6g}, {place.imag:.6g})"
-            yield Problem(where, what, self._without_loop())
+            yield Problem(where, what, self._loop_remedy())
         elif self.curve.closed and abs(self.curve.samples.area) <= NO_AREA * self.curve.size**2:
             yield Problem(where, "the profile encloses no area: it runs back over itself", "say it is open")
 
-    def _without_loop(self) -> str:
+    def _loop_remedy(self) -> str:
         """Return how to get rid of a loop."""
         return "change the points that make the loop"
 
@@ -88,7 +88,7 @@ class DiscProfile(Profile):
         """Its middle and radius."""
         return self.middle, self.radius
 
-    def _made(self) -> Curve:
+    def _built_curve(self) -> Curve:
         return Analytic(lambda s: s.turn() * self.radius + self.middle, 0.0, 2.0 * np.pi, closed=True)
 
     def problems(self, where: str) -> Iterator[Problem]:
@@ -124,7 +124,7 @@ class PointsProfile(ShortRepr, Profile):
         Key("closed", "flag", "Whether the last point is followed by the first.", default=True),
     )
 
-    def _made(self) -> Curve:
+    def _built_curve(self) -> Curve:
         return Spline(self.points, self.closed)
 
 
@@ -146,7 +146,7 @@ def profile(points: Any, *, closed: bool = True) -> PointsProfile:
 class FormulaProfile(CopiesFunction, Profile):
     """A curve by a Python function of a parameter from `low` to `high`. Complex points for an array of parameters."""
 
-    held: ClassVar[str] = "function"
+    function_field: ClassVar[str] = "function"
 
     function: Callable[[Any], Any]
     low: float
@@ -156,7 +156,7 @@ class FormulaProfile(CopiesFunction, Profile):
     kind: ClassVar[str] = "formula"
     keys: ClassVar[tuple[Key, ...]] = ()
 
-    def _made(self) -> Curve:
+    def _built_curve(self) -> Curve:
         return Function(self.function, self.low, self.high, self.closed)
 
 

@@ -105,7 +105,7 @@ class Synthesised(Profile):
         """
         return self.envelope.coordinate(as_series(angle))
 
-    def _made(self) -> Curve:
+    def _built_curve(self) -> Curve:
         found = list(synthesis_problems(self)) or list(undercuts(self))
         if found:
             raise InvalidMechanism(found)
@@ -115,7 +115,7 @@ class Synthesised(Profile):
         """Find what makes it no profile. A program that does not close, a base circle too small."""
         yield from super().problems(where)
 
-    def _without_loop(self) -> str:
+    def _loop_remedy(self) -> str:
         return "take a greater base circle or a smaller roller"
 
 

@@ -144,7 +144,7 @@ class LocalProfile(Profile):
     whole: Profile
     local: LocalCurve
 
-    def _made(self) -> Curve:
+    def _built_curve(self) -> Curve:
         return self.local
 
     @property
