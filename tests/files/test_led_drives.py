@@ -126,7 +126,7 @@ def test_a_law_beyond_its_path_says_where() -> None:
 def test_names_of_what_is_only_thought_are_refused_and_not_shown() -> None:
     led = redriven("five-bar", ck.drive("P", x=60.0, y=LAW))
     taken = [*led.items, ck.link("P carriage", P=0)]
-    with pytest.raises(ck.errors.InvalidMechanism, match="a link is called 'P carriage', as what leads 'P'"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="a link is called 'P carriage', as an auxiliary link of 'P'"):
         ck.Mechanism("m", *taken)
     motion = ck.solve(led, time=np.linspace(130.0 / 2, 140.0 / 2, 5))
     picture = ck.draw(motion).svg
