@@ -26,21 +26,13 @@ from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll
 from compoundkin.model.pairs.cylinder import cylinder
 
 if TYPE_CHECKING:
-    from compoundkin import advantage as advantage
-    from compoundkin import cams as cams
-    from compoundkin import catalog as catalog
     from compoundkin import chains as chains
-    from compoundkin import composing as composing
-    from compoundkin import coupler as coupler
-    from compoundkin import dyads as dyads
     from compoundkin import equations as equations
-    from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
     from compoundkin import exchange as exchange
+    from compoundkin import figures as figures
     from compoundkin import goals as goals
     from compoundkin import laws as laws
-    from compoundkin import machine as machine
-    from compoundkin import performance as performance
     from compoundkin import plots as plots
     from compoundkin import profiles as profiles
     from compoundkin import results as results
@@ -174,9 +166,8 @@ _LATE = {
 
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
-    *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
-    *("equations", "equivalents", "errors", "exchange", "goals", "laws", "machine", "performance", "plots"),
-    *("profiles", "results"),
+    *("chains", "equations", "errors", "exchange", "figures"),
+    *("goals", "laws", "plots", "profiles", "results"),
 )
 
 

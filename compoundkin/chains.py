@@ -1,21 +1,17 @@
-"""The atlas of kinematic chains, their names, and mechanisms made of them.
+"""Kinematic chains: their atlas and names, mechanisms made of them, built group by group, or at random.
 
->>> from compoundkin.chains import chains
+>>> from compoundkin.chains import chains, random_mechanism
 >>> len(chains(8))
 16
+>>> random_mechanism(groups=3, seed=1)
+Mechanism('3 random groups, seed 1': 8 links, 1 driver)
 """
 
 from __future__ import annotations
 
 from compoundkin.synthesis.chains import (
-    AssurGroup,
-    Canonical,
     Chain,
-    ChainName,
     Coloured,
-    Inversion,
-    Joint,
-    Joints,
     assur_group,
     assur_groups,
     canonical,
@@ -33,10 +29,30 @@ from compoundkin.synthesis.chains import (
     symmetric_drivers,
     trusses,
 )
+from compoundkin.synthesis.chains.joints import Joint, Joints
+from compoundkin.synthesis.composer import Composer, random_mechanism
 
 __all__ = [
-    "AssurGroup", "Canonical", "Chain", "ChainName", "Coloured", "Inversion", "Joint", "Joints",
-    "assur_group", "assur_groups", "canonical", "chain_name", "chains", "chains_of", "group_name",
-    "group_truss", "inversions", "mechanism_from", "name_of", "named", "number_of", "structure_name",
-    "symmetric_drivers", "trusses",
-]  # fmt: skip
+    "Chain",
+    "Coloured",
+    "Composer",
+    "Joint",
+    "Joints",
+    "assur_group",
+    "assur_groups",
+    "canonical",
+    "chain_name",
+    "chains",
+    "chains_of",
+    "group_name",
+    "group_truss",
+    "inversions",
+    "mechanism_from",
+    "name_of",
+    "named",
+    "number_of",
+    "random_mechanism",
+    "structure_name",
+    "symmetric_drivers",
+    "trusses",
+]

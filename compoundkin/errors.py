@@ -26,7 +26,19 @@ from compoundkin.base.errors import (
 )
 
 __all__ = [
-    "ChangePointWarning", "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism",
-    "LikelySlip", "NotAssembled", "NotDetermined", "Problem", "StudyStopped", "UnassembledPoses",
-    "UnknownName", "UnmetConstraints", "WedgedPoses",
-]  # fmt: skip
+    "ChangePointWarning",
+    "CompoundkinError",
+    "DrawnBeyondEnd",
+    "FewDigits",
+    "InvalidInput",
+    "InvalidMechanism",
+    "LikelySlip",
+    "NotAssembled",
+    "NotDetermined",
+    "Problem",
+    "StudyStopped",
+    "UnassembledPoses",
+    "UnknownName",
+    "UnmetConstraints",
+    "WedgedPoses",
+]

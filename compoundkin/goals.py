@@ -16,6 +16,22 @@ from compoundkin.studies.goals.range_goals import dwell, even, straight_line
 from compoundkin.studies.goals.value_goals import greatest, least, target
 
 __all__ = [
-    "assembles", "at_least", "at_most", "box", "clearance", "distance", "dwell", "even", "full_turn", "function",
-    "greatest", "least", "path", "poses", "straight_line", "target", "trace", "transmits",
-]  # fmt: skip
+    "assembles",
+    "at_least",
+    "at_most",
+    "box",
+    "clearance",
+    "distance",
+    "dwell",
+    "even",
+    "full_turn",
+    "function",
+    "greatest",
+    "least",
+    "path",
+    "poses",
+    "straight_line",
+    "target",
+    "trace",
+    "transmits",
+]

@@ -8,14 +8,7 @@
 from __future__ import annotations
 
 from compoundkin.model.laws import (
-    ConstantAcceleration,
-    ConstantSpeed,
-    FunctionLaw,
     Law,
-    MotionTable,
-    Program,
-    ProgramSegment,
-    TimeTable,
     constant_acceleration,
     constant_speed,
     dwell,
@@ -27,11 +20,24 @@ from compoundkin.model.laws import (
     synchronised,
     time_table,
 )
+from compoundkin.model.laws.function_law import FunctionLaw
 from compoundkin.model.prescribed_motion import place_table
 from compoundkin.synthesis.inversion import driven_forward, found_law
 
 __all__ = [
-    "ConstantAcceleration", "ConstantSpeed", "FunctionLaw", "Law", "MotionTable", "Program", "ProgramSegment",
-    "TimeTable", "constant_acceleration", "constant_speed", "driven_forward", "dwell", "fall", "found_law",
-    "least_time", "motion_table", "place_table", "program", "rise", "synchronised", "time_table",
-]  # fmt: skip
+    "FunctionLaw",
+    "Law",
+    "constant_acceleration",
+    "constant_speed",
+    "driven_forward",
+    "dwell",
+    "fall",
+    "found_law",
+    "least_time",
+    "motion_table",
+    "place_table",
+    "program",
+    "rise",
+    "synchronised",
+    "time_table",
+]

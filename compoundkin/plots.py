@@ -1,7 +1,7 @@
 """Plots beside `plot`: phase, polar, bearing loads, paths, centrodes, circuits, timing; studies, tolerances, searches.
 
 >>> import compoundkin as ck
->>> motion = ck.solve(ck.catalog.load_named("crank-rocker"))
+>>> motion = ck.solve(ck.load("crank-rocker"))
 >>> isinstance(ck.plots.polar(motion, "rocker.angular_velocity"), ck.results.Plot)
 True
 """

@@ -1,4 +1,4 @@
-"""Profiles of cams and curved slots, in the coordinates of the link that carries them.
+"""Profiles of cams and curved slots, and mechanisms of a synthesised cam.
 
 >>> from compoundkin.profiles import disc
 >>> disc(20).radius
@@ -7,22 +7,18 @@
 
 from __future__ import annotations
 
-from compoundkin.model.profiles import (
-    DiscProfile,
-    DoubleCam,
-    FormulaProfile,
-    PointsProfile,
-    Profile,
-    Synthesised,
-    conjugate,
-    constant_breadth,
-    disc,
-    formula,
-    profile,
-    synthesise,
-)
+from compoundkin.analysis.cam_analysis import cam_pairs
+from compoundkin.model.cam_mechanism import cam_mechanism
+from compoundkin.model.profiles import Profile, conjugate, constant_breadth, disc, formula, profile, synthesise
 
 __all__ = [
-    "DiscProfile", "DoubleCam", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
-    "conjugate", "constant_breadth", "disc", "formula", "profile", "synthesise",
-]  # fmt: skip
+    "Profile",
+    "cam_mechanism",
+    "cam_pairs",
+    "conjugate",
+    "constant_breadth",
+    "disc",
+    "formula",
+    "profile",
+    "synthesise",
+]

@@ -6,10 +6,11 @@ import os
 from functools import cache
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files import load
+from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.report import Report, report
 
-NAMES = names()
+NAMES = shipped()
 
 # What is asked of every shipped mechanism is asked of these, which have all kinds of pairs, of groups, of laws and of
 # loads between them; and of all with COMPOUNDKIN_TESTS=all, as `.ci/run` sets it.
@@ -24,7 +25,7 @@ CHOSEN = NAMES if EVERYTHING else tuple(_CHOSEN.split())
 
 @cache
 def mechanism(name: str) -> ck.Mechanism:
-    return load_named(name)
+    return load(name)
 
 
 @cache

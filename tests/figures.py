@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view.sketch.kinematic_sketch import ghost_shapes, layered, window_on
 from compoundkin.view.sketch.labels import label_shapes, placed, point_letters
 from compoundkin.view.sketch.painter import Painter
@@ -23,7 +23,7 @@ from compoundkin.view.sketch.shapes import Polygon, Polyline
 
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"
 FIRST = Path(__file__).parents[1] / "docs" / "index.md"
-SIX_BAR, AT = load_named("six-bar"), ck.deg(35)
+SIX_BAR, AT = load("six-bar"), ck.deg(35)
 
 
 def crank_rocker() -> ck.results.Picture:
@@ -48,13 +48,13 @@ def posed() -> ck.results.Motion:
 
 def modes() -> ck.results.Picture:
     """A four-bar in both assembly modes of its dyad, the second one faint."""
-    mechanism, values = load_named("crank-rocker"), {"crank": [ck.deg(60)]}
+    mechanism, values = load("crank-rocker"), {"crank": [ck.deg(60)]}
     return with_ghosts(*(ck.solve(mechanism, values, modes={"rocker": sign}) for sign in (1, -1)))
 
 
 def limit() -> ck.results.Picture:
     """A triple rocker at a limit position, where its two modes meet; faint both modes before it."""
-    mechanism = load_named("triple-rocker")
+    mechanism = load("triple-rocker")
     (greatest,) = {limit.value for limit in ck.circuits(mechanism).limits if limit.greatest and limit.value > 0}
     at_limit = ck.solve(mechanism, {"driver": [greatest]})
     before = [ck.solve(mechanism, {"driver": [ck.deg(70)]}, modes={"rocker": sign}) for sign in (1, -1)]
@@ -63,15 +63,15 @@ def limit() -> ck.results.Picture:
 
 def transmission() -> ck.results.Picture:
     """A crank-rocker with its crank on the line of the frame: least transmission angle, and faintly the other end."""
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     return with_ghosts(*(ck.solve(mechanism, {"crank": [ck.deg(at)]}) for at in (0, 180)))
 
 
 def workspace() -> ck.results.Picture:
     """The region that the tip of a five-bar reaches in the drawn mode, around the robot, and the lens of all modes."""
-    robot = load_named("five-bar")
+    robot = load("five-bar")
     motion = ck.solve(robot, {"left": [ck.deg(100)], "right": [ck.deg(75)]})
-    outlines = [ck.performance.workspace(robot, "P", modes=modes, cells=160).outer[0] for modes in (None, "all")]
+    outlines = [ck.figures.workspace(robot, "P", modes=modes, cells=160).outer[0] for modes in (None, "all")]
     scene = scene_of(motion, None, None, 0)
     window = window_on(scene)
     window = fitted_window(window, np.concatenate([window.at(outline) for outline in outlines]))
@@ -104,18 +104,18 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "apart": lambda: ck.draw(posed(), kind="groups"),
     "graph": lambda: ck.draw(SIX_BAR, kind="graph"),
     "loops": lambda: ck.draw(posed(), kind="loops"),
-    "construction": lambda: ck.draw(load_named("crank-rocker"), ck.deg(60), kind="construction"),
+    "construction": lambda: ck.draw(load("crank-rocker"), ck.deg(60), kind="construction"),
     "modes": modes,
-    "led": lambda: ck.animate(load_named("five-bar-led"), paths="P"),
+    "led": lambda: ck.animate(load("five-bar-led"), paths="P"),
     "limit": limit,
     "transmission": transmission,
     "workspace": workspace,
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),
     "circle": lambda: ck.draw(SIX_BAR, kind="circle"),
     "velocities": lambda: ck.draw(SIX_BAR, AT, kind="polygon"),
-    "conjugate-cams": lambda: ck.draw(load_named("conjugate-cams"), ck.deg(60)),
-    "constant-breadth-yoke": lambda: ck.draw(load_named("constant-breadth-yoke"), ck.deg(60)),
-    "free-bodies": lambda: ck.draw(load_named("engine-gas-pressure"), ck.deg(30), kind="free-bodies"),
+    "conjugate-cams": lambda: ck.draw(load("conjugate-cams"), ck.deg(60)),
+    "constant-breadth-yoke": lambda: ck.draw(load("constant-breadth-yoke"), ck.deg(60)),
+    "free-bodies": lambda: ck.draw(load("engine-gas-pressure"), ck.deg(30), kind="free-bodies"),
     "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 

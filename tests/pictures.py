@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from html import escape
 from pathlib import Path
 
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files import load
+from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.sketch import Picture, draw
 from compoundkin.view.sketch.sketch_style import css
 from compoundkin.view.sketch.svg import FONT
@@ -17,7 +18,7 @@ ACROSS, CELL, CAPTION = 6, 240, 18
 
 def gallery() -> str:
     """The source of the gallery: one picture inside another, with one style sheet for all."""
-    pictures = {name: draw(load_named(name), labels=False, paths=True) for name in names()}
+    pictures = {name: draw(load(name), labels=False, paths=True) for name in shipped()}
     shapes = [shape for picture in pictures.values() for shape in picture.shapes]
     rows = -(-len(pictures) // ACROSS)
     width, height = ACROSS * CELL, rows * (CELL + CAPTION)

@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 
-SIX_BAR = ck.solve(ck.catalog.load_named("six-bar"))
+SIX_BAR = ck.solve(ck.load("six-bar"))
 
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "a list of names": (lambda: SIX_BAR.table(["G.velocity"]), "one text for each"),

@@ -30,9 +30,9 @@ def test_every_public_name_is_there() -> None:
 def test_every_name_stands_in_one_place() -> None:
     listed = [*ck.__all__, *(name for part in MODULES for name in getattr(ck, part).__all__)]
     # a plot of circuits, in polar coordinates, ...: the kinds of plots are called like what they show
-    # and `dyads.link` is the textbook routine of that name; `catalog.path` is that of a file, `goals.path` of a point;
+    # and `equations.link` is the textbook routine of that name;
     # `laws.dwell` is a part of a driver's program, `goals.dwell` one of an output
-    twice = {name for name in listed if listed.count(name) > 1} - {*ck.plots.__all__, "dwell", "link", "path"}
+    twice = {name for name in listed if listed.count(name) > 1} - {*ck.plots.__all__, "dwell", "link"}
     assert twice == set()
 
 
@@ -67,7 +67,7 @@ def test_a_name_that_moved_says_where_it_is(name: str, tmp_path: Path, monkeypat
     with pytest.raises(AttributeError, match=re.escape(f"compoundkin.{name} is now {MOVED[name]}")):
         getattr(ck, name)
     monkeypatch.chdir(tmp_path)
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     known = {"compoundkin": ck, "mechanism": mechanism, "motion": ck.solve(mechanism, {"crank": [0.5]})}
     eval(MOVED[name], known)
 

@@ -36,17 +36,17 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
     yield "quantity", ck.quantity(motion, f"{link}.angle")
     yield "table", motion.table()
     for word in ("pole", "centrodes", "canonical_frame", "inflection_circle", "stationary_curvature", "relative_link"):
-        yield f"coupler.{word}", getattr(ck.coupler, word)(motion, link)
+        yield f"coupler.{word}", getattr(ck.figures, word)(motion, link)
     for word in ("path_curvature", "relative_point"):
-        yield f"coupler.{word}", getattr(ck.coupler, word)(motion, link, 0j)
-    places = [ck.coupler.link_position(motion, link, k) for k in range(3)]
-    yield "coupler.pole_triangle", ck.coupler.pole_triangle(*places)
-    yield "dyads.rrr", ck.dyads.rrr((0, 0), (6, 0), 5.0, [5.0, 4.0])
-    yield "advantage", ck.advantage.mechanical_advantage(motion, driver, driver)
-    yield "equivalents", ck.equivalents.equivalent_linkage(motion)
+        yield f"coupler.{word}", getattr(ck.figures, word)(motion, link, 0j)
+    places = [ck.figures.link_position(motion, link, k) for k in range(3)]
+    yield "coupler.pole_triangle", ck.figures.pole_triangle(*places)
+    yield "dyads.rrr", ck.equations.rrr((0, 0), (6, 0), 5.0, [5.0, 4.0])
+    yield "advantage", ck.figures.mechanical_advantage(motion, driver, driver)
+    yield "equivalents", ck.figures.equivalent_linkage(motion)
     yield "chains", ck.chains.structure_name(ck.decompose(mechanism))
-    for pair in ck.cams.cam_pairs(motion):
-        yield "cams", ck.cams.cam_analysis(motion, pair)
+    for pair in ck.profiles.cam_pairs(motion):
+        yield "cams", ck.figures.cam_analysis(motion, pair)
 
 
 def is_ours(thing: Any) -> bool:

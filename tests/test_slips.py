@@ -203,7 +203,7 @@ def test_an_outlier_among_the_points_of_a_profile_is_told(k: int, closed: bool) 
 # --- wrong objects, each with its remedy ---
 
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
-    "decompose a name": (lambda: ck.decompose("six-bar"), r"'six-bar' is no mechanism; .*catalog.load_named\(\)"),  # type: ignore[arg-type]
+    "decompose a name": (lambda: ck.decompose("six-bar"), r"'six-bar' is no mechanism; .*load\(\)"),  # type: ignore[arg-type]
     "decompose a number": (lambda: ck.decompose(3), "3 is no mechanism"),  # type: ignore[arg-type]
     "decompose a motion": (lambda: ck.decompose(motion("six-bar")), "take its .mechanism"),  # type: ignore[arg-type]
     "verify nothing": (lambda: ck.verify(None), r"None is no motion; solve\(\) gives one"),  # type: ignore[arg-type]
@@ -218,7 +218,7 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "outputs=5": (lambda: SIX_BAR.replace(outputs=5), "outputs: 5 is no text or list of texts"),
     "unit=3": (lambda: SIX_BAR.replace(unit=3), "unit: 3 is no text"),
     "a driver by number": (lambda: ck.with_driver(SIX_BAR, 3), "link: 3 is no text"),  # type: ignore[arg-type]
-    "a mechanism by number": (lambda: ck.catalog.load_named(3), "name: 3 is no text"),  # type: ignore[arg-type]
+    "a mechanism by number": (lambda: ck.load(3), "path: 3 is no text or path"),  # type: ignore[arg-type]
     "a link by number": (lambda: ck.link(3, A=0), "name: 3 is no text"),  # type: ignore[arg-type]
     "at='x'": (lambda: ck.draw(SIX_BAR, at="x"), "at.crank: 'x' is not a number"),
     "deg('x')": (lambda: ck.deg("x"), "angle: a text is no number"),
@@ -298,6 +298,6 @@ def test_functions_that_cannot_be_pickled_are_named() -> None:
 
 def test_errors_keep_their_problems_on_the_way_from_another_process() -> None:
     with pytest.raises(ck.errors.UnknownName) as caught:
-        ck.catalog.load_named("sixbar")
+        ck.load("sixbar")
     again = pickle.loads(pickle.dumps(caught.value))
     assert (again.problems, str(again)) == (caught.value.problems, str(caught.value))

@@ -108,9 +108,9 @@ def _links_without_two_points(known: MechanismComparison) -> dict[str, str]:
 def compared_facts(one: Structure, other: Structure) -> tuple[ComparedFact, ...]:
     """Return what there is to say of both structures, in words.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
-    >>> compared_facts(*[decompose(load_named(name)) for name in ("crank-rocker", "six-bar")])[1]
+    >>> compared_facts(*[decompose(load(name)) for name in ("crank-rocker", "six-bar")])[1]
     ComparedFact(what='pairs', one='4 R', other='6 R + 1 P')
     """
     return tuple(ComparedFact(what, tell(one), tell(other)) for what, tell in _FACTS.items())

@@ -66,9 +66,9 @@ def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage
     Source: power is conserved; Uicker, Pennock and Shigley, Theory of Machines and Mechanisms; for
     four-bars ``omega4 / omega2`` by the centres, Freudenstein's theorem.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("four-bar-norton"), {"crank": [np.deg2rad(40)]})
+    >>> motion = solve(load("four-bar-norton"), {"crank": [np.deg2rad(40)]})
     >>> mechanical_advantage(motion, "rocker", "crank").velocity_ratio.round(3).tolist()     # Norton: 6.998 / 25
     [0.28]
     """

@@ -110,7 +110,7 @@ Test: TypeAlias = Callable[[Any], bool]
 # What gives an object of each class that calls are given.
 OBTAINED_BY: Mapping[str, str] = MappingProxyType(
     {
-        "Mechanism": "load() reads one from a file, catalog.load_named() has the shipped ones",
+        "Mechanism": "load() reads one from a file, or a shipped one by its name",
         "Structure": "decompose() gives one",
         "Motion": "solve() gives one",
         "Circuits": "circuits() gives them",

@@ -1,4 +1,4 @@
-"""Names of version 0.1, and what is written for them now."""
+"""Names and modules of former versions, and what is written for them now."""
 
 from __future__ import annotations
 
@@ -7,10 +7,19 @@ from types import MappingProxyType
 
 MOVED: Mapping[str, str] = MappingProxyType(
     {
+        "advantage": "compoundkin.figures",
+        "cams": "compoundkin.figures",
+        "coupler": "compoundkin.figures",
+        "equivalents": "compoundkin.figures",
+        "performance": "compoundkin.figures",
+        "machine": "compoundkin.figures",
+        "composing": "compoundkin.chains",
+        "dyads": "compoundkin.equations",
+        "catalog": "compoundkin.load",
         "Animation": "compoundkin.results.Animation",
-        "CamAnalysis": "compoundkin.cams.CamAnalysis",
+        "CamAnalysis": "compoundkin.results.CamAnalysis",
         "Check": "compoundkin.results.Check",
-        "Composer": "compoundkin.composing.Composer",
+        "Composer": "compoundkin.chains.Composer",
         "CompoundkinError": "compoundkin.errors.CompoundkinError",
         "Finding": "compoundkin.results.Finding",
         "Gap": "compoundkin.results.Gap",
@@ -25,18 +34,18 @@ MOVED: Mapping[str, str] = MappingProxyType(
         "Structure": "compoundkin.results.Structure",
         "UnassembledPoses": "compoundkin.errors.UnassembledPoses",
         "UnknownName": "compoundkin.errors.UnknownName",
-        "cam_analysis": "compoundkin.cams.cam_analysis",
+        "cam_analysis": "compoundkin.figures.cam_analysis",
         "constant_acceleration": "compoundkin.laws.constant_acceleration",
         "constant_speed": "compoundkin.laws.constant_speed",
         "disc": "compoundkin.profiles.disc",
         "draw_structure": 'compoundkin.draw(mechanism, kind="groups")',
         "dwell": "compoundkin.laws.dwell",
-        "equivalent_linkage": "compoundkin.equivalents.equivalent_linkage",
+        "equivalent_linkage": "compoundkin.figures.equivalent_linkage",
         "fall": "compoundkin.laws.fall",
         "formula": "compoundkin.profiles.formula",
         "profile": "compoundkin.profiles.profile",
         "program": "compoundkin.laws.program",
-        "random_mechanism": "compoundkin.composing.random_mechanism",
+        "random_mechanism": "compoundkin.chains.random_mechanism",
         "rendered": "compoundkin.report(mechanism).text()",
         "rise": "compoundkin.laws.rise",
         "save_table": 'compoundkin.save(motion.table(), "motion.csv")',

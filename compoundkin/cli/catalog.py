@@ -68,9 +68,9 @@ def copy(name: str, destination: str | None, force: bool) -> int:
 
 def print_catalog() -> int:
     """Print the names and titles."""
-    from compoundkin.files.shipped_mechanisms import names, path
+    from compoundkin.files.shipped_mechanisms import path, shipped
 
-    titles = {name: tomllib.loads(path(name).read_text(encoding="utf-8"))["title"] for name in names()}
+    titles = {name: tomllib.loads(path(name).read_text(encoding="utf-8"))["title"] for name in shipped()}
     wide = max(map(len, titles), default=0)
     put("".join(f"{name:{wide}}  {title}\n" for name, title in titles.items()))
     return 0

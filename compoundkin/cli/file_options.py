@@ -51,9 +51,9 @@ def to_file(text: str) -> Callable[[F], F]:
 
 def complete_name(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """Return the names of the catalog that complete a word."""
-    from compoundkin.files.shipped_mechanisms import names
+    from compoundkin.files.shipped_mechanisms import shipped
 
-    return [CompletionItem(name) for name in names() if name.startswith(incomplete)]
+    return [CompletionItem(name) for name in shipped() if name.startswith(incomplete)]
 
 
 def complete_mechanism(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:

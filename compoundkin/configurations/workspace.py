@@ -118,8 +118,8 @@ class Workspace(CopiesFields):
     def contains(self, points: Any) -> Number:
         """Tell which places the point reaches, complex or an array of them. Asked of the mechanism, not of the curves.
 
-        >>> from compoundkin.files.shipped_mechanisms import load_named
-        >>> workspace(load_named("five-bar"), "P").contains([59 + 158j, 300 + 0j]).tolist()
+        >>> from compoundkin.files import load
+        >>> workspace(load("five-bar"), "P").contains([59 + 158j, 300 + 0j]).tolist()
         [True, False]
         """
         z = np.asarray(points)

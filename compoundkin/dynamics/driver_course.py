@@ -269,9 +269,9 @@ def force_ratio(motion: Motion, output: Port, driver: str | None = None) -> Numb
 
     Raises UnknownName and InvalidInput as `mechanical_advantage`.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("four-bar-norton"), {"crank": [np.deg2rad(40)]})
+    >>> motion = solve(load("four-bar-norton"), {"crank": [np.deg2rad(40)]})
     >>> force_ratio(motion, "rocker").round(3).tolist()        # Norton: 25 / 6.998
     [3.572]
     """

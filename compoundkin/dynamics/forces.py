@@ -81,11 +81,11 @@ class Forces(DisplaysHtml, ForceResult):
     def undetermined(self) -> tuple[Undetermined, ...]:
         """What equilibrium leaves open, which is NaN in pairs and pins. None unless the mechanism is held by too much.
 
-        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.files import load
         >>> from compoundkin.dynamics.force_analysis import force_analysis
         >>> from compoundkin.kinematics import solve
         >>> units = {"length": "mm", "mass": "kg", "force": "N"}
-        >>> held = load_named("parallelogram-third-crank").replace(unit="", units=units)
+        >>> held = load("parallelogram-third-crank").replace(unit="", units=units)
         >>> forces = force_analysis(solve(held, {"crank": [1.0]}))
         >>> print(forces.undetermined[0])
         A: the force along A B of crank, balanced by forces in D, F, B, C, E

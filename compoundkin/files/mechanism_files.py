@@ -5,27 +5,35 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from compoundkin.base.arguments import checked
 from compoundkin.files import toml_text
 from compoundkin.files.parsed_document import Syntax, known_syntax, parsed, text_of, too_deep, unreadable
 from compoundkin.files.reader import read
+from compoundkin.files.shipped_mechanisms import resolve
 from compoundkin.files.writer import document
 from compoundkin.model.mechanism import Mechanism
 
 
 @checked
 def load(path: str | os.PathLike[str]) -> Mechanism:
-    """Return the mechanism of a TOML or JSON file, distinguished by the suffix.
+    """Return the mechanism of a TOML or JSON file, distinguished by the suffix, or a shipped one by its name.
 
-    Raises InvalidInput for a file that cannot be read, InvalidMechanism listing all problems of its content.
+    Raises InvalidInput for a file that cannot be read, UnknownName for a name that the catalog does not have,
+    InvalidMechanism listing all problems of its content.
 
+    >>> load("six-bar").title
+    'Six-bar of Example 3-4'
     >>> load("no/such.toml")
     Traceback (most recent call last):
     compoundkin.base.errors.InvalidInput: no/such.toml: there is no such file
     """
-    return loads(*text_of(path, "mechanism"), str(path))
+    # a word alone is a name of the catalog, unless there is such a file
+    is_name = isinstance(path, str) and not Path(path).suffix and Path(path).name == path
+    file = resolve(path) if is_name else path
+    return loads(*text_of(file, "mechanism"), str(path))
 
 
 def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:

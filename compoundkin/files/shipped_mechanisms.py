@@ -6,14 +6,10 @@ from functools import cache
 from os import PathLike, fspath
 from os.path import isfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.suffixes import SUFFIXES, suffix_for
-
-if TYPE_CHECKING:
-    from compoundkin.model.mechanism import Mechanism
 
 SUFFIX = suffix_for("mechanism", "toml")
 # A wheel carries the files inside the package; a checkout or an editable install has them beside it.
@@ -27,10 +23,10 @@ def folder() -> Path:
 
 
 @cache
-def names() -> tuple[str, ...]:
+def shipped() -> tuple[str, ...]:
     """Return the names of all shipped mechanisms, in alphabetical order.
 
-    >>> "six-bar" in names()
+    >>> "six-bar" in shipped()
     True
     """
     return tuple(sorted(file.stem for file in folder().glob(f"*{SUFFIX}")))
@@ -46,22 +42,9 @@ def path(name: str) -> Path:
     Traceback (most recent call last):
     compoundkin.base.errors.UnknownName: sixbar: the catalog has no such mechanism; did you mean 'six-bar'?
     """
-    if name not in names():
-        raise UnknownName(Problem(name, "the catalog has no such mechanism", suggestion(name, names())))
+    if name not in shipped():
+        raise UnknownName(Problem(name, "the catalog has no such mechanism", suggestion(name, shipped())))
     return folder() / (name + SUFFIX)
-
-
-@checked
-def load_named(name: str) -> Mechanism:
-    """Return a shipped mechanism by its name. Raises UnknownName with the nearest name there is.
-
-    >>> load_named("six-bar").title
-    'Six-bar of Example 3-4'
-    """
-    # here and not above: to list names, as a shell's completion does, must not cost the time to load NumPy
-    from compoundkin.files import load
-
-    return load(path(name))
 
 
 @checked
@@ -82,14 +65,14 @@ def resolve(name_or_path: str | PathLike[str]) -> Path:
     text = fspath(name_or_path)
     if isfile(text):
         return Path(text)
-    if text in names():
+    if text in shipped():
         return path(text)
     if Path(text).suffix in SUFFIXES["mechanism"] or "/" in text or "\\" in text:
         raise InvalidInput(Problem(text, "there is no such file", _remedy(text)))
-    raise UnknownName(Problem(text, "neither a file nor in the catalog", suggestion(text, names())))
+    raise UnknownName(Problem(text, "neither a file nor in the catalog", suggestion(text, shipped())))
 
 
 def _remedy(text: str) -> str:
     """Return a bare file name that is a catalog name with a suffix. Say so."""
     stem = Path(text).stem
-    return f"the catalog's mechanism is called {stem!r}" if text == stem + SUFFIX and stem in names() else ""
+    return f"the catalog's mechanism is called {stem!r}" if text == stem + SUFFIX and stem in shipped() else ""

@@ -25,7 +25,7 @@ class PathValues(Mapping[str, Any]):
     all close. `look` is what was found of designs near limits, if any came near one.
 
     >>> import compoundkin as ck
-    >>> found = ck.compile(ck.catalog.load_named("slider-crank"), ["B", "B.x"])([0.0, 1.0])
+    >>> found = ck.compile(ck.load("slider-crank"), ["B", "B.x"])([0.0, 1.0])
     >>> found, list(found), found["B.x"].shape
     (PathValues(B, B.x at (2,) poses), ['B', 'B.x'], (2,))
     """
@@ -83,7 +83,7 @@ class PathValues(Mapping[str, Any]):
         where it has no pose at all.
 
         >>> import compoundkin as ck
-        >>> found = ck.compile(ck.catalog.load_named("slider-crank"), "B")()
+        >>> found = ck.compile(ck.load("slider-crank"), "B")()
         >>> ck.gaps(found.motion())
         ()
         """

@@ -123,9 +123,9 @@ def independent_loops(structure: LinksAndPairs) -> tuple[Loop, ...]:
 def loops_through(structure: LinksAndPairs, pairs: Sequence[Pair]) -> tuple[Loop, ...]:
     """Return a basis of the independent loops that some of the pairs close.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
-    >>> structure = decompose(load_named("geared-five-bar"))
+    >>> structure = decompose(load("geared-five-bar"))
     >>> len(loops_through(structure, [pair for pair in structure.pairs if pair.held == 2]))
     1
     """
@@ -142,9 +142,9 @@ def simple_loops(structure: LinksAndPairs, limit: int | None = None, longest: in
     `longest` leaves out loops of more links. A multiple pin of k links is k - 1 pairs, as everywhere.
     Source: D. B. Johnson, Finding all the elementary circuits of a directed graph, SIAM J. Comput. 4 (1975) 77.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
-    >>> [len(loop) for loop in simple_loops(decompose(load_named("stephenson-iii")))]
+    >>> [len(loop) for loop in simple_loops(decompose(load("stephenson-iii")))]
     [4, 5, 5]
     """
     import networkx

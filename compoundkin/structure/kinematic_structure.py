@@ -58,9 +58,9 @@ class Structure(DisplaysPicture):
     def translating_links(self) -> dict[str, str]:
         """The links that cannot turn, only slides joining them to the frame. Each with its slide, the frame without.
 
-        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.files import load
         >>> from compoundkin.structure import decompose
-        >>> decompose(load_named("slider-crank")).translating_links
+        >>> decompose(load("slider-crank")).translating_links
         {'frame': '', 'piston': 'stroke'}
         """
         found = {FRAME: ""}

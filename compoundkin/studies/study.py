@@ -94,7 +94,7 @@ def study(
     Raises InvalidInput and UnknownName for what cannot be computed, before anything is.
 
     >>> import compoundkin as ck
-    >>> press = ck.catalog.load_named("crank-rocker")
+    >>> press = ck.load("crank-rocker")
     >>> studied = ck.study(press, {"crank.B.x": (1.8, 2.2)}, ["rocker.angle.stroke"], count=64, seed=1)
     >>> result = studied.run()
     >>> len(result), bool(result.assembled.all())

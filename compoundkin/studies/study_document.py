@@ -420,8 +420,8 @@ def is_angle_dimension(mechanism: Mechanism, driven_angles: Mapping[str, bool], 
 
     Points and names that there are not are none.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> six_bar = load_named("six-bar")
+    >>> from compoundkin.files import load
+    >>> six_bar = load("six-bar")
     >>> [is_angle_dimension(six_bar, {"crank": True}, name) for name in ("slot.angle", "crank.D")]
     [True, False]
     """

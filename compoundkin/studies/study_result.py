@@ -34,7 +34,7 @@ class StudyResult(DisplaysHtml, ShortRepr):
     Angles are radians, vectors complex; what does not assemble is NaN, False in "assembled", and has a "reason".
 
     >>> import compoundkin as ck
-    >>> crank_rocker = ck.catalog.load_named("crank-rocker")
+    >>> crank_rocker = ck.load("crank-rocker")
     >>> result = ck.study(crank_rocker, {"crank.B.x": (1.8, 2.2)}, "rocker.angle.stroke", count=64).run()
     >>> result.names[:4], len(result)
     (('row', 'crank.B.x', 'rocker.angle.stroke', 'assembled'), 64)

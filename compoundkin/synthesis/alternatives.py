@@ -79,8 +79,8 @@ def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None 
     the present ones at a time is put elsewhere. Nothing is solved; it holds for generic dimensions. None without a
     freedom. Raises InvalidInput where there are still too many choices, UnknownName for a frame that is no link.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> table = alternatives(load_named("stephenson-iii-driven-at-dyad"), frames=["frame"])
+    >>> from compoundkin.files import load
+    >>> table = alternatives(load("stephenson-iii-driven-at-dyad"), frames=["frame"])
     >>> [(str(choice.drivers[0]), choice.class_) for choice in table][:2]
     [('AB on frame (A)', 2), ('FG on frame (G)', 3)]
     """

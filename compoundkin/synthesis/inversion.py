@@ -47,9 +47,9 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
 
     Raises UnknownName for a link that there is not.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.synthesis.chains import structure_name
-    >>> inverted = with_frame(load_named("slider-crank"), "crank")
+    >>> inverted = with_frame(load("slider-crank"), "crank")
     >>> list(inverted.links), structure_name(decompose(inverted)).title
     (['frame', 'old frame', 'rod', 'piston'], 'inverted slider-crank with turning or oscillating guide')
     """
@@ -86,8 +86,8 @@ def with_driver(
     Raises UnknownName for a link or driver that there is not, InvalidInput where it is not said which driver is meant,
     InvalidMechanism where the two links have no pair to drive.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> driven = with_driver(load_named("four-bar-norton"), "rocker")
+    >>> from compoundkin.files import load
+    >>> driven = with_driver(load("four-bar-norton"), "rocker")
     >>> [drive.name for drive in driven.drives]
     ['rocker']
     """
@@ -241,9 +241,9 @@ def found_law(motion: Motion, link: str, on: str = FRAME, *, pair: str = "") -> 
     polynomials in between. Raises InvalidInput where the two links have no such pair, for a motion that is not in time
     or of several designs, and where it cannot be followed: from when to when, and why.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> led = solve(load_named("five-bar-led"))
+    >>> led = solve(load("five-bar-led"))
     >>> found_law(led, "left").coordinate(0.0, order=0).c[0].__class__.__name__
     'float'
     """
@@ -260,9 +260,9 @@ def driven_forward(motion: Motion, *drivers: str | Drive) -> Mechanism:
     found. Dimensions and assembly are kept; it is drawn as in the motion, and solved at its times. Raises InvalidInput
     as `found_law` does.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> forward = driven_forward(solve(load_named("five-bar-led")), "left", "right")
+    >>> forward = driven_forward(solve(load("five-bar-led")), "left", "right")
     >>> [drive.name for drive in forward.drives]
     ['left', 'right']
     """

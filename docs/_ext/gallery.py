@@ -13,7 +13,7 @@ import numpy as np
 from sphinx.application import Sphinx
 
 import compoundkin as ck
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load, shipped_mechanisms
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.symbols import Outline, Strap, Track, Wheel
 from compoundkin.structure import roman
@@ -72,7 +72,7 @@ compoundkin report {name}{forces}
 ```python
 import compoundkin as ck
 
-motion = ck.solve(ck.catalog.load_named("{name}"))
+motion = ck.solve(ck.load("{name}"))
 ```
 """
 
@@ -135,8 +135,8 @@ def marks_of(mechanism: ck.Mechanism) -> set[type]:
 
 def chosen(names: str) -> dict[str, ck.Mechanism]:
     """The mechanisms of the gallery by name: those that are named, or all."""
-    wanted = names.split(",") if names else shipped_mechanisms.names()
-    return {name: shipped_mechanisms.load_named(name) for name in wanted}
+    wanted = names.split(",") if names else shipped_mechanisms.shipped()
+    return {name: load(name) for name in wanted}
 
 
 def files(mechanisms: Mapping[str, ck.Mechanism]) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests.support import drawn_values, random_sketch
 
 KINDS = [("RRR",), ("RRP",), ("RPR",), ("RRR", "RPR"), ("RRP", "RRR"), ("PRP", "RRR")]
@@ -28,7 +28,7 @@ def _own_motion(name: str) -> ck.results.Motion:
 
 
 def _solved(name: str, **words: Any) -> ck.results.Motion:
-    mechanism = load_named(name)
+    mechanism = load(name)
     return ck.solve(mechanism, speed={drive.name: 1.0 for drive in mechanism.drives if drive.law is None}, **words)
 
 

@@ -8,7 +8,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis import coupler
 from compoundkin.analysis.mechanical_advantage import ForcePort, TorquePort, mechanical_advantage
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests.analysis.relative_motions import catalog, random_mechanism
 from tests.support import differences, drawn_values
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledP
 
 def test_four_bar_of_norton() -> None:
     """Norton, Example 6-7: crank at 25 rad/s, rocker at 6.998, coupler at -4.121."""
-    motion = ck.solve(load_named("four-bar-norton"), {"crank": [np.deg2rad(40.0)]})
+    motion = ck.solve(load("four-bar-norton"), {"crank": [np.deg2rad(40.0)]})
     assert mechanical_advantage(motion, "rocker", "crank").velocity_ratio == pytest.approx(6.998 / 25, abs=5e-5)
     assert mechanical_advantage(motion, "coupler", "crank").advantage == pytest.approx(-25 / 4.121, abs=2e-3)
 
@@ -79,7 +79,7 @@ def test_ratios_against_differences_of_the_positions(seed: int) -> None:
 
 
 def test_advantages_multiply_along_the_mechanism_and_invert() -> None:
-    motion = ck.solve(load_named("six-bar"), {"crank": np.linspace(0.3, 1.2, 7)}, speed=10.0)
+    motion = ck.solve(load("six-bar"), {"crank": np.linspace(0.3, 1.2, 7)}, speed=10.0)
     ab, bc, ac = (
         mechanical_advantage(motion, *ports).advantage
         for ports in (("rocker", "crank"), ("bar", "rocker"), ("bar", "crank"))
@@ -109,7 +109,7 @@ def test_torque_between_two_moving_links_and_a_pair_by_name() -> None:
 
 @pytest.mark.parametrize("speed", [1e-3, 7.0, -2.0])
 def test_advantage_does_not_depend_on_speed_and_acceleration(speed: float) -> None:
-    mechanism = load_named("crank-shaper")
+    mechanism = load("crank-shaper")
     values = {mechanism.drives[0].name: np.linspace(0.4, 2.0, 5)}
     driver, output = mechanism.drives[0].name, list(mechanism.links)[-1]
     one, two = (ck.solve(mechanism, values, speed=s, acceleration=s) for s in (1.0, speed))
@@ -147,8 +147,8 @@ def test_bad_input_says_what_is_wrong() -> None:
     with pytest.raises(ck.errors.InvalidInput, match=r"output.angle: 'up' is not an angle"):
         mechanical_advantage(motion, ForcePort("coupler", "C", "up"), "crank")
     with pytest.raises(ck.errors.InvalidInput, match="no driver moves"):
-        mechanical_advantage(ck.solve(load_named("crank-rocker"), speed=0.0), "rocker", "crank")
+        mechanical_advantage(ck.solve(load("crank-rocker"), speed=0.0), "rocker", "crank")
     with pytest.raises(ck.errors.InvalidInput, match="solved to order 0"):
-        mechanical_advantage(ck.solve(load_named("crank-rocker"), order=0), "rocker", "crank")
+        mechanical_advantage(ck.solve(load("crank-rocker"), order=0), "rocker", "crank")
     with pytest.raises(ck.errors.InvalidInput, match="several drivers move at once"):
         mechanical_advantage(catalog("five-bar"), "left", "right")

@@ -23,9 +23,9 @@ SWING = ck.laws.program(
 )
 
 
-def analysed(cam: Any, angles: Any, speed: float = 1.0) -> ck.cams.CamAnalysis:
+def analysed(cam: Any, angles: Any, speed: float = 1.0) -> ck.results.CamAnalysis:
     motion = ck.solve(mechanism(cam), {"cam": angles}, speed=speed)
-    return ck.cams.cam_analysis(motion, motion.mechanism.written_pairs[-1].name)
+    return ck.figures.cam_analysis(motion, motion.mechanism.written_pairs[-1].name)
 
 
 def test_pressure_angle_of_an_offset_roller() -> None:
@@ -110,7 +110,7 @@ def test_a_roller_spins_as_it_rolls() -> None:
         ck.drive("cam", speed=2.0),
     )
     motion = ck.solve(mechanism_, {"cam": np.linspace(0.0, 6.0, 25)})
-    found = ck.cams.cam_analysis(motion, "follower/cam")
+    found = ck.figures.cam_analysis(motion, "follower/cam")
     bar = motion.points["P"].position - 10 * np.exp(1j * np.linspace(0.0, 6.0, 25))
     speed = motion.points["P"].velocity - 20j * np.exp(1j * np.linspace(0.0, 6.0, 25))
     turning = (np.conj(bar) * speed).imag / np.abs(bar) ** 2
@@ -124,8 +124,8 @@ def test_hollows_that_are_bridged() -> None:
     base = ck.link("frame", A=0), ck.link("cam", A=0), ck.link("follower", P=0), ck.drive("cam")
     slide = ck.slide("follower", on="frame", through="A", angle=np.pi / 2)
 
-    def analysis(pair: Any) -> ck.cams.CamAnalysis:
-        return ck.cams.cam_analysis(ck.solve(ck.Mechanism("bean", *base, slide, pair)), "follower/cam")
+    def analysis(pair: Any) -> ck.results.CamAnalysis:
+        return ck.figures.cam_analysis(ck.solve(ck.Mechanism("bean", *base, slide, pair)), "follower/cam")
 
     face = analysis(ck.face("follower", on="cam", profile=bean, angle=np.pi / 2))
     assert len(face.untouched) == 2
@@ -163,7 +163,7 @@ def test_the_end_of_an_open_profile() -> None:
     )
     for reach, near in ((30.0, False), (49.5, True)):
         drive = ck.drive("plate", values=np.linspace(-20.0, reach, 50))
-        found = ck.cams.cam_analysis(ck.solve(ck.Mechanism("slot", *parts, drive)), "pin/plate")
+        found = ck.figures.cam_analysis(ck.solve(ck.Mechanism("slot", *parts, drive)), "pin/plate")
         assert any("end of the open profile" in w for w in found.warnings) is near
 
 
@@ -171,11 +171,11 @@ def test_what_cannot_be_analysed() -> None:
     cam = ck.profiles.synthesise(RISE, base=40)
     motion = ck.solve(mechanism(cam))
     with pytest.raises(ck.errors.UnknownName, match="did you mean 'follower/cam'"):
-        ck.cams.cam_analysis(motion, "folower/cam")
+        ck.figures.cam_analysis(motion, "folower/cam")
     with pytest.raises(ck.errors.InvalidInput, match="a prismatic pair has no profile"):
-        ck.cams.cam_analysis(motion, "guide")
+        ck.figures.cam_analysis(motion, "guide")
     with pytest.raises(ck.errors.InvalidInput, match="no velocities"):
-        ck.cams.cam_analysis(ck.solve(mechanism(cam), order=0), "follower/cam")
+        ck.figures.cam_analysis(ck.solve(mechanism(cam), order=0), "follower/cam")
 
 
 def test_the_report_has_a_section_on_cams() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis import coupler
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests.analysis.relative_motions import catalog, fastest, random_mechanism, turning_pairs
 from tests.catalog import CHOSEN
 from tests.support import differences, drawn_values
@@ -42,7 +42,7 @@ def test_oldham_block_rolls_in_a_circle_of_twice_its_size() -> None:
 
 def test_cranks_of_the_antiparallelogram_are_rolling_ellipses() -> None:
     """F. Reuleaux (1875): foci are the pins of each crank, the major axis is the length of the long links."""
-    motion = ck.solve(load_named("antiparallelogram"), {"crank": np.linspace(0.2, 2.9, 40)})
+    motion = ck.solve(load("antiparallelogram"), {"crank": np.linspace(0.2, 2.9, 40)})
     curves = coupler.centrodes(motion, "follower", on="crank")
     for locus in (curves.fixed, curves.moving):
         assert np.abs(locus) + np.abs(locus - 30.0) == pytest.approx(60.0, abs=1e-9)
@@ -73,7 +73,7 @@ def test_pole_of_a_slide_is_at_infinity_across_the_guide_also_where_it_turns_bac
 
 
 def test_pole_of_a_parallelogram_is_at_infinity_along_the_cranks() -> None:
-    motion = ck.solve(load_named("parallelogram"), {"crank": np.linspace(0.3, 2.8, 12)})
+    motion = ck.solve(load("parallelogram"), {"crank": np.linspace(0.3, 2.8, 12)})
     found = coupler.pole(motion, "coupler")
     along = np.exp(1j * motion.links["crank"].angle)
     assert found.infinite.all()
@@ -92,7 +92,7 @@ def test_pole_of_a_pin_is_the_pin() -> None:
 def test_pole_of_a_rocker_at_the_end_of_its_swing_is_the_limit() -> None:
     """Crank 2 and coupler 5 in line: the rocker 4 stands still, and only second derivatives tell its pole."""
     dead = np.arccos((7.0**2 + 5.5**2 - 4.0**2) / (2 * 7.0 * 5.5))
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     found = coupler.pole(ck.solve(mechanism, {"crank": [dead, dead + 0.1]}), "rocker")
     assert found.defined.all()
     assert found.world == pytest.approx(5.5, abs=1e-6)
@@ -167,7 +167,7 @@ def test_pole_velocities_against_numeric_differentiation(seed: int) -> None:
 
 def test_arc_lengths_of_both_centrodes_are_equal() -> None:
     """Measured along the polygons of the loci themselves, 20,000 chords."""
-    motion = ck.solve(load_named("crank-rocker"), {"crank": np.linspace(1.0, 2.5, 20001)})
+    motion = ck.solve(load("crank-rocker"), {"crank": np.linspace(1.0, 2.5, 20001)})
     curves = coupler.centrodes(motion, "coupler")
     fixed, moving = (np.cumsum(np.abs(np.diff(locus))) for locus in (curves.fixed, curves.moving))
     assert fixed[-1] > 1.0
@@ -240,7 +240,7 @@ def test_links_seen_from_links_give_velocities_and_accelerations() -> None:
 
 
 def test_designs_keep_their_axes_and_a_single_pose_its_own() -> None:
-    mechanism = load_named("elliptic-trammel")
+    mechanism = load("elliptic-trammel")
     rod = ck.link("rod", A=(0, 0), B=(np.array([[2.0], [3.0]]), np.zeros((2, 1))), M=0.5, P=(1, 0.5))
     motion = ck.solve(mechanism.replace(rod), {"rod": np.linspace(2.0, 3.0, 5)})
     curves = coupler.centrodes(motion, "rod")
@@ -269,7 +269,7 @@ def test_links_that_never_move_relative_to_each_other_have_no_pole() -> None:
 
 
 def test_bad_input_says_what_is_wrong() -> None:
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     motion = ck.solve(mechanism, order=1)
     with pytest.raises(ck.errors.UnknownName, match="did you mean 'coupler'"):
         coupler.pole(motion, "couplr")

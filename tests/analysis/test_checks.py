@@ -147,7 +147,7 @@ def test_a_motion_through_change_points_passes(by):
         return ck.laws.rise(angle, 1.0, "4-5-6-7")
 
     law = ck.laws.program(half_turn(np.pi + by), ck.laws.dwell(0.5), half_turn(np.pi - by))
-    mechanism = ck.catalog.load_named("parallelogram").replace(ck.drive("crank", law=law))
+    mechanism = ck.load("parallelogram").replace(ck.drive("crank", law=law))
     with warnings.catch_warnings(action="ignore", category=ck.errors.ChangePointWarning):
         motion = ck.solve(mechanism, time=np.linspace(0.0, 2.5, 251), order=3)
     check = ck.verify(motion)

@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis import coupler
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests.analysis.relative_motions import catalog, fastest, random_mechanism, turning_pairs
 from tests.catalog import CHOSEN
 from tests.support import differences, drawn_values
@@ -100,7 +100,7 @@ def test_exact_straight_lines_are_inflections_all_along() -> None:
 
 def test_the_point_of_watts_linkage_is_straight_to_the_third_derivative() -> None:
     """In the middle of the figure of eight the tangent has four neighbouring points in common with it and more."""
-    motion = ck.solve(load_named("watt-straight-line"), {"arm-1": 0.0}, order=3)
+    motion = ck.solve(load("watt-straight-line"), {"arm-1": 0.0}, order=3)
     assert coupler.path_curvature(motion, "coupler", "P").inflection
     assert coupler.curvature_rate(motion, "coupler", "P") == pytest.approx(0.0, abs=1e-12)
 
@@ -143,7 +143,7 @@ def test_circles_of_bresse_and_the_acceleration_pole(seed: int) -> None:
 
 def test_circles_of_a_rod_that_translates_for_a_moment_are_lines() -> None:
     """A slider-crank with the crank upright: the pole is at infinity, the inflection circle a straight line."""
-    motion = ck.solve(load_named("slider-crank"), {"crank": np.pi / 2}, speed=1.6, acceleration=0.9)
+    motion = ck.solve(load("slider-crank"), {"crank": np.pi / 2}, speed=1.6, acceleration=0.9)
     circle, tangential = coupler.inflection_circle(motion, "rod"), coupler.tangential_circle(motion, "rod")
     for line in (circle, tangential):
         assert line.is_line
@@ -164,7 +164,7 @@ def test_circles_of_a_rod_that_translates_for_a_moment_are_lines() -> None:
 
 
 def test_circle_of_the_tangential_accelerations_at_constant_turning_is_the_pole_normal() -> None:
-    motion = ck.solve(load_named("elliptic-trammel"), {"rod": [2.0]}, speed=1.0, acceleration=0.0)
+    motion = ck.solve(load("elliptic-trammel"), {"rod": [2.0]}, speed=1.0, acceleration=0.0)
     line, frame = coupler.tangential_circle(motion, "rod"), coupler.canonical_frame(motion, "rod")
     assert line.is_line.all()
     assert line.offset(frame.origin + 2.0 * frame.normal) == pytest.approx(0.0, abs=1e-12)
@@ -183,7 +183,7 @@ def test_pins_have_an_inflection_circle_of_no_size() -> None:
 
 
 def test_a_point_at_the_pole_has_a_cusp() -> None:
-    motion = ck.solve(load_named("crank-rocker"), {"crank": np.linspace(1.0, 2.0, 5)})
+    motion = ck.solve(load("crank-rocker"), {"crank": np.linspace(1.0, 2.0, 5)})
     at_pole = coupler.pole(motion, "coupler").moving
     for way in (coupler.path_curvature, coupler.euler_savary):
         found = way(motion, "coupler", at_pole)
@@ -195,7 +195,7 @@ def test_a_point_at_the_pole_has_a_cusp() -> None:
 def test_diameter_is_pole_velocity_by_angular_velocity_and_joins_the_centrodes() -> None:
     """1/rho_fixed - 1/rho_moving = 1/d, with both curvatures measured on the loci by differences."""
     step = 1e-3
-    motion = ck.solve(load_named("crank-rocker"), {"crank": 1.3 + step * np.arange(-4, 5)}, order=3)
+    motion = ck.solve(load("crank-rocker"), {"crank": 1.3 + step * np.arange(-4, 5)}, order=3)
     curves, frame = coupler.centrodes(motion, "coupler"), coupler.canonical_frame(motion, "coupler")
     turning = motion.links["coupler"].angular_velocity
     assert frame.diameter == pytest.approx(np.abs(coupler.pole_velocity(motion, "coupler") / turning), rel=1e-9)
@@ -224,7 +224,7 @@ def test_balls_point_is_straight_to_the_third_derivative(seed: int) -> None:
 
 
 def test_points_of_the_cubic_keep_their_curvature_and_moving_pins_are_on_it() -> None:
-    motion = ck.solve(load_named("crank-rocker"), {"crank": np.linspace(0.9, 2.4, 7)}, order=3)
+    motion = ck.solve(load("crank-rocker"), {"crank": np.linspace(0.9, 2.4, 7)}, order=3)
     cubic = coupler.stationary_curvature(motion, "coupler")
     for letter in ("B", "C"):
         assert cubic.residual(np.asarray(motion.points[letter].position)) == pytest.approx(0.0, abs=1e-9)
@@ -237,7 +237,7 @@ def test_points_of_the_cubic_keep_their_curvature_and_moving_pins_are_on_it() ->
 
 def test_change_of_curvature_against_differences_of_the_curvature() -> None:
     step = 1e-3
-    motion = ck.solve(load_named("crank-rocker"), {"crank": 1.3 + step * np.arange(-4, 5)}, order=3)
+    motion = ck.solve(load("crank-rocker"), {"crank": 1.3 + step * np.arange(-4, 5)}, order=3)
     bend = coupler.path_curvature(motion, "coupler", (2.0, 1.5)).curvature
     speed = motion.links["coupler"].at((2.0, 1.5)).speed
     expected = differences(bend, step)[0] / speed[4]
@@ -311,7 +311,7 @@ def test_poses_that_have_no_rates_are_masked() -> None:
 
 
 def test_bad_input_says_what_is_wrong() -> None:
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     low, still = ck.solve(mechanism, order=1), ck.solve(mechanism, speed=0.0, acceleration=1.0)
     circles = (coupler.inflection_circle, coupler.tangential_circle)
     for found in (coupler.canonical_frame, *circles, coupler.acceleration_pole):

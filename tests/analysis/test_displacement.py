@@ -14,7 +14,7 @@ import compoundkin as ck
 from compoundkin.base.arrays import wrapped
 from tests.analysis import relative_motions
 
-coupler = ck.coupler
+coupler = ck.figures
 Position = coupler.LinkPosition
 SEEDS = st.integers(0, 2**32 - 1)
 MANY = 50
@@ -100,7 +100,7 @@ def test_image_poles_are_the_points_that_come_to_the_poles(seed: int) -> None:
 
 def test_translations_have_poles_at_infinity() -> None:
     """The coupler of a parallelogram; and of three positions, of which two are a translation apart."""
-    motion = ck.solve(ck.catalog.load_named("parallelogram"))
+    motion = ck.solve(ck.load("parallelogram"))
     first, later = coupler.link_position(motion, "coupler", 0), coupler.link_position(motion, "coupler", range(1, 20))
     found = coupler.displacement(first, later)
     assert found.infinite.all()
@@ -135,7 +135,7 @@ def test_the_pole_of_a_small_displacement_is_the_instant_centre() -> None:
     """From poses a little before to as much after, so that the error falls with the square of the step."""
     gaps = []
     for step in (0.02, 0.01):
-        motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0 - step, 1.0, 1.0 + step]})
+        motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0 - step, 1.0, 1.0 + step]})
         found = coupler.displacement(*(coupler.link_position(motion, "coupler", k) for k in (0, 2)))
         gaps.append(abs(found.pole - coupler.pole(motion, "coupler").fixed[1]) / motion.size)
     assert gaps[1] < 1e-3

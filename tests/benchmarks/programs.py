@@ -162,7 +162,7 @@ def pylinkage() -> None:
 
 def class_three() -> None:
     """A class III group over a sweep of designs."""
-    plan, crank = ck.catalog.load_named("class-iii-six-bar"), np.linspace(0.0, 2 * np.pi, FEW)
+    plan, crank = ck.load("class-iii-six-bar"), np.linspace(0.0, 2 * np.pi, FEW)
     lengths = np.linspace(1.9, 2.0, 256)[:, None]
     swept = plan.replace(ck.link("crank", O=0, A3=lengths))
     subjects: Subjects = {"solve": lambda: ck.solve(swept, {"crank": crank}, speed=1.0)}

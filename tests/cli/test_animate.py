@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 
 import compoundkin as ck
 from compoundkin.cli import cli, shell
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests import catalog
 
 PAGE = (Path(__file__).parents[2] / "docs" / "animation.md").read_text("utf-8")
@@ -100,7 +100,7 @@ def test_the_commands_of_the_page_are_understood() -> None:
     for line in commands:
         name, *args = shlex.split(line, comments=True)
         context = cli.get_command(None, name).make_context(name, args, resilient_parsing=False)  # type: ignore[arg-type,union-attr]
-        load_named(context.params["file"])
+        load(context.params["file"])
 
 
 def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,6 +114,6 @@ def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_a_short_range_of_its_own_is_shown_finely(run: Run) -> None:
-    assert run("five-bar").stdout == ck.animate(load_named("five-bar")).svg
+    assert run("five-bar").stdout == ck.animate(load("five-bar")).svg
     coarse = run("five-bar", "--drive", "left=60:120:3", "--drive", "right=75:105:1.5")
     assert coarse.stdout == catalog.motion("five-bar").animate().svg

@@ -139,7 +139,7 @@ def test_a_file_takes_its_form_from_its_name(run: Run, tmp_path: Path) -> None:
 
 
 # every third; of all others tests/analysis/centres/test_catalog.py tells that they agree
-@pytest.mark.parametrize("name", shipped_mechanisms.names()[::3])
+@pytest.mark.parametrize("name", shipped_mechanisms.shipped()[::3])
 def test_mechanisms_fit_80_columns_and_agree(run: Run, name: str) -> None:
     result = run("centres", name)
     assert result.exit_code == 0

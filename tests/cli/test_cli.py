@@ -213,7 +213,7 @@ def test_solve_prints_the_motion_as_csv(run: Run) -> None:
 
 def test_solve_chosen_outputs_in_order(run: Run) -> None:
     found = rows(run("solve", "six-bar", "--at", "35", "--output", "bar,G.velocity", "--output", "A.speed").stdout)
-    motion = ck.solve(shipped_mechanisms.load_named("six-bar"), {"crank": ck.deg(35)})
+    motion = ck.solve(load("six-bar"), {"crank": ck.deg(35)})
     assert list(found[0]) == ["crank.value [deg]", "bar [deg]", "G.velocity.x [mm/s]", "G.velocity.y [mm/s]",
                               "A.speed [mm/s]", "assembled"]  # fmt: skip
     assert float(found[0]["A.speed [mm/s]"]) == pytest.approx(float(motion.points["A"].speed), rel=1e-15)
@@ -322,7 +322,7 @@ def test_json_tables_have_null_where_nothing_is_assembled(run: Run, broken: str,
 
 def test_the_catalog_lists_every_name_and_title(run: Run) -> None:
     lines = run("catalog").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == list(shipped_mechanisms.names())
+    assert [line.split()[0] for line in lines] == list(shipped_mechanisms.shipped())
     assert any(line.endswith("Six-bar of Example 3-4") for line in lines)
     assert run("catalog", "list").stdout.splitlines() == lines
 

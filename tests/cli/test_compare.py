@@ -42,7 +42,7 @@ def test_a_file_is_imported_and_is_the_same(linkage: str) -> None:
 
 
 def test_links_stand_for_files_in_every_spelling() -> None:
-    link = ck.exchange.write(ck.catalog.load_named("jansen-leg"), "pmks+").text.strip()
+    link = ck.exchange.write(ck.load("jansen-leg"), "pmks+").text.strip()
     bare = link.partition("?")[2]
     assert len(bare) > 255  # than which no file has a longer name
     told = [run("structure", spelt) for spelt in (link, link.removeprefix("https://"), bare)]
@@ -61,7 +61,7 @@ def test_nothing_is_replaced_unless_forced(linkage: str) -> None:
 
 
 def test_what_differs_has_its_own_exit_code(tmp_path: Path) -> None:
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     longer = 1.0001 * complex(mechanism.geometry.points["crank"]["B"])
     ck.save(mechanism.replace(ck.link("crank", A=0, B=longer)), tmp_path / "longer.toml")
     other = str(tmp_path / "longer.toml")

@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 
 from compoundkin.base.suffixes import SUFFIXES
 from compoundkin.cli import cli
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.quantities import quantity
 
@@ -36,8 +36,8 @@ def test_the_function_is_called_as_the_file_and_has_its_outputs(tmp_path: Path) 
     names: dict[str, object] = {}
     exec(path.read_text(encoding="utf-8"), names)
     found = names["bar"](0.5)  # type: ignore[operator]
-    solved = solve(load_named("six-bar"), {"crank": [0.5]})
-    for name in load_named("six-bar").outputs:
+    solved = solve(load("six-bar"), {"crank": [0.5]})
+    for name in load("six-bar").outputs:
         for one in quantity(solved, name).components:
             assert found[one.name.replace(".", "_")] == pytest.approx(float(np.ravel(one.values)[0]), rel=1e-12)
     moved = names["bar"](0.5, plate_C_x=12.0)  # type: ignore[operator]

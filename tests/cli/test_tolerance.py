@@ -45,7 +45,7 @@ def test_the_report_tells_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert "What contributes" in text
     assert "clearance C" in text
     found = ck.tolerance(
-        ck.catalog.load_named("six-bar"), {"crank.D": 0.05}, "G.x.stroke", clearance={"C": 0.01},
+        ck.load("six-bar"), {"crank.D": 0.05}, "G.x.stroke", clearance={"C": 0.01},
         values=ck.deg(range(0, 361, 20)),
     )  # fmt: skip
     assert f"{float(found['G.x.stroke'].deviation):.4g}" in text
@@ -59,7 +59,7 @@ def test_angles_are_in_degrees() -> None:
                 "--bands")  # fmt: skip
     (band,) = rows(found.stdout)
     angle, low, high = (float(band[f"bar.angle{word}"]) for word in ("", ".low", ".high"))
-    assert angle == pytest.approx(np.rad2deg(ck.solve(ck.catalog.load_named("six-bar"), ck.deg(40)).links["bar"].angle))
+    assert angle == pytest.approx(np.rad2deg(ck.solve(ck.load("six-bar"), ck.deg(40)).links["bar"].angle))
     assert (low - angle, high - angle) == (pytest.approx(-0.2, rel=1e-6), pytest.approx(0.1, rel=1e-6))
 
 

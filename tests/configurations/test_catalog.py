@@ -9,19 +9,20 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files import load
+from compoundkin.files.shipped_mechanisms import shipped
 from tests import catalog
 from tests.configurations.mechanisms import four_bar
 from tests.configurations.test_random import check_counts
 
 # Those that are special too: change points, several drivers, slides as drivers, gears.
-CHOSEN = sorted({*(names()[::2] if catalog.EVERYTHING else catalog.CHOSEN), "parallelogram", "antiparallelogram",
+CHOSEN = sorted({*(shipped()[::2] if catalog.EVERYTHING else catalog.CHOSEN), "parallelogram", "antiparallelogram",
                  "scott-russell", "pantograph", "stephenson-iii", "hydraulic-digger", "planetary-train",
                  "rack-and-pinion-steering", "class-iii-six-bar"})  # fmt: skip
 
 
 def of(name: str) -> Circuits:
-    mechanism = load_named(name)
+    mechanism = load(name)
     return ck.circuits(mechanism, mechanism.drives[0].name)
 
 
@@ -76,11 +77,11 @@ def test_circuits_of_different_number_are_not_connected() -> None:
 )
 def test_wrong_words(words: dict[str, object], text: str) -> None:
     with pytest.raises(ck.errors.InvalidInput, match=text):
-        ck.circuits(load_named("crank-rocker"), **words)  # type: ignore[arg-type]
+        ck.circuits(load("crank-rocker"), **words)  # type: ignore[arg-type]
 
 
 def test_a_range_is_kept_to() -> None:
-    found = ck.circuits(load_named("triple-rocker"), between=(-0.5, 1.0))
+    found = ck.circuits(load("triple-rocker"), between=(-0.5, 1.0))
     assert [circuit.closed for circuit in found.circuits] == [False, False]
     assert {(branch.low, branch.high) for branch in found.branches} == {(-0.5, 1.0)}
     assert {branch.open_ends for branch in found.branches} == {("the end of the range",) * 2}
@@ -88,7 +89,7 @@ def test_a_range_is_kept_to() -> None:
 
 def test_class_iii_six_bar_over_a_cycle_takes_little_time() -> None:
     """361 poses with all configurations at each."""
-    mechanism, values = load_named("class-iii-six-bar"), np.deg2rad(np.arange(361.0))
+    mechanism, values = load("class-iii-six-bar"), np.deg2rad(np.arange(361.0))
     ck.configurations(mechanism, values)
     start = time.process_time()
     found = ck.configurations(mechanism, values)

@@ -12,7 +12,7 @@ from compoundkin.configurations.general_segments import _add
 from compoundkin.view.report.configurations_section import configurations_report
 from tests.configurations.mechanisms import four_bar
 
-COGNATES = ck.catalog.load_named("roberts-cognates")
+COGNATES = ck.load("roberts-cognates")
 SEVEN = ("frame", "crank", "coupler", "rocker", "crank-2", "coupler-2", "rocker-2")
 
 
@@ -57,7 +57,7 @@ def test_ordinary_configurations_are_not_searched_for_curves(monkeypatch: pytest
     module = sys.modules["compoundkin.configurations.enumeration"]
     monkeypatch.setattr(module, "resting_curve", lambda *_: pytest.fail("searched"))
     assert ck.configurations(four_bar(1, 3, 3, 4), {"crank": 1.0}).curve is None
-    assert ck.configurations(ck.catalog.load_named("stephenson-iii"), {}).curve is None
+    assert ck.configurations(ck.load("stephenson-iii"), {}).curve is None
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 7.0])

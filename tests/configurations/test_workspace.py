@@ -27,7 +27,7 @@ def arm(*more: float) -> ck.Mechanism:
 ])  # fmt: skip
 def test_serial_arms_reach_an_annulus(robot: ck.Mechanism, radii: tuple[float, float]) -> None:
     """Its radii are the sum of the links and the longest less the others: J. J. Craig, Robotics, section 4.2."""
-    found = ck.performance.workspace(robot, "P")
+    found = ck.figures.workspace(robot, "P")
     (outer,), (inner,) = found.outer, found.inner
     np.testing.assert_allclose(np.abs(outer), radii[0], rtol=1e-9)
     np.testing.assert_allclose(np.abs(inner), radii[1], rtol=1e-9)
@@ -39,7 +39,7 @@ def test_serial_arms_reach_an_annulus(robot: ck.Mechanism, radii: tuple[float, f
 
 def test_ranges_cut_a_sector_out_of_the_annulus() -> None:
     """r^2 = l1^2 + l2^2 + 2 l1 l2 cos q2, and the upper arm only turns that."""
-    found = ck.performance.workspace(arm(), "P", {"link-0": (0.0, 1.5), "link-1": (0.2, 2.5)})
+    found = ck.figures.workspace(arm(), "P", {"link-0": (0.0, 1.5), "link-1": (0.2, 2.5)})
     np.testing.assert_allclose(found.area, 1.5 * UPPER * FORE * (np.cos(0.2) - np.cos(2.5)), rtol=5e-4)
     assert (len(found.outer), len(found.inner)) == (1, 0)
     radius = np.sqrt(UPPER**2 + FORE**2 + 2.0 * UPPER * FORE * np.cos([0.2, 2.5]))
@@ -48,7 +48,7 @@ def test_ranges_cut_a_sector_out_of_the_annulus() -> None:
 
 
 def test_the_condition_of_an_arm_is_that_of_its_jacobian() -> None:
-    found = ck.performance.workspace(arm(), "P", cells=24)
+    found = ck.figures.workspace(arm(), "P", cells=24)
     at = found.inside
     q2 = np.arccos((np.abs(found.places[at]) ** 2 - UPPER**2 - FORE**2) / (2.0 * UPPER * FORE))
     matrix = ck.solve(arm(), {"link-0": 0.3, "link-1": q2}).jacobian("P").matrix
@@ -58,7 +58,7 @@ def test_the_condition_of_an_arm_is_that_of_its_jacobian() -> None:
 
 def test_a_five_bar_of_equal_links_reaches_where_two_discs_meet() -> None:
     """In all modes; X.-J. Liu, J. Wang and G. Pritschow, Kinematics ... of planar 5R mechanisms (2006), section 3."""
-    found = ck.performance.workspace(loaded("five-bar"), "P", modes="all")
+    found = ck.figures.workspace(loaded("five-bar"), "P", modes="all")
     reach, base = 180.0, 118.0
     lens = 2.0 * reach**2 * np.arccos(base / 2.0 / reach) - base / 2.0 * np.sqrt(4.0 * reach**2 - base**2)
     np.testing.assert_allclose(found.area, lens, rtol=1e-4)
@@ -71,7 +71,7 @@ def test_a_five_bar_of_equal_links_reaches_where_two_discs_meet() -> None:
 
 def test_the_drawn_mode_reaches_less_and_all_that_its_drivers_lead_to() -> None:
     robot = loaded("five-bar")
-    found = ck.performance.workspace(robot, "P")
+    found = ck.figures.workspace(robot, "P")
     turns = [angle.ravel() for angle in np.meshgrid(*[np.linspace(0.1, 6.2, 61)] * 2)]
     with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(robot, {"left": turns[0], "right": turns[1]}, order=0)
@@ -87,7 +87,7 @@ def test_the_drawn_mode_reaches_less_and_all_that_its_drivers_lead_to() -> None:
 def test_the_digger_reaches_what_its_strokes_lead_to() -> None:
     """The largest radius about the boom's pin by the law of cosines, the cylinders at their ends or between."""
     digger = loaded("hydraulic-digger")
-    found = ck.performance.workspace(digger, "L")
+    found = ck.figures.workspace(digger, "L")
     a, b, c = 2.05, 1.05, np.abs
     e, f = 2.05 - (0.977 + 0.737j), c(-0.251 + 0.158j)
     # the angle at A between the boom's cylinder pin E and the stick's pin F, by the stroke; the stick turns with it
@@ -104,7 +104,7 @@ def test_the_digger_reaches_what_its_strokes_lead_to() -> None:
     names = ("boom-cylinder", "stick-cylinder", "bucket-cylinder")
     motion = ck.solve(digger, dict(zip(names, grid, strict=True)), order=0)
     assert found.contains(np.asarray(motion.points["L"].position)).all()
-    tips = ck.performance.workspace(digger, "M", cells=32)
+    tips = ck.figures.workspace(digger, "M", cells=32)
     assert tips.contains(np.asarray(motion.points["M"].position)).all()
     (outline,) = tips.outer
     # no place of the boundary is inside: a step outward from it leaves the region
@@ -116,13 +116,13 @@ def test_the_digger_reaches_what_its_strokes_lead_to() -> None:
 def test_the_reach_of_a_3_rrr_is_as_symmetric_as_it_is() -> None:
     """With a fixed platform each leg reaches an annulus: C. Gosselin and J. Angeles (1988). Here three discs meet."""
     robot = loaded("3-rrr")
-    fixed = ck.performance.workspace(robot, "P", orientation=0.0, cells=96)
+    fixed = ck.figures.workspace(robot, "P", orientation=0.0, cells=96)
     bases = np.array([0.0, 10.0, 5.0 + 8.660254037844386j])
     corners = np.array([0.0, 3.0, 1.5 + 2.598076211353316j]) - (1.5 + 0.8660254037844386j)
     (outline,) = fixed.outer
     far = np.abs(outline + corners[:, None] - bases[:, None]).max(axis=0)
     np.testing.assert_allclose(far, 8.0, rtol=1e-9)
-    free = ck.performance.workspace(robot, "P", cells=24)
+    free = ck.figures.workspace(robot, "P", cells=24)
     middle, third = np.mean(bases), np.exp(2j * np.pi / 3.0)
     z = middle + np.linspace(0.2, 6.0, 12) * np.exp(1j * np.arange(12))
     assert free.contains(z).tolist() == free.contains(middle + third * (z - middle)).tolist()
@@ -131,7 +131,7 @@ def test_the_reach_of_a_3_rrr_is_as_symmetric_as_it_is() -> None:
 
 
 def test_pictures_show_region_boundary_and_mechanism() -> None:
-    found = ck.performance.workspace(loaded("five-bar"), "P", cells=32)
+    found = ck.figures.workspace(loaded("five-bar"), "P", cells=32)
     figure = found.plot(colour="condition").figure
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert labels == ["drivers lose their hold", "outer boundary"]
@@ -153,18 +153,18 @@ def test_pictures_show_region_boundary_and_mechanism() -> None:
 ])  # fmt: skip
 def test_what_has_no_region_is_refused(name: str, point: str, given: dict[str, object], told: str) -> None:
     with pytest.raises(InvalidInput) as caught:
-        ck.performance.workspace(loaded(name), point, **given)  # type: ignore[arg-type]
+        ck.figures.workspace(loaded(name), point, **given)  # type: ignore[arg-type]
     assert told in str(caught.value)
 
 
 def test_more_that_is_refused() -> None:
     with pytest.raises(UnknownName, match="there is no such point"):
-        ck.performance.workspace(loaded("five-bar"), "Q")
+        ck.figures.workspace(loaded("five-bar"), "Q")
     with pytest.raises(NotAssembled, match="reaches no region"):
-        ck.performance.workspace(loaded("pantograph"), "P", {"x": (300, 301), "y": (0, 1)})
+        ck.figures.workspace(loaded("pantograph"), "P", {"x": (300, 301), "y": (0, 1)})
     four = arm(HAND)
     more = ck.link("tip", P=0, T=0.1), ck.drive("tip", on="link-2")
     with pytest.raises(InvalidInput, match=r"4 drivers .* move T"):
-        ck.performance.workspace(four.replace(*more), "T")
+        ck.figures.workspace(four.replace(*more), "T")
     with pytest.raises(InvalidInput, match="are no places"):
-        ck.performance.workspace(arm(), "P", cells=16).contains("x")
+        ck.figures.workspace(arm(), "P", cells=16).contains("x")

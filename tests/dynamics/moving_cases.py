@@ -96,7 +96,7 @@ def squeezer(torque: bool = True) -> ck.Mechanism:
     ]
     spring = ck.spring("K3", "D", to="frame", at="C", stiffness=own["c0"], free_length=own["l0"])
     words = [*masses, spring, *([ck.torque("K1", own["mom"])] if torque else [])]
-    return ck.catalog.load_named("andrews-squeezer").replace(*words, units=SI)
+    return ck.load("andrews-squeezer").replace(*words, units=SI)
 
 
 def squeezer_angles(motion: Any, k: int = 0) -> list[np.ndarray]:

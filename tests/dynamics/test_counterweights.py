@@ -37,7 +37,7 @@ def shaking(mechanism: ck.Mechanism, **given: Any) -> Any:
 def test_a_four_bar_is_balanced_by_the_conditions_of_berkof_and_lowen() -> None:
     """m2 c2 = -m3 a2 (1 - p3 / a3) and m4 c4 = -m3 p3 a4 / a3; figures of case balanced_four_bar of the reference."""
     motion = ck.solve(four_bar(0.02 + 0j, 0.05 + 0j), TURN, speed=100)
-    found = ck.machine.counterweights(motion, mass=0.5, about="O")
+    found = ck.figures.counterweights(motion, mass=0.5, about="O")
     assert found.is_full
     assert not found.unreached
     crank, rocker = found.counterweights
@@ -50,7 +50,7 @@ def test_a_four_bar_is_balanced_by_the_conditions_of_berkof_and_lowen() -> None:
     exact = ck.force_analysis(motion)
     np.testing.assert_allclose(force.greatest, np.abs(np.asarray(exact.shaking.force)).max(), rtol=1e-2)
     np.testing.assert_allclose(moment.greatest, np.abs(exact.shaking.moment_about("O")).max(), rtol=1e-2)
-    np.testing.assert_allclose(effort.rms, ck.machine.drive_figures(exact).rms_effort, rtol=1e-9)
+    np.testing.assert_allclose(effort.rms, ck.figures.drive_figures(exact).rms_effort, rtol=1e-9)
     # the price: shaking moment and torque rise
     assert all(new.greatest > old.greatest for old, new in zip(found.before[1:], found.after[1:], strict=True))
     assert "Full force balance by 2 counterweights." in found.text()
@@ -59,7 +59,7 @@ def test_a_four_bar_is_balanced_by_the_conditions_of_berkof_and_lowen() -> None:
 
 def test_a_balanced_linkage_needs_no_counterweight() -> None:
     balanced = four_bar(-0.010808460971886058 + 0.0016207163248913498j, -0.014706462444982306 - 0.00259314611982616j)
-    found = ck.machine.counterweights(ck.solve(balanced, TURN, speed=100))
+    found = ck.figures.counterweights(ck.solve(balanced, TURN, speed=100))
     assert (found.is_full, found.counterweights) == (True, ())
 
 
@@ -79,7 +79,7 @@ def heavy(name: str) -> ck.Mechanism:
 def test_linkages_of_n_links_take_half_as_many_counterweights(name: str, count: int) -> None:
     """Six links take three, eight take four: Berkof and Lowen 1969, Walker and Oldham 1978."""
     mechanism = heavy(name)
-    found = ck.machine.counterweights(mechanism)
+    found = ck.figures.counterweights(mechanism)
     assert found.is_full
     assert len(found.counterweights) == count
     assert shaking(found.mechanism) < 1e-12
@@ -91,7 +91,7 @@ def test_links_that_turn_alike_share_a_counterweight() -> None:
              ck.link("coupler", A=(0, 0), B=(4, 0)), ck.link("rocker", C=(0, 0), B=(1, 0)))  # fmt: skip
     masses = ck.mass("crank", 1.0, at=(0.4, 0)), ck.mass("coupler", 2.0, at=(1, 1)), ck.mass("rocker", 1.0, at=(0.3, 0))
     mechanism = ck.Mechanism("m", *links, ck.drive("crank"), *masses, ck.drawn(A=(0, 1), B=(4, 1)), units=UNITS)
-    found = ck.machine.counterweights(ck.solve(mechanism, {"crank": TURN + 0.3}))
+    found = ck.figures.counterweights(ck.solve(mechanism, {"crank": TURN + 0.3}))
     assert found.is_full
     (only,) = found.counterweights
     np.testing.assert_allclose(only.moment, -(0.4 + 2.0 + 0.3), rtol=1e-9)
@@ -101,15 +101,15 @@ def test_a_slider_crank_is_balanced_wholly_by_its_rod_or_half_by_its_crank() -> 
     """Half of what goes to and fro is best where the piston's first harmonic is the crank's radius: always in line."""
     masses = ck.mass("crank", 2.0, at=(0.01, 0)), ck.mass("rod", 0.8, at=(0.06, 0.01)), ck.mass("piston", 0.5)
     motion = ck.solve(slider_crank(*masses), TURN, speed=150)
-    whole = ck.machine.counterweights(motion, radius={"crank": 0.03, "rod": 0.08}, disc=0.01)
+    whole = ck.figures.counterweights(motion, radius={"crank": 0.03, "rod": 0.08}, disc=0.01)
     assert whole.is_full
     crank, rod = whole.counterweights
     np.testing.assert_allclose(rod.moment, -(0.8 * (0.06 + 0.01j) + 0.5 * 0.2), rtol=1e-13)
     np.testing.assert_allclose(crank.moment, -(0.02 + 0.05 * (0.8 + 0.5 + rod.mass)), rtol=1e-13)
     np.testing.assert_allclose(rod.inertia, rod.mass * 0.01**2 / 2)
     assert shaking(whole.mechanism, values=TURN, speed=150) < 1e-13
-    least = ck.machine.counterweights(motion, "crank")
-    half = ck.machine.counterweights(motion, fraction=0.5)
+    least = ck.figures.counterweights(motion, "crank")
+    half = ck.figures.counterweights(motion, fraction=0.5)
     assert not least.is_full
     assert not half.is_full
     np.testing.assert_allclose(
@@ -118,7 +118,7 @@ def test_a_slider_crank_is_balanced_wholly_by_its_rod_or_half_by_its_crank() -> 
         rtol=1e-12,
     )
     in_line = ck.solve(slider_crank(ck.mass("crank", 2.0, at=(0.01, 0)), ck.mass("piston", 0.5)), TURN, speed=150)
-    best, halved = (ck.machine.counterweights(in_line, **given) for given in ({"links": "crank"}, {"fraction": 0.5}))
+    best, halved = (ck.figures.counterweights(in_line, **given) for given in ({"links": "crank"}, {"fraction": 0.5}))
     np.testing.assert_allclose(best.counterweights[0].moment, halved.counterweights[0].moment, rtol=1e-12)
     assert best.after[0].rms < 0.6 * best.before[0].rms
 
@@ -131,7 +131,7 @@ def test_what_only_slides_cannot_be_balanced_and_is_named() -> None:
         ck.slide("block", on="yoke", through="Y", angle=np.pi / 2),
     )
     mechanism = ck.Mechanism("m", *links, *slides, ck.drive("crank"), ck.mass("yoke", 3.0), units=UNITS)
-    found = ck.machine.counterweights(ck.solve(mechanism, TURN, speed=2))
+    found = ck.figures.counterweights(ck.solve(mechanism, TURN, speed=2))
     assert not found.is_full
     assert found.unreached == ("yoke",)
     np.testing.assert_allclose(found.counterweights[0].moment, -1.5, rtol=1e-12)
@@ -150,8 +150,8 @@ def test_what_is_wrong_is_said() -> None:
     ]
     for given, told in cases:
         with pytest.raises(ck.errors.CompoundkinError, match=told):
-            ck.machine.counterweights(motion, **given)
+            ck.figures.counterweights(motion, **given)
     with pytest.raises(ck.errors.InvalidInput, match="only a slider-crank"):
-        ck.machine.counterweights(ck.solve(four_bar(0j, 0j), TURN), fraction=0.5)
+        ck.figures.counterweights(ck.solve(four_bar(0j, 0j), TURN), fraction=0.5)
     with pytest.raises(ck.errors.InvalidInput, match="only one design"):
-        ck.machine.counterweights(ck.solve(mechanism, np.tile(TURN, (2, 1))))
+        ck.figures.counterweights(ck.solve(mechanism, np.tile(TURN, (2, 1))))

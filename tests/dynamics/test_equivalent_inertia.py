@@ -27,7 +27,7 @@ def test_an_arm_of_two_links_has_the_matrix_of_the_textbook() -> None:
     drives = ck.drive("upper"), ck.drive("fore", on="upper")
     masses = ck.mass("upper", 3.0, at=(0.8, 0), inertia=0.7), ck.mass("fore", 2.0, at=(0.5, 0), inertia=0.3)
     arm = ck.Mechanism("arm", ck.link("frame", A=0), *bars, *drives, *masses, units=UNITS)
-    found = ck.machine.equivalent_inertia(ck.solve(arm, {"upper": 0.3, "fore": ANGLES}))
+    found = ck.figures.equivalent_inertia(ck.solve(arm, {"upper": 0.3, "fore": ANGLES}))
     h, zero = 2.0 * 2.0 * 0.5 * np.cos(ANGLES), 0.0 * ANGLES
     both = 0.3 + 2.0 * 0.25 + h
     first = 0.7 + 0.3 + 3.0 * 0.64 + 2.0 * (4.0 + 0.25) + 2.0 * h
@@ -45,7 +45,7 @@ def test_an_arm_of_two_links_has_the_matrix_of_the_textbook() -> None:
 def test_a_piston_is_felt_by_its_crank_as_its_mass_by_the_square_of_its_rate() -> None:
     """x' and x'' of an in-line slider-crank by its closed form; designs of the piston's mass side by side."""
     mechanism = slider_crank(ck.mass("piston", np.array([[0.5], [1.5]])))
-    found = ck.machine.equivalent_inertia(ck.solve(mechanism, np.tile(ANGLES, (2, 1))))
+    found = ck.figures.equivalent_inertia(ck.solve(mechanism, np.tile(ANGLES, (2, 1))))
     r, rod, sin, cos = 0.05, 0.2, np.sin(ANGLES), np.cos(ANGLES)
     root = np.sqrt(rod**2 - (r * sin) ** 2)
     first = -r * sin - r**2 * sin * cos / root
@@ -56,4 +56,4 @@ def test_a_piston_is_felt_by_its_crank_as_its_mass_by_the_square_of_its_rate() -
 
 def test_masses_are_wanted() -> None:
     with pytest.raises(ck.errors.InvalidInput, match="no link has a mass"):
-        ck.machine.equivalent_inertia(ck.solve(slider_crank(), [0.0]))
+        ck.figures.equivalent_inertia(ck.solve(slider_crank(), [0.0]))

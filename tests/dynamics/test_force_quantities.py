@@ -89,7 +89,7 @@ def test_names_that_there_are_not() -> None:
     }.items():
         with pytest.raises(ck.errors.UnknownName, match=told):
             ck.quantity(forces, name)
-    weightless = ck.solve(ck.catalog.load_named("six-bar"))
+    weightless = ck.solve(ck.load("six-bar"))
     with pytest.raises(ck.errors.UnknownName, match="no units of mass and force"):
         ck.quantity(weightless, "A.force")
     slow = replace(round_six_bar(), order=1)

@@ -101,7 +101,7 @@ def test_shaking_force_is_that_of_the_masses() -> None:
 
 
 def test_an_effort_along_a_pair_is_a_load_and_no_driver() -> None:
-    forces = ck.force_analysis(ck.solve(ck.catalog.load_named("engine-gas-pressure"), {"crank": [1.0]}))
+    forces = ck.force_analysis(ck.solve(ck.load("engine-gas-pressure"), {"crank": [1.0]}))
     assert [one.kind for one in forces.on("piston")] == ["pair", "pair", "effort", "inertia"]
     assert [one.name for one in forces.shaking.reactions] == ["crank"]
     drawn = ck.draw(forces, kind="free-bodies", link="piston").svg

@@ -349,7 +349,7 @@ def loaded(plain: ck.Mechanism, size: float, coefficient: float, rng: np.random.
 )
 def test_powers_of_shipped_mechanisms(name: str) -> None:
     """Friction takes power only, as Coulomb's law has it; all powers add up to nothing."""
-    plain = ck.catalog.load_named(name)
+    plain = ck.load(name)
     forces = named(ck.solve(loaded(plain, ck.solve(plain).size, 0.05, np.random.default_rng(3))))
     good = np.isfinite(forces.friction.power)
     assert np.mean(good) > 0.7
@@ -401,7 +401,7 @@ def test_little_friction_is_proportional() -> None:
 
 def test_friction_that_equilibrium_leaves_open() -> None:
     """What presses in a third crank and its like is open: so is their friction, and the torque with it."""
-    plain = ck.catalog.load_named("parallelogram-third-crank")
+    plain = ck.load("parallelogram-third-crank")
     load, angles = ck.force("coupler", (-20.0, -100.0), at="B"), {"crank": np.deg2rad([50.0, 120.0])}
 
     def forces(*frictions: Any) -> Any:
@@ -422,7 +422,7 @@ def test_friction_that_equilibrium_leaves_open() -> None:
 
 def test_multiple_pins_and_sides() -> None:
     """The letter of a multiple pin is friction in each of its pairs; what one link feels the other feels too."""
-    plain = ck.catalog.load_named("toggle-press")
+    plain = ck.load("toggle-press")
     (letter,) = (letter for letter, links in plain.pins.items() if len(links) == 3)
     items = ck.friction(letter, 0.1, radius=0.02), ck.force("slider", (-1e4, 0.0), at="D")
     mechanism = ck.Mechanism("m", *plain.items, *items, units=SI)

@@ -198,7 +198,7 @@ def test_block_falls_to_the_end_of_its_guide() -> None:
 
 def test_contact_of_a_cam_lets_go_where_the_follower_falls_freely() -> None:
     """Without a spring the roller leaves the cam where its follower would have to fall faster than freely."""
-    cam = ck.catalog.load_named("disc-cam-offset-roller").replace(
+    cam = ck.load("disc-cam-offset-roller").replace(
         ck.mass("cam", 2.0, at="A", inertia=500.0),
         ck.mass("follower", 0.3, at="T", inertia=0.0),
         ck.gravity(0, -9.81),
@@ -263,7 +263,7 @@ def test_energies_that_do_not_add_up_are_told(monkeypatch: pytest.MonkeyPatch) -
         monkeypatch.setattr(f"compoundkin.dynamics.simulation.forward_dynamics.{name}", 0.0)
     with pytest.warns(FewDigits, match="energies do not add up"):
         ck.simulate(slider_crank(), start=1.0, until=0.1)
-    assert ck.simulate(ck.catalog.load_named("balanced-lamp"), until=0.3).energy.worst == 0.0
+    assert ck.simulate(ck.load("balanced-lamp"), until=0.3).energy.worst == 0.0
 
 
 def shaft(*more: object) -> ck.Mechanism:
@@ -317,7 +317,7 @@ def test_events_are_told_from_those_of_the_simulation_and_give_numbers() -> None
 @pytest.mark.parametrize("name", ["parallelogram", "triple-rocker"])
 def test_change_points_and_limits_are_passed(name: str) -> None:
     """Linkages that pass change points, or the limit of their driver: energy, and no effort of what is free."""
-    plain = ck.catalog.load_named(name)
+    plain = ck.load(name)
     size = plain.geometry.size
     masses = [ck.mass(link, 1.0, at=(0.1 * size, 0.05 * size), inertia=0.05 * size**2)
               for link in plain.links if link != "frame"]  # fmt: skip

@@ -26,7 +26,7 @@ from compoundkin.structure import decompose
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "catalog.md"
-NAMES = shipped_mechanisms.names()
+NAMES = shipped_mechanisms.shipped()
 
 # Straight lines that are exact, and all other identities: rounding over a few dyads, for lengths near 1.
 EXACT = 1e-12
@@ -36,7 +36,7 @@ EXACT_RATE = 1e-9
 
 @cache
 def mechanism(name: str) -> Mechanism:
-    return shipped_mechanisms.load_named(name)
+    return load(name)
 
 
 @cache
@@ -382,7 +382,7 @@ def test_names_are_the_files() -> None:
 
 
 def test_a_name_works_where_a_file_does() -> None:
-    assert load(shipped_mechanisms.resolve("six-bar")) == shipped_mechanisms.load_named("six-bar")
+    assert load(shipped_mechanisms.resolve("six-bar")) == load("six-bar")
 
 
 def test_an_existing_file_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -399,7 +399,7 @@ def test_a_folder_of_that_name_does_not(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 def test_an_unknown_name_says_the_nearest() -> None:
-    for call in (shipped_mechanisms.path, shipped_mechanisms.load_named, shipped_mechanisms.resolve):
+    for call in (shipped_mechanisms.path, load, shipped_mechanisms.resolve):
         with pytest.raises(UnknownName, match="did you mean 'peaucellier'"):
             call("peaucelier")
 
@@ -418,7 +418,7 @@ def test_a_missing_file_with_a_catalog_name_says_so() -> None:
 def test_a_wheel_carries_the_files_inside_the_package(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "compoundkin", tmp_path / "compoundkin", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "catalog", tmp_path / "compoundkin" / "_catalog")
-    code = "from compoundkin.files import shipped_mechanisms as s; print(s.folder(), *s.names(), sep='|')"
+    code = "from compoundkin.files import shipped_mechanisms as s; print(s.folder(), *s.shipped(), sep='|')"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
     place, *found = ran.stdout.strip().split("|")
     assert Path(place) == tmp_path / "compoundkin" / "_catalog"
@@ -427,7 +427,7 @@ def test_a_wheel_carries_the_files_inside_the_package(tmp_path: Path) -> None:
 
 def test_names_do_not_load_numpy() -> None:
     code = "import sys; from compoundkin.base.errors import Problem; before = 'numpy' in sys.modules;"
-    code += "from compoundkin.files.shipped_mechanisms import names; names(); print(before, 'numpy' in sys.modules)"
+    code += "from compoundkin.files.shipped_mechanisms import shipped; shipped(); print(before, 'numpy' in sys.modules)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     before, after = out.split()
     assert before == after, "catalog itself must not be what loads NumPy"
@@ -439,7 +439,7 @@ def page() -> str:
         "# The catalog",
         "",
         "Shipped mechanisms, each one file in `catalog/`. A name works wherever a mechanism file does:",
-        '`compoundkin report six-bar`, or `ck.catalog.load_named("six-bar")` in Python.',
+        '`compoundkin report six-bar`, or `ck.load("six-bar")` in Python.',
         "The groups are those of the solving order; *numbers* counts the published or independently computed",
         "values in the file that the tests hold the solution to. The source of each is in its file.",
         "",

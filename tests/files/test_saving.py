@@ -15,25 +15,25 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.base.suffixes import SUFFIXES, file_format
 from compoundkin.cli import cli
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.programs.compiled_path import compile
 
 
 @cache
 def motion() -> ck.results.Motion:
-    return ck.solve(load_named("crank-rocker"), {"crank": ck.deg([0, 20, 40])})
+    return ck.solve(load("crank-rocker"), {"crank": ck.deg([0, 20, 40])})
 
 
 MAKERS: dict[str, Callable[[], Any]] = {
-    "mechanism": lambda: load_named("crank-rocker"),
+    "mechanism": lambda: load("crank-rocker"),
     "table": lambda: motion().table("rocker.angle"),
     "picture": lambda: ck.draw(motion(), size=60),
     "plot": lambda: motion().plot("rocker.angle"),
     "animation": lambda: motion().animate(size=60, seconds=0.2),
     "page": lambda: ck.report(motion()).page(),
     "report": lambda: ck.report(motion()),
-    "program": lambda: compile(load_named("crank-rocker"), "rocker.angle"),
-    "study": lambda: ck.study(load_named("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, ["rocker.angle"], count=8),
+    "program": lambda: compile(load("crank-rocker"), "rocker.angle"),
+    "study": lambda: ck.study(load("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, ["rocker.angle"], count=8),
 }
 BEGINS = {
     "toml": b"format = 1", "csv": b"crank.value [deg],rocker.angle [deg],assembled\n", "npz": b"PK", "parquet": b"PAR1",
@@ -122,7 +122,7 @@ def test_a_report_of_the_command_line_is_refused_before_its_mechanism_is_read(
 
 
 def test_a_report_without_suffix_is_text_and_a_format_that_is_given_rules(tmp_path: Path) -> None:
-    runner, text = CliRunner(), ck.report(ck.decompose(load_named("crank-rocker"))).text()
+    runner, text = CliRunner(), ck.report(ck.decompose(load("crank-rocker"))).text()
     for name, options in (("plain", []), ("a.log", ["--format", "text"])):
         asked = ["structure", "crank-rocker", "-o", str(tmp_path / name), *options]
         assert runner.invoke(cli, asked, standalone_mode=False).exception is None

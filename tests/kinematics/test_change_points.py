@@ -268,7 +268,7 @@ def test_poses_beside_a_change_point(drawn, offset):
 
 
 def timed(*segments, poses=251):
-    mechanism = ck.catalog.load_named("parallelogram").replace(ck.drive("crank", law=ck.laws.program(*segments)))
+    mechanism = ck.load("parallelogram").replace(ck.drive("crank", law=ck.laws.program(*segments)))
     motion = ck.solve(mechanism, time=np.linspace(0.0, sum(each.over for each in segments), poses), order=3)
     coupler = motion.links["coupler"]
     for k, limit in enumerate((1e-12, 1e-10, 1e-8, 1e-6)):

@@ -66,9 +66,9 @@ def test_a_motion_says_its_modes() -> None:
     assert (chosen.sign, chosen.chosen) == (1, "chosen by sign")
     several = ck.solve(four_bar(*TEXTBOOK), {"crank": ck.deg([[40.0], [320.0]])}).modes["RRR(coupler)"]
     assert np.asarray(several.sign).tolist() == [-1, 1]
-    third = ck.solve(ck.catalog.load_named("class-iii-six-bar")).modes["RRR-RRR(leg-1)"]
+    third = ck.solve(ck.load("class-iii-six-bar")).modes["RRR-RRR(leg-1)"]
     assert (third.sign, third.chosen) == (None, "nearest to the drawing")
-    assert ck.solve(ck.catalog.load_named("scotch-yoke")).modes["RPP(block)"].chosen == "the only one"
+    assert ck.solve(ck.load("scotch-yoke")).modes["RPP(block)"].chosen == "the only one"
 
 
 def test_every_design_has_its_own() -> None:

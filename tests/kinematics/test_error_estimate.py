@@ -99,6 +99,6 @@ def test_poses_exactly_at_a_change_point_pass(values):
 
 @pytest.mark.parametrize("order", ["a", 1.5, None, True, -1, 7])
 def test_an_error_is_asked_for_by_the_order_of_a_derivative(order: Any) -> None:
-    motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0]})
+    motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]})
     with pytest.raises(ck.errors.InvalidInput):
         motion.error(order)

@@ -222,7 +222,7 @@ def test_a_path_that_cannot_be_followed_says_from_when_to_when_and_why() -> None
 # --- too many drivers, too few ----------------------------------------------------------------------------------
 
 
-def law() -> ck.laws.ConstantSpeed:
+def law() -> ck.laws.Law:
     return ck.laws.constant_speed(1.0)
 
 

@@ -173,7 +173,7 @@ def test_a_complex_law_is_refused():
 def test_a_roller_that_the_profile_is_not_made_for_is_warned_about():
     made = ck.profiles.synthesise(LIFT, base=60, follower="roller", roller=10)
     said = [
-        ck.cams.cam_analysis(
+        ck.figures.cam_analysis(
             ck.solve(ck.Mechanism("m", *GUIDED, ck.cam("follower", on="cam", profile=made, radius=radius))),
             "follower/cam",
         ).warnings
@@ -233,7 +233,7 @@ def test_a_face_along_its_own_guide_is_told() -> None:
 
 def test_differences_do_not_reach_across_a_change_point() -> None:
     """A parallelogram in steps so fine that its neighbours are nearer than the stencil is wide."""
-    parallelogram = ck.catalog.load_named("parallelogram")
+    parallelogram = ck.load("parallelogram")
     for start in (100.03, 179.9):
         for step in (1.0, 0.01):
             motion = ck.solve(parallelogram, {"crank": ck.deg(start + step * np.arange(90))})
@@ -261,13 +261,13 @@ def test_circuits_begin_where_a_written_mode_has_the_mechanism(sign: int) -> Non
 def test_circuits_of_many_groups_are_refused_at_once() -> None:
     """Each of twenty dyads doubles the branches: the search went on for ten minutes and more."""
     with pytest.raises(ck.errors.InvalidInput, match="the groups multiply them"):
-        ck.circuits(ck.composing.random_mechanism(20, seed=3, kinds=("RRR",)))
+        ck.circuits(ck.chains.random_mechanism(20, seed=3, kinds=("RRR",)))
 
 
 def test_a_file_name_with_a_slash_at_its_end_is_no_file(tmp_path: Path) -> None:
     """It was written to the file of that name without the slash."""
     with pytest.raises(ck.errors.InvalidInput, match="name of a folder"):
-        ck.draw(ck.catalog.load_named("six-bar")).save(f"{tmp_path}/six-bar.svg/")
+        ck.draw(ck.load("six-bar")).save(f"{tmp_path}/six-bar.svg/")
     assert not list(tmp_path.iterdir())
 
 

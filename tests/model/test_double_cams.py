@@ -11,10 +11,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import compoundkin as ck
-from compoundkin.cams import cam_mechanism
 from compoundkin.laws import Program, dwell, fall, program, rise
 from compoundkin.model.profiles.double_cams import DoubleCam
-from compoundkin.profiles import conjugate, constant_breadth
+from compoundkin.profiles import cam_mechanism, conjugate, constant_breadth
 
 TURN = 2.0 * np.pi
 # Lengths are about 100.

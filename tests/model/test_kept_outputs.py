@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 
 
 @pytest.mark.parametrize(("name", "link"), [("engine-gas-pressure", "piston"), ("jaw-crusher-loaded", "jaw")])
 @pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 def test_report_of_a_loaded_mechanism_driven_elsewhere(name: str, link: str) -> None:
-    loaded = load_named(name)
+    loaded = load(name)
     (driver,) = loaded.drives
     driven = ck.with_driver(loaded, link)
     assert set(loaded.outputs) - set(driven.outputs) == {f"{driver.name}.effort"}

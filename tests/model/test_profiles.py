@@ -132,7 +132,7 @@ def test_a_cam_through_points_of_the_made_one(kind: str) -> None:
 def test_the_parameter_is_the_angle_of_the_cam(kind: str) -> None:
     cam = made(kind, start=0.3)
     motion = ck.solve(mechanism(cam), {"cam": np.linspace(0.1, 6.1, 61)})
-    parameter = ck.cams.cam_analysis(motion, "follower/cam").parameter
+    parameter = ck.figures.cam_analysis(motion, "follower/cam").parameter
     assert np.max(np.abs(parameter - np.linspace(0.1, 6.1, 61))) < 1e-9
 
 

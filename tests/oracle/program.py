@@ -20,12 +20,12 @@ FORMS = ("text", "markdown", "json")
 
 def catalog_names() -> tuple[str, ...]:
     """The names of the shipped mechanisms."""
-    return tuple(ck.catalog.names())
+    return tuple(ck.exchange.shipped())
 
 
 def catalog_mechanism(name: str) -> Any:
     """A shipped mechanism."""
-    return ck.catalog.load_named(name)
+    return ck.load(name)
 
 
 def loaded(path: str) -> Any:
@@ -164,12 +164,12 @@ def page_html(motion: Any) -> str:
 
 def equivalent_of(motion: Any, pose: int) -> Any:
     """The linkage that moves like a mechanism with higher pairs at one pose."""
-    return ck.equivalents.equivalent_linkage(motion, at=pose)
+    return ck.figures.equivalent_linkage(motion, at=pose)
 
 
 def cam_numbers(motion: Any, pair: str) -> dict[str, Any]:
     """What the analysis of a cam pair finds."""
-    found = ck.cams.cam_analysis(motion, pair)
+    found = ck.figures.cam_analysis(motion, pair)
     words = ("pressure_angle", "radius_of_curvature", "pitch_radius", "sliding", "roller_rate")
     numbers = {word: getattr(found, word) for word in words}
     return {**numbers, "profile": found.profile, "pitch curve": found.pitch_curve, "warnings": list(found.warnings)}

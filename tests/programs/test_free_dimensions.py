@@ -150,16 +150,16 @@ def test_wrong_dimensions_of_a_call_are_told(dimensions, text):
 
 
 def test_a_dimension_that_opens_redundant_pairs_is_refused() -> None:
-    lift = ck.catalog.load_named("double-parallelogram-lift")
+    lift = ck.load("double-parallelogram-lift")
     with pytest.raises(ck.errors.InvalidInput, match=r"overconstrained.*would open"):
         ck.compile(lift, "lower.angle", free="lower.D")
-    wedge = ck.catalog.load_named("wedge-press")
+    wedge = ck.load("wedge-press")
     # where a slide begins opens nothing
     assert ck.compile(wedge, "ram.angle", free="wedge.S").free
 
 
 def test_teeth_of_a_train_of_three_bodies_may_be_free():
-    own = ck.catalog.load_named("differential")
+    own = ck.load("differential")
     gears = [item for item in own.items if getattr(item, "teeth", None)]
     free = own.replace(*(replace(gear, module=None) for gear in gears))
     other = free.replace(replace(gears[0], module=None, teeth=(33.0, gears[0].teeth[1])))

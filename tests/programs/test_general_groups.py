@@ -53,7 +53,7 @@ def agree(found, motion, letters, within=1e-12):
 def test_every_point_equals_solve(name, backend, designs, poses):
     if backend != "numpy":
         pytest.importorskip("llvmlite" if backend == "llvm" else backend)
-    mechanism = ck.catalog.load_named(name)
+    mechanism = ck.load(name)
     letters, dimensions = list(mechanism.carriers), designs_of(mechanism, designs, 0.01)
     path = ck.compile(
         mechanism, [f"{a}.{word}" for a in letters for word in WORDS], free=[*dimensions], backend=backend
@@ -67,7 +67,7 @@ def test_every_point_equals_solve(name, backend, designs, poses):
 
 
 def test_slopes_of_a_march_are_differences_of_solve():
-    mechanism = ck.catalog.load_named("class-iii-six-bar")
+    mechanism = ck.load("class-iii-six-bar")
     dimensions, step = designs_of(mechanism, 33, 0.01), 1e-5
     path = ck.compile(mechanism, [f"B3.{word}" for word in WORDS], free=[*dimensions])
     values, rates = course_of(mechanism, 73)

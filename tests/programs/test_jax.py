@@ -122,7 +122,7 @@ def test_it_has_the_digits_that_its_user_chose() -> None:
 def test_angles_go_on_over_full_turns_and_gaps() -> None:
     from compoundkin.programs.jax_path import continuous_angle
 
-    turning, angles = compile(ck.catalog.load_named("double-crank"), ["follower.angle"]), np.linspace(0.0, 15.0, 200)
+    turning, angles = compile(ck.load("double-crank"), ["follower.angle"]), np.linspace(0.0, 15.0, 200)
     rocking = np.where(np.abs(angles - 7.0) < 1.0, np.nan, np.angle(np.exp(-0.7j * angles)))
     with jax.enable_x64():
         found = quick(turning.jax(), angles)["follower.angle"]
@@ -133,7 +133,7 @@ def test_angles_go_on_over_full_turns_and_gaps() -> None:
 
 
 def test_where_signs_may_change_nothing_is_certain() -> None:
-    found = quick(compile(ck.catalog.load_named("parallelogram"), "coupler.angle").jax(), CRANK)
+    found = quick(compile(ck.load("parallelogram"), "coupler.angle").jax(), CRANK)
     assert not found["certain"]
 
 
@@ -158,7 +158,7 @@ def test_a_slip_is_told() -> None:
     places = (12.0, 9.0), (jax.numpy.array(12.0), 9.0), 12.0 + 9.0j
     assert len({float(function(0.5, {"plate.C": place})["bar.angle"]) for place in places}) == 1
     with pytest.raises(InvalidInput, match="found by search"):
-        compile(ck.catalog.load_named("geared-coupler"), "coupler.angle").jax()
+        compile(ck.load("geared-coupler"), "coupler.angle").jax()
 
 
 def test_the_package_does_without_it() -> None:

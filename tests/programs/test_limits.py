@@ -34,7 +34,7 @@ def _solved(path: CompiledPath, dimensions: Any, speed: Any) -> Motion:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_designs_are_assembled_where_solve_assembles_them(name: str) -> None:
-    mechanism, rng = ck.catalog.load_named(name), np.random.default_rng(3)
+    mechanism, rng = ck.load(name), np.random.default_rng(3)
     free, speed = _free(mechanism), {drive.name: 1.0 for drive in mechanism.drives}
     outputs = [f"{letter}.{word}" for letter in mechanism.carriers for word in ("position", "acceleration")]
     path = ck.compile(mechanism, outputs, free=tuple(free))
@@ -52,7 +52,7 @@ def test_designs_are_assembled_where_solve_assembles_them(name: str) -> None:
 
 
 def test_a_parallelogram_goes_on_through_its_change_points() -> None:
-    mechanism = ck.catalog.load_named("parallelogram")
+    mechanism = ck.load("parallelogram")
     found = ck.compile(mechanism, "C", free="crank.B")(speed=1.0)
     motion = ck.solve(mechanism, speed=1.0)
     assert motion.change_points  # else this tests nothing
@@ -60,7 +60,7 @@ def test_a_parallelogram_goes_on_through_its_change_points() -> None:
 
 
 def test_poses_not_assembled_are_told_and_are_no_numbers() -> None:
-    mechanism = ck.catalog.load_named("four-bar-norton")
+    mechanism = ck.load("four-bar-norton")
     path = ck.compile(mechanism, ["A.position", "B.position"], free="crank.A")
     with pytest.warns(ck.errors.UnassembledPoses, match="cannot be assembled"):
         found = path(None, {"crank.A": np.array([[1.0], [4.0]]) * mechanism.geometry.points["crank"]["A"]})
@@ -72,7 +72,7 @@ def test_poses_not_assembled_are_told_and_are_no_numbers() -> None:
 
 @pytest.mark.parametrize("begin", [100.0, 190.0, 300.0])
 def test_modes_are_carried_from_the_drawing_to_a_part_of_the_motion(begin: float) -> None:
-    drawn = ck.catalog.load_named("parallelogram").replace(ck.drawn(A=0, B=30j, C=60 + 30j, D=60))
+    drawn = ck.load("parallelogram").replace(ck.drawn(A=0, B=30j, C=60 + 30j, D=60))
     values = np.deg2rad(np.linspace(begin, begin + 30.0, 7))
     found = ck.compile(drawn, "C")({"crank": values})
     # the smooth motion, whatever change points lie between the drawing and here
@@ -84,7 +84,7 @@ def test_looks_at_limits_make_their_programs_once(monkeypatch: pytest.MonkeyPatc
     made: list[Any] = []
     ready = call_numbers.runner_of
     monkeypatch.setattr(call_numbers, "runner_of", lambda flat, name=None: made.append(flat) or ready(flat, name))
-    six_bar = ck.catalog.load_named("six-bar")
+    six_bar = ck.load("six-bar")
     path = ck.compile(six_bar, "G.position")
     for angle in (0.5, 0.6, 3.0):
         place = ck.solve(six_bar, angle, modes=path.modes).points["G"].position

@@ -144,7 +144,7 @@ def test_figures_that_only_some_have_are_those_of_solve(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["conjugate-cams", "groove-cam-plate", "geared-coupler", "class-iii-six-bar"])
 def test_positions_alone_need_no_rates(name: str) -> None:
-    mechanism = ck.catalog.load_named(name)
+    mechanism = ck.load(name)
     outputs = [f"{link}.angle" for link in mechanism.links if link != "frame"]
     found, motion = ck.compile(mechanism, outputs, backend="numpy")(), ck.solve(mechanism, order=0)
     for output in outputs:

@@ -34,14 +34,14 @@ HEAVY = (
     "plot",
     "plots.",
     "chains.",
-    "composing.random_mechanism",
+    "chains.random_mechanism",
     "alternatives",
     "circuits",
     "report",
 )
-MODULES = ("advantage", "cams", "catalog", "chains", "composing", "coupler", "equivalents", "laws", "plots", "profiles")
+MODULES = ("chains", "equations", "exchange", "figures", "laws", "plots", "profiles")
 # Atlases of more links take minutes by design and say so; they are no slips.
-LEFT_OUT = ("catalog.folder", "catalog.names", "chains.chains_of", "chains.symmetric_drivers")
+LEFT_OUT = ("exchange.formats", "exchange.shipped", "chains.chains_of", "chains.symmetric_drivers")
 
 
 class Strange:
@@ -111,7 +111,7 @@ def motion() -> Any:
 
 @cache
 def cam_motion() -> Any:
-    return ck.solve(ck.catalog.load_named("disc-cam-offset-roller"))
+    return ck.solve(ck.load("disc-cam-offset-roller"))
 
 
 @cache
@@ -122,9 +122,7 @@ def chain() -> Any:
 def right(function: str, name: str) -> Any:
     """A right value of an argument."""
     special = {
-        "cams.cam_analysis.name": "follower",
-        "catalog.load_named.name": "six-bar",
-        "catalog.path.name": "six-bar",
+        "figures.cam_analysis.name": "follower",
         "quantity.name": "coupler.angle",
         "plots.phase.name": "coupler.angle",
         "chains.assur_group.name": "RRR",

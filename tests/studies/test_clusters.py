@@ -39,7 +39,7 @@ def test_the_page_on_clusters_runs_though_a_worker_is_killed(
 
 
 def test_who_cannot_compute_is_told(tmp_path: Path) -> None:
-    study = ck.study(ck.catalog.load_named("crank-rocker"), {"crank.B.x": (0.9, 1.1)}, "C", count=4)
+    study = ck.study(ck.load("crank-rocker"), {"crank.B.x": (0.9, 1.1)}, "C", count=4)
 
     class Asynchronous:
         asynchronous = True

@@ -74,7 +74,7 @@ def test_figures_do_not_depend_on_the_step(step: float) -> None:
 
 
 def test_an_answer_at_a_limit_position_that_fails_its_verification_is_told() -> None:
-    shaper = ck.catalog.load_named("crank-shaper")
+    shaper = ck.load("crank-shaper")
     with pytest.warns(ck.errors.UnassembledPoses, match="does not pass its verification.*assembles"):
         ck.optimise(shaper, {"slot.angle": (-3.5, 3.5)}, "ram.value.stroke", starts=2)
     clear = ck.optimise(shaper, {"slot.angle": (-3.5, 3.5)}, "ram.value.stroke", ck.goals.assembles(), starts=2)

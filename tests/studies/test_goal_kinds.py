@@ -21,7 +21,7 @@ from compoundkin.studies.goals.value_goals import target
 from compoundkin.studies.responses import studied_path
 from tests.studies.test_goals import FREE, TURN, hold_slopes, numbers, trial_of
 
-SIX_BAR = ck.compile(ck.catalog.load_named("six-bar"), "G.position", free=list(FREE)).mechanism(FREE)
+SIX_BAR = ck.compile(ck.load("six-bar"), "G.position", free=list(FREE)).mechanism(FREE)
 MOTION = ck.solve(SIX_BAR, TURN)
 G = np.asarray(MOTION.points["G"].position)
 PLATE = np.stack([G.real, G.imag, MOTION.links["plate"].angle + 0.1], axis=1)
@@ -168,7 +168,7 @@ def test_what_is_no_goal_is_told() -> None:
         (lambda: distance("A", "B"), "leave no distance"),
         (lambda: distance("A", "B", at_least=3, at_most=2), "leave no distance"),
         (lambda: assembles(1.5), "no transmission index"),
-        (lambda: full_turn().outputs(ck.solve(ck.catalog.load_named("slider-crank"))), ""),
+        (lambda: full_turn().outputs(ck.solve(ck.load("slider-crank"))), ""),
     ]
     for call, said in wrong[:-1]:
         with np.errstate(all="ignore"), pytest.raises(ck.errors.CompoundkinError, match=said):

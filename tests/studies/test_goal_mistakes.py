@@ -34,7 +34,7 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
 @pytest.mark.parametrize("name", MISTAKES)
 def test_a_mistake_is_told(name: str) -> None:
     made, told = MISTAKES[name]
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     with pytest.raises(ck.errors.CompoundkinError, match=told):
         ck.optimise(mechanism, {"crank.B.x": (1, 2)}, made(), starts=1)  # type: ignore[arg-type]
 
@@ -46,7 +46,7 @@ def test_goals_are_summed_as_numbers_are() -> None:
 
 
 def test_a_point_that_rests_goes_along_any_line() -> None:
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     found = ck.optimise(mechanism, {"crank.B.x": (1.5, 2)}, goals.straight_line("A"), starts=1)
     assert found.value == 0.0
     assert [one.matters for one in found.changes] == [False]
@@ -54,13 +54,13 @@ def test_a_point_that_rests_goes_along_any_line() -> None:
 
 def test_numbers_beyond_all_bounds_are_no_fault_of_assembly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("compoundkin.studies.optimisation.design_search.MOST_SAMPLED", 1 << 10)
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     with pytest.raises(ck.errors.NotAssembled, match="with a finite number for all that is asked"):
         ck.optimise(mechanism, {"crank.B.x": (1.5, 2)}, goals.target(STROKE, 1e300), values=np.linspace(0, 6, 5))
 
 
 def test_the_margin_of_a_box_is_that_of_its_nearest_side() -> None:
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     found = ck.optimise(mechanism, {"crank.B.x": (1.5, 2)}, STROKE, goals.box("C", x=(-90, 12)), starts=2)
     sides = (ck.quantity(found.motion, f"C.x.{end}").values.ravel()[0] for end in ("least", "greatest"))
     low, high = sides

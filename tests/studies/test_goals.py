@@ -22,7 +22,7 @@ FREE = {"crank.D.x": 13.5, "plate.C": 12.3 + 8.6j}
 
 def trial_of(asked: Goal | DesignConstraint, dimensions: Mapping[str, Number], unknowns: Number) -> DesignTrial:
     """Some designs of the six-bar, as a goal sees them."""
-    mechanism = ck.catalog.load_named("six-bar")
+    mechanism = ck.load("six-bar")
     names = asked.outputs(ck.solve(mechanism, TURN))
     studied, responses = studied_path(mechanism, list(dimensions), names, TURN)
     return DesignTrial(studied.designs(dimensions), {one.name: one for one in responses}, unknowns)
@@ -76,7 +76,7 @@ def test_slopes_at_driver_values_of_its_own() -> None:
 
 
 def test_what_does_not_fit_is_told_at_once() -> None:
-    motion = ck.solve(ck.catalog.load_named("six-bar"), TURN)
+    motion = ck.solve(ck.load("six-bar"), TURN)
     with pytest.raises(ck.errors.InvalidInput, match="3 points, and 12 poses"):
         path("G", [1, 2, 3]).outputs(motion)
     with pytest.raises(ck.errors.InvalidInput, match=r'say which figure of it: "G.x.greatest"'):

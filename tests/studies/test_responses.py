@@ -20,7 +20,7 @@ COARSE, FINE = ck.deg(np.arange(0, 361, 10.0)), ck.deg(np.arange(0, 361, 1.0))
 
 
 def given(name: str, values: Any = COARSE, mechanism: str = "six-bar", **rates: Any) -> tuple[Designs, Response]:
-    path, (response,) = studied_path(ck.catalog.load_named(mechanism), list(RANGES), [name], values, **rates)
+    path, (response,) = studied_path(ck.load(mechanism), list(RANGES), [name], values, **rates)
     return path.designs(sample_of("sobol", 16, 1).designs(RANGES, range(4, 12))), response
 
 
@@ -92,7 +92,7 @@ def test_designs_that_do_not_assemble_have_no_figure() -> None:
 
 
 def hold_solved(mechanism: str, dimension: str, name: str) -> None:
-    path, (response,) = studied_path(ck.catalog.load_named(mechanism), [dimension], [name], COARSE, speed=3.0)
+    path, (response,) = studied_path(ck.load(mechanism), [dimension], [name], COARSE, speed=3.0)
     assert isinstance(response, SolvedResponse)
     own = path.compiled.programs.stated.own(path.compiled.programs.dimensions[0])
     designs = path.designs({dimension: own * np.array([0.95, 1.0, 1.05])})
@@ -120,7 +120,7 @@ def test_functions_of_a_pose_are_summed_with_their_slopes() -> None:
     target = np.exp(1j * COARSE)
     outputs = {"error": lambda at: abs(at["G.position"] - at["target"]) ** 2 * at["weight"], "G.x.greatest": None}
     given = {"target": target, "weight": 2.0}
-    six_bar = ck.catalog.load_named("six-bar")
+    six_bar = ck.load("six-bar")
     path, (error, reach) = studied_path(six_bar, list(RANGES), outputs, COARSE, given=given)
     designs = path.designs(sample_of("sobol", 16, 1).designs(RANGES, range(4, 12)))
     expected = (2.0 * abs(ck.quantity(designs.motion, "G.position").values - target) ** 2).sum(axis=-1)
@@ -136,7 +136,7 @@ def test_functions_of_a_pose_are_summed_with_their_slopes() -> None:
 
 
 def test_led_designs_are_solved_in_time_too() -> None:
-    path, (response,) = studied_path(ck.catalog.load_named("five-bar-led"), ["left.B"], ["left.angle.stroke"])
+    path, (response,) = studied_path(ck.load("five-bar-led"), ["left.B"], ["left.angle.stroke"])
     own = path.compiled.programs.stated.own(path.compiled.programs.dimensions[0])
     designs = path.designs({"left.B": own * np.array([0.99, 1.0, 1.01])})
     expected = ck.quantity(designs.motion, "left.angle.stroke").values[:, 0]
@@ -145,7 +145,7 @@ def test_led_designs_are_solved_in_time_too() -> None:
 
 def test_numbers_of_laws_have_slopes_of_figures() -> None:
     program = ck.laws.program(ck.laws.rise(1.2, over=0.6), ck.laws.dwell(0.5), ck.laws.fall(1.2, over=0.8))
-    press = ck.catalog.load_named("six-bar").replace(ck.drive("crank", law=program))
+    press = ck.load("six-bar").replace(ck.drive("crank", law=program))
     times = np.linspace(0.0, 1.8, 37)
     path, (response,) = studied_path(
         press, ["crank.law.segments.0.over"], ["G.velocity.length.greatest"], None, time=times

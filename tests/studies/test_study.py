@@ -23,7 +23,7 @@ def six_bar(count: int = 8192, speed: float = 3.0, more: str = "") -> ck.results
     # made without scipy.stats, which takes a worker a second to import
     which: dict[str, Any] = {"sample": "random", "count": count, "seed": 2}
     turn = ck.deg(np.arange(0, 360, 60))
-    return ck.study(ck.catalog.load_named("six-bar"), ranges, outputs, **which, values=turn, speed=speed)
+    return ck.study(ck.load("six-bar"), ranges, outputs, **which, values=turn, speed=speed)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def test_tables_and_frames_have_the_columns(figures: ck.results.StudyResult) -> 
 def test_what_cannot_be_meant_is_told_before_anything_runs(options: dict[str, Any], told: str) -> None:
     given = {"dimensions": {"crank.D.x": (13, 14)}, "outputs": ["G.position"], "count": 4, **options}
     with pytest.raises(ck.errors.CompoundkinError, match=told):
-        ck.study(ck.catalog.load_named("six-bar"), **given)
+        ck.study(ck.load("six-bar"), **given)
 
 
 def test_a_result_tells_which_columns_it_has(figures: ck.results.StudyResult) -> None:
@@ -140,7 +140,7 @@ def test_functions_of_a_pose_are_outputs_in_folders_too(tmp_path: Path) -> None:
         outputs = {"error": lambda at: abs(at["C.position"] - at["target"]) ** 2 - target.imag}
         free, turn = {"crank.B.x": (0.9, 1.1)}, ck.deg(np.arange(0, 360, 60))
         given = {"target": target}
-        return ck.study(ck.catalog.load_named("crank-rocker"), free, outputs, count=4, values=turn, given=given)
+        return ck.study(ck.load("crank-rocker"), free, outputs, count=4, values=turn, given=given)
 
     result = away(5 + 2j).run(tmp_path)
     places = ck.quantity(result.motion(3), "C.position").values

@@ -95,7 +95,7 @@ def problems(*changes: tuple[str, str]) -> list[str]:
 def test_a_file_says_what_python_says() -> None:
     found = read(TEXT)
     bar = found["dimensions"]
-    assert found["mechanism"] == ck.catalog.load_named("six-bar")
+    assert found["mechanism"] == ck.load("six-bar")
     assert (found["sample"], found["count"], found["seed"]) == ("latin-hypercube", 300, 7)
     assert bar["crank.D"] == around((15, 0), 0.05, sigmas=3)
     assert bar["rocker.A.x"].data == {"low": 27, "high": 29}
@@ -123,9 +123,9 @@ def test_what_is_written_is_read_as_the_same(syntax: str) -> None:
 
 
 def test_the_mechanism_is_found_from_the_file(tmp_path: Path) -> None:
-    (tmp_path / "own.toml").write_text(dumps(ck.catalog.load_named("crank-rocker")), "utf-8")
+    (tmp_path / "own.toml").write_text(dumps(ck.load("crank-rocker")), "utf-8")
     text = 'format = 1\nmechanism = "own.toml"\noutputs = ["C"]\n[dimensions]\n"coupler.C.x" = { low = 1, high = 2 }'
-    assert read(text, tmp_path)["mechanism"].title == ck.catalog.load_named("crank-rocker").title
+    assert read(text, tmp_path)["mechanism"].title == ck.load("crank-rocker").title
     (tmp_path / "own.toml").write_text("format = 1\ntitle = 3", "utf-8")
     with pytest.raises(InvalidInput, match=r"mechanism title: 3 is not a text"):
         read(text, tmp_path)
@@ -134,9 +134,9 @@ def test_the_mechanism_is_found_from_the_file(tmp_path: Path) -> None:
 def test_angles_are_known_before_anything_is_solved() -> None:
     """By the units that programs know, in every shipped mechanism; points and lengths are none."""
     for name in ("six-bar", "planetary-gear", "crane", "disc-cam-offset-roller"):
-        if name not in ck.catalog.names():
+        if name not in ck.exchange.shipped():
             continue
-        mechanism = ck.catalog.load_named(name)
+        mechanism = ck.load(name)
         stated = ck.compile(mechanism, mechanism.outputs or ["frame.angle"], free=[]).programs.stated
         for one in stated.known.values():
             if not one.is_of_law:
@@ -145,7 +145,7 @@ def test_angles_are_known_before_anything_is_solved() -> None:
 
 def test_angles_of_laws_follow_their_driver() -> None:
     turned = ck.laws.program(ck.laws.rise(1.2, over=1.0), ck.laws.dwell(0.5))
-    mechanism = ck.catalog.load_named("six-bar").replace(ck.drive("crank", law=turned))
+    mechanism = ck.load("six-bar").replace(ck.drive("crank", law=turned))
     for is_angle in (True, False):
         words = ("start", "segments.0.rise", "segments.0.over", "segments.0.speed")
         found = [is_angle_dimension(mechanism, {"crank": is_angle}, f"crank.law.{word}") for word in words]

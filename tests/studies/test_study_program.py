@@ -18,7 +18,7 @@ TURN = ck.deg(np.arange(0.0, 360.0, 10.0))
 @pytest.fixture(scope="module")
 def program() -> StudyProgram:
     names = ["G.position", "bar.angle.stroke", "plate.transmission_angle.least"]
-    path, responses = studied_path(ck.catalog.load_named("six-bar"), list(RANGES), names, TURN, speed=3.0)
+    path, responses = studied_path(ck.load("six-bar"), list(RANGES), names, TURN, speed=3.0)
     return StudyProgram(RANGES, sample_of("sobol", 8192, 1), path, responses)
 
 

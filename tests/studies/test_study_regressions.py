@@ -22,7 +22,7 @@ target = 1.0
 
 
 def rocker(count: int = 4096, dimensions: Any = None, outputs: Any = "rocker.angle", **options: Any) -> Any:
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     options = {"values": [0.0, 0.1], "sample": "random", **options}
     return ck.study(mechanism, dimensions or CRANK, outputs, count=count, **options)
 
@@ -111,7 +111,7 @@ def test_poses_that_are_far_apart_are_not_looked_between_for_ever(far: float) ->
 
 
 def test_figures_of_a_design_do_not_depend_on_others_near_their_limits() -> None:
-    lamp = ck.catalog.load_named("balanced-lamp")
+    lamp = ck.load("balanced-lamp")
     # a design whose force grows without limit made the search trust coarse polynomials of the other
     designs = {"head.L.x": np.array([0.19, 0.219]), "frame.R.y": np.array([-0.0596, -0.0645])}
     result = ck.study(lamp, designs, "O.force.length.least", sample="table").run()
@@ -149,13 +149,13 @@ def test_numbers_that_are_too_large_are_told_so(options: dict[str, Any], told: s
 
 
 def test_more_random_designs_than_stay_in_memory_are_refused() -> None:
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     with pytest.raises(InvalidInput, match="count: 100000000 designs of 2 values each do not stay in memory; at most"):
         ck.tolerance(mechanism, {"crank.B.x": 0.01}, "rocker.angle", values=[0.0, 0.1], count=10**8)
 
 
 def test_errors_given_as_values_are_likely_slips() -> None:
-    mechanism = ck.catalog.load_named("crank-rocker")
+    mechanism = ck.load("crank-rocker")
     options: Any = {"values": [0.0, 0.1], "count": 100, "percentiles": (50,)}
     with pytest.warns(LikelySlip, match=r"tolerances\.crank\.B\.x: the mechanism's own value is not among these"):
         ck.tolerance(mechanism, {"crank.B.x": ck.around(0.0, 0.01)}, "rocker.angle", **options)
@@ -171,7 +171,7 @@ def test_a_saved_study_goes_on_with_the_folder_of_the_first(tmp_path: Path) -> N
 
 
 def test_a_length_that_comes_to_zero_has_no_slope_there() -> None:
-    shaper = ck.catalog.load_named("crank-shaper")
+    shaper = ck.load("crank-shaper")
     least = "E.velocity.length.least"
     found = ck.tolerance(shaper, {"crank.A.x": 0.05}, least, count=100, percentiles=(50,))[least]
     assert (found.slopes["crank.A.x"], found.worst, found.deviation) == (0.0, 0.0, 0.0)

@@ -26,7 +26,7 @@ def changed(mechanism: ck.Mechanism, coordinate: str, step: float) -> ck.Mechani
 
 
 def test_slopes_are_differences_of_solve() -> None:
-    six_bar = ck.catalog.load_named("six-bar")
+    six_bar = ck.load("six-bar")
     names = ["G.position", "bar.angle", "G.velocity.length", "G.x.stroke", "bar.angle.greatest"]
     tolerances = {"crank.D.x": 0.05, "plate.C": 0.05, "frame.B": 0.1}
     found = ck.tolerance(six_bar, tolerances, names, values=TURN, speed=2.0, clearance={"A": 0.02})
@@ -83,7 +83,7 @@ def test_a_slider_crank_has_its_closed_form() -> None:
 
 def test_a_guide_through_a_point_has_an_offset_of_none() -> None:
     """It is not written, and may be off all the same: as by the offset that is written."""
-    shaper = ck.catalog.load_named("crank-shaper")
+    shaper = ck.load("crank-shaper")
     for asked in ({"clearance": {"slot": 0.03}}, {"tolerances": {"slot.offset": 0.03}}):
         found = ck.tolerance(shaper, **{"tolerances": {}, **asked}, outputs="ram.value", count=800)["ram.value"]
         slot = next(pair for pair in shaper.written_pairs if pair.name == "slot")
@@ -123,7 +123,7 @@ def test_a_four_bar_has_the_mechanical_error_of_the_textbooks() -> None:
 
 def test_a_play_is_the_same_on_either_link() -> None:
     """What two links are off at their pin depends on neither, but for the axes that it is told in."""
-    six_bar = ck.catalog.load_named("six-bar")
+    six_bar = ck.load("six-bar")
     for pin, links in {"D": ("crank", "plate"), "A": ("plate", "rocker"), "E": ("frame", "crank")}.items():
         one, other = (
             ck.tolerance(six_bar, {}, "bar.angle", values=TURN, clearance={f"{link}.{pin}": 0.02}, count=800)[
@@ -136,12 +136,12 @@ def test_a_play_is_the_same_on_either_link() -> None:
 
 
 def test_figures_have_tolerances_too() -> None:
-    found = ck.tolerance(ck.catalog.load_named("slider-crank"), {"crank.A.x": 0.001}, "stroke.stroke")["stroke.stroke"]
+    found = ck.tolerance(ck.load("slider-crank"), {"crank.A.x": 0.001}, "stroke.stroke")["stroke.stroke"]
     assert (found.is_course, found.nominal, found.worst) == (False, pytest.approx(0.24), pytest.approx(0.002))
 
 
 def test_random_designs_agree_with_the_slopes_where_tolerances_are_small() -> None:
-    six_bar = ck.catalog.load_named("six-bar")
+    six_bar = ck.load("six-bar")
     names = ["G.position", "bar.angle", "G.velocity.length", "G.x.stroke"]
     given = {"crank.D.x": 1e-3, "plate.C": (-2e-3, 0), "frame.B": ck.around(six_bar.links["frame"].points["B"], 1e-3)}
     found = ck.tolerance(six_bar, given, names, values=TURN, speed=2.0, count=8000, seed=3, percentiles=(2, 50, 98))
@@ -158,7 +158,7 @@ def test_random_designs_agree_with_the_slopes_where_tolerances_are_small() -> No
 
 def test_random_designs_are_those_of_solve() -> None:
     """Also where tolerances are not small; a play displaces one link's point by just its radius."""
-    six_bar = ck.catalog.load_named("six-bar")
+    six_bar = ck.load("six-bar")
     given = {"plate.C.x": stats.norm(12, 0.5), "crank.D.x": 0.3}
     asked = {"values": TURN, "speed": 2.0, "clearance": {"plate.C": 0.2}, "count": 40, "percentiles": [50]}
     found = ck.tolerance(six_bar, given, ["bar.angle", "G.velocity.length", "G.x.greatest", "G.x.stroke"], **asked)
@@ -263,7 +263,7 @@ def test_angles_are_counted_by_the_nearest_turn() -> None:
     ],
 )
 def test_what_is_wrong_is_told(given: dict[str, object], told: str) -> None:
-    right = {"mechanism": ck.catalog.load_named("six-bar"), "tolerances": {"plate.C": 0.1}, "outputs": "bar.angle"}
+    right = {"mechanism": ck.load("six-bar"), "tolerances": {"plate.C": 0.1}, "outputs": "bar.angle"}
     with pytest.raises(ck.errors.CompoundkinError, match=told):
         ck.tolerance(**{**right, **given})
 
@@ -316,7 +316,7 @@ def test_the_page_prints_what_it_shows(
 
 
 def test_pins_of_three_links_want_to_know_which_are_loose() -> None:
-    press = ck.catalog.load_named("toggle-press")
+    press = ck.load("toggle-press")
     with pytest.raises(ck.errors.InvalidInput, match=r"3 links meet there.*BD.B, CB.B, AB.B"):
         ck.tolerance(press, {}, "D.y", clearance={"B": 0.02})
     found = ck.tolerance(press, {}, "D.y", clearance={"BD.B": 0.02, "CB.B": 0.02})

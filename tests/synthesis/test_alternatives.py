@@ -8,7 +8,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
@@ -21,7 +21,7 @@ from tests.kinematics.assembly.laman import laman_number
 
 def test_a_four_bar_has_one_frame_and_two_places_for_a_driver():
     # by hand: all links of the loop are alike; a driver is next to the frame or opposite to it, two pins each
-    found = alternatives(load_named("crank-rocker"))
+    found = alternatives(load("crank-rocker"))
     assert [(choice.frame, choice.title, choice.class_, choice.configurations, choice.alike) for choice in found] == [
         ("frame", "four-bar", 2, 2, 8),
         ("frame", "four-bar", 2, 2, 8),
@@ -30,7 +30,7 @@ def test_a_four_bar_has_one_frame_and_two_places_for_a_driver():
 
 @pytest.mark.parametrize("name", ["stephenson-ii", "watt-i", "geared-five-bar"])
 def test_every_choice_is_the_inverted_mechanism_taken_apart(name):
-    mechanism = load_named(name)
+    mechanism = load(name)
     found = alternatives(mechanism)
     places = sum(len(links) * (len(links) - 1) // 2 for links in mechanism.pins.values())
     places += sum(as_drivable(pair) is not None and len(pair.members) == 2 for pair in mechanism.written_pairs)

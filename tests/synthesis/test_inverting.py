@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, UnknownName
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.synthesis.inversion import with_driver, with_frame
 
 # As drawn and dimensioned; modes by sign, by drawing; slides, gears, racks, cams; larger groups.
@@ -17,7 +17,7 @@ CASES = ["six-bar", "four-bar-norton", "jaw-crusher", "parallelogram", "stephens
 
 @pytest.mark.parametrize("name", CASES)
 def test_points_seen_from_the_new_frame_move_as_before(name):
-    mechanism = load_named(name)
+    mechanism = load(name)
     motion = ck.solve(mechanism, order=0)
     spun = {spin.link for spin in ck.decompose(mechanism).passive}
     for link in [link for link in mechanism.links if link != "frame" and link not in spun]:
@@ -31,7 +31,7 @@ def test_points_seen_from_the_new_frame_move_as_before(name):
 
 
 def test_inverting_back_is_the_same_motion():
-    mechanism = load_named("four-bar-norton")
+    mechanism = load("four-bar-norton")
     twice = with_frame(
         with_frame(mechanism, "coupler" if "coupler" in mechanism.links else [*mechanism.links][2]), "old frame"
     )
@@ -41,7 +41,7 @@ def test_inverting_back_is_the_same_motion():
 
 
 def test_driving_elsewhere_reaches_the_same_poses():
-    mechanism = load_named("four-bar-norton")
+    mechanism = load("four-bar-norton")
     crank = mechanism.drives[0].link
     rocker = next(
         link for link in mechanism.pins[[*mechanism.links["frame"].points][1]] if link not in ("frame", crank)
@@ -57,17 +57,17 @@ def test_driving_elsewhere_reaches_the_same_poses():
 
 
 def test_a_driven_slide_without_values_stays_where_it_is():
-    driven = with_driver(load_named("slider-crank"), "piston")
+    driven = with_driver(load("slider-crank"), "piston")
     assert ck.solve(driven).assembled.all()
     assert np.size(driven.drives[0].values) == 1
 
 
 def test_what_cannot_be_meant():
     with pytest.raises(UnknownName):
-        with_frame(load_named("six-bar"), "crnk")
+        with_frame(load("six-bar"), "crnk")
     with pytest.raises(InvalidInput, match="several drivers"):
-        with_driver(load_named("five-bar"), [*load_named("five-bar").links][2])
+        with_driver(load("five-bar"), [*load("five-bar").links][2])
     with pytest.raises(UnknownName, match="no such driver"):
-        with_driver(load_named("six-bar"), "rocker", instead="piston")
+        with_driver(load("six-bar"), "rocker", instead="piston")
     with pytest.raises(ck.errors.InvalidMechanism, match="no pair"):
-        with_driver(load_named("six-bar"), "plate")
+        with_driver(load("six-bar"), "plate")

@@ -27,7 +27,7 @@ def crank_forces() -> Forces:
 
 def six_bar() -> ck.Mechanism:
     """The six-bar of Example 3-4 with masses on all links, a force on G and a torque on the rocker."""
-    bare = ck.catalog.load_named("six-bar")
+    bare = ck.load("six-bar")
     masses = (
         ck.mass("crank", 0.03, at=(7, 0), inertia=1.0),
         ck.mass("plate", 0.12, at=(17, 3), inertia=20.0),

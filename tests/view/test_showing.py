@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view import notebook
 from compoundkin.view.notebook import MOST_LINKS, html_of, unguarded
 from compoundkin.view.page.html_blocks import MOST_ROWS
@@ -79,7 +79,7 @@ def page_of(what: Any) -> Page:
 
 @pytest.fixture(scope="module")
 def motion() -> ck.results.Motion:
-    return ck.solve(load_named("six-bar"), {"crank": ck.deg(range(0, 361, 5))}, speed=10)
+    return ck.solve(load("six-bar"), {"crank": ck.deg(range(0, 361, 5))}, speed=10)
 
 
 def loose() -> ck.Mechanism:
@@ -165,7 +165,7 @@ def test_short_texts_stand_where_no_page_is_shown(motion: ck.results.Motion) -> 
 
 
 def test_what_is_made_to_be_seen_says_in_short_what_it_is() -> None:
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     motion = ck.solve(mechanism)
     title = repr(mechanism.title)
     assert repr(ck.draw(motion)).startswith(f"Picture({title}, ")
@@ -280,7 +280,7 @@ def test_of_many_centres_the_derivation_alone_is_shown(
 
 
 def test_a_mobility_analysis_shows_count_and_dimensions() -> None:
-    found = ck.mobility_analysis(load_named("parallelogram-third-crank"))
+    found = ck.mobility_analysis(load("parallelogram-third-crank"))
     page = page_of(found)
     numbers = [int(row[1]) for row in page.tables[0][1:]]
     assert numbers == [found.gruebler, found.generic, found.at_pose, found.finite] == [0, 0, 1, 1]
@@ -297,7 +297,7 @@ def test_a_cam_shows_its_pressure_angle() -> None:
         ck.cam("follower", on="cam", profile=ck.profiles.disc(20, (10, 0)), radius=5),
         ck.drive("cam"),
     )
-    found = ck.cams.cam_analysis(ck.solve(eccentric, {"cam": ck.deg(range(0, 361, 5))}), "follower/cam")
+    found = ck.figures.cam_analysis(ck.solve(eccentric, {"cam": ck.deg(range(0, 361, 5))}), "follower/cam")
     row = page_of(found).tables[0][1]
     assert row[0] == "pressure angle"
     # arcsin of the eccentricity over the sum of the radii
@@ -339,7 +339,7 @@ def test_a_mechanism_without_a_picture_shows_its_links() -> None:
 
 def test_what_is_large_is_shown_in_part_and_is_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(notebook, "draw", never)
-    large = ck.composing.random_mechanism(groups=300, seed=2)
+    large = ck.chains.random_mechanism(groups=300, seed=2)
     assert len(large.links) > MOST_LINKS
     for what, count in ((large, len(large.links)), (ck.decompose(large), 301)):
         page = page_of(what)
@@ -360,6 +360,6 @@ def test_showing_never_raises(monkeypatch: pytest.MonkeyPatch) -> None:
     "name", ["3-rrr", "class-iii-six-bar", "disc-cam-offset-roller", "planetary-train", "scissor-lift", "v8-engine"]
 )
 def test_mechanisms_of_all_kinds_show_themselves(name: str) -> None:
-    mechanism = load_named(name)
+    mechanism = load(name)
     for what in (mechanism, ck.decompose(mechanism), ck.mobility_analysis(mechanism)):
         page_of(what)

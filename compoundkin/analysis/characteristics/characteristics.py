@@ -134,7 +134,7 @@ def characteristics(
     Raises UnknownName for an output that is not there, InvalidInput for a design that is not.
 
     >>> import compoundkin as ck
-    >>> found = characteristics(ck.solve(ck.catalog.load_named("whitworth-quick-return")))
+    >>> found = characteristics(ck.solve(ck.load("whitworth-quick-return")))
     >>> round(found["ram.value"].stroke.values, 9), round(float(found["ram.value"].time_ratio.values), 9)
     (150.0, 2.0)
     """

@@ -99,7 +99,7 @@ def linkage_types(what: Mechanism | Structure, design: int = 0) -> tuple[FourBar
     design that is not there.
 
     >>> import compoundkin as ck
-    >>> linkage_types(ck.catalog.load_named("crank-rocker"))[0].name
+    >>> linkage_types(ck.load("crank-rocker"))[0].name
     'crank-rocker'
     """
     structure = decompose(what) if isinstance(what, Mechanism) else what
@@ -311,7 +311,7 @@ def loops_of_four(structure: Structure_of_kinematic_structure) -> tuple[FourLink
     """Return all loops of four links, those with the frame first.
 
     >>> import compoundkin as ck
-    >>> loops_of_four(ck.decompose(ck.catalog.load_named("slider-crank")))[0].links
+    >>> loops_of_four(ck.decompose(ck.load("slider-crank")))[0].links
     ('frame', 'crank', 'rod', 'piston')
     """
     order = _solved_in(structure)

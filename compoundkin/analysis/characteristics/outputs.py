@@ -89,7 +89,7 @@ def outputs_of(motion: Motion, names: Sequence[str]) -> tuple[Output, ...]:
     """Return the outputs that names of quantities mean, each once. Raises UnknownName with the nearest known name.
 
     >>> import compoundkin as ck
-    >>> motion = ck.solve(ck.catalog.load_named("six-bar"))
+    >>> motion = ck.solve(ck.load("six-bar"))
     >>> [(one.name, one.coordinate, one.rate) for one in outputs_of(motion, ["G.velocity", "rocker"])]
     [('G', '', 'G.velocity.length'), ('rocker.angle', 'rocker.angle', 'rocker.angular_velocity')]
     """

@@ -131,7 +131,7 @@ def simple_shape(motion: Motion, point: str, design: int = 0) -> str:
     It is a "line" or a "circle" but for rounding; "" for other curves.
 
     >>> import compoundkin as ck
-    >>> simple_shape(ck.solve(ck.catalog.load_named("slider-crank")), "A")
+    >>> simple_shape(ck.solve(ck.load("slider-crank")), "A")
     'circle'
     """
     rows = np.asarray(motion.points[point].position).reshape(motion.inputs.designs, motion.inputs.poses)[design]
@@ -153,7 +153,7 @@ def path_features(motion: Motion, point: str, tolerance: float | None = None, de
     Raises UnknownName for a point that is not there, InvalidInput for one that does not move.
 
     >>> import compoundkin as ck
-    >>> found = path_features(ck.solve(ck.catalog.load_named("rolling-wheel")), "P")    # a cycloid
+    >>> found = path_features(ck.solve(ck.load("rolling-wheel")), "P")    # a cycloid
     >>> [round(cusp.point.real / np.pi, 9) for cusp in found.cusps], found.double_points
     ([4.0], ())
     """
@@ -231,7 +231,7 @@ def straightness(motion: Motion, point: str, begin: float, end: float, design: i
     `path_features`, and InvalidInput for values outside.
 
     >>> import compoundkin as ck
-    >>> motion = ck.solve(ck.catalog.load_named("hoecken-straight-line"))
+    >>> motion = ck.solve(ck.load("hoecken-straight-line"))
     >>> stretch = straightness(motion, "P", *ck.deg([90, 270]))
     >>> round(100 * stretch.straightness, 2)
     0.24

@@ -219,7 +219,7 @@ def monotonic_stretches(motion: Motion, design: int) -> Iterator[tuple[int, int,
     all links are where they were, the first one.
 
     >>> import compoundkin as ck
-    >>> list(monotonic_stretches(ck.solve(ck.catalog.load_named("crank-rocker")), 0))
+    >>> list(monotonic_stretches(ck.solve(ck.load("crank-rocker")), 0))
     [(0, 72, True)]
     """
     drives = _driven(motion, design)

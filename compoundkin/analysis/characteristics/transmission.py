@@ -89,7 +89,7 @@ def groups_of_outputs(structure: Structure, outputs: Iterable[Output]) -> set[in
 
     >>> import compoundkin as ck
     >>> from compoundkin.analysis.characteristics.outputs import outputs_of
-    >>> motion = ck.solve(ck.catalog.load_named("watt-ii"))
+    >>> motion = ck.solve(ck.load("watt-ii"))
     >>> groups_of_outputs(motion.structure, outputs_of(motion, ["DCE"]))
     {0}
     """

@@ -84,9 +84,9 @@ def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
     them. Raises UnknownName, and InvalidInput for order 0, a link seen from itself or a driver at rest.
     Source: Bottema and Roth, Theoretical Kinematics, chapter VIII: ``P = z + i z' / omega``.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2, 0.0]})
+    >>> motion = solve(load("elliptic-trammel"), {"rod": [np.pi / 2, 0.0]})
     >>> pole(motion, "rod").world.round(9).tolist()
     [3j, (-3+0j)]
     >>> abs(pole(motion, "slider-a").direction.imag).round(9).tolist()     # at right angles to its guide
@@ -105,9 +105,9 @@ def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
     (see `pole`). Proportional to the driver's speed. Raises as `pole`, and InvalidInput below order 2.
     Source: E. A. Dijksman, Motion Geometry of Mechanisms (1976).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=-1.0)
+    >>> motion = solve(load("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=-1.0)
     >>> abs(pole_velocity(motion, "rod")).round(9).tolist()
     [3.0]
     """
@@ -124,9 +124,9 @@ def centrodes(motion: Motion, link: str, on: str = FRAME) -> Centrodes:
     velocities along them on the driver's. Raises as `pole`, and InvalidInput below order 2.
     Source: Dijksman, Motion Geometry of Mechanisms; the rolling is due to Cauchy and Poinsot.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> trammel = centrodes(solve(load_named("elliptic-trammel")), "rod")
+    >>> trammel = centrodes(solve(load("elliptic-trammel")), "rod")
     >>> abs(trammel.fixed).round(9)[:2].tolist(), abs(trammel.moving - 1.5).round(9)[:2].tolist()     # Cardan's circles
     ([3.0, 3.0], [1.5, 1.5])
     """
@@ -144,9 +144,9 @@ def centrode_curvature(motion: Motion, link: str, on: str = FRAME) -> tuple[Numb
     infinity, not defined, a limit, or does not move (a pin). Raises as `pole`, and InvalidInput below order 3.
     Source: Dijksman, Motion Geometry of Mechanisms, the second equation of Euler and Savary.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> fixed, moving = centrode_curvature(solve(load_named("elliptic-trammel"), order=3), "rod")
+    >>> fixed, moving = centrode_curvature(solve(load("elliptic-trammel"), order=3), "rod")
     >>> (1 / fixed).round(9)[:2].tolist(), (1 / moving).round(9)[:2].tolist()     # the pole runs against the rod's turn
     ([-3.0, -3.0], [-1.5, -1.5])
     """

@@ -83,9 +83,9 @@ def link_position(motion: Motion, link: str, at: Any, on: str = FRAME) -> LinkPo
     for a link that is not there, InvalidInput for an index that is not there or a link seen from itself, NotAssembled
     where no pose asked for is.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("crank-rocker"), {"crank": np.deg2rad([0, 30, 60])})
+    >>> motion = solve(load("crank-rocker"), {"crank": np.deg2rad([0, 30, 60])})
     >>> round(float(np.rad2deg(link_position(motion, "crank", 2).angle)), 9)
     60.0
     """

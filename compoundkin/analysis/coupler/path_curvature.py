@@ -68,7 +68,7 @@ def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> Pa
     Mechanisms, chapter 4.
 
     >>> import compoundkin as ck
-    >>> motion = ck.solve(ck.catalog.load_named("elliptic-trammel"), {"rod": [1.0, 2.0]})
+    >>> motion = ck.solve(ck.load("elliptic-trammel"), {"rod": [1.0, 2.0]})
     >>> path_curvature(motion, "rod", "M").radius.round(9).tolist()
     [1.5, 1.5]
     >>> path_curvature(motion, "rod", "A").inflection.tolist()
@@ -95,7 +95,7 @@ def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> Path
     Hartenberg and J. Denavit, Kinematic Synthesis of Linkages (1964), section 7-1: ``(1/r - 1/r0) sin psi = 1/d``.
 
     >>> import compoundkin as ck
-    >>> motion = ck.solve(ck.catalog.load_named("elliptic-trammel"), {"rod": [1.0, 2.0]})
+    >>> motion = ck.solve(ck.load("elliptic-trammel"), {"rod": [1.0, 2.0]})
     >>> euler_savary(motion, "rod", "M").radius.round(9).tolist()
     [1.5, 1.5]
     """
@@ -121,7 +121,7 @@ def curvature_rate(motion: Motion, link: str, point: Any, on: str = FRAME) -> Nu
     Source: the derivative of ``(v x a) / |v|^3`` by the arc length.
 
     >>> import compoundkin as ck
-    >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0]}, order=3)
+    >>> motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]}, order=3)
     >>> (curvature_rate(motion, "coupler", "B") + 0.0).round(9).tolist()
     [0.0]
     """
@@ -202,7 +202,7 @@ def stationary_curvature(motion: Motion, link: str, on: str = FRAME) -> Stationa
     ``1 / (M sin psi) + 1 / (N cos psi) = 1 / r``.
 
     >>> import compoundkin as ck
-    >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0, 2.0]}, order=3)
+    >>> motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0, 2.0]}, order=3)
     >>> cubic = stationary_curvature(motion, "coupler")
     >>> abs(cubic.residual(motion.points["B"].position)).round(9).tolist()      # it moves on a circle
     [0.0, 0.0]
@@ -309,9 +309,9 @@ def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFram
     below order 2, for a link seen from itself or a driver at rest. Source: Bottema and Roth, Theoretical Kinematics,
     chapter VIII (canonical system; b2 is the diameter).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> frame = canonical_frame(solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2]}), "rod")
+    >>> frame = canonical_frame(solve(load("elliptic-trammel"), {"rod": [np.pi / 2]}), "rod")
     >>> frame.origin.round(9).tolist(), frame.normal.round(9).imag.tolist(), frame.diameter.round(9).tolist()
     ([3j], [-1.0], [3.0])
     """
@@ -328,9 +328,9 @@ def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircl
     infinity and they form a line, not defined if the translation is an exact one (no angular acceleration).
     Raises as `canonical_frame`. Source: Dijksman, Motion Geometry of Mechanisms; Bresse (1853).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> circle = inflection_circle(solve(load_named("elliptic-trammel")), "rod")
+    >>> circle = inflection_circle(solve(load("elliptic-trammel")), "rod")
     >>> abs(circle.opposite).round(9)[:2].tolist(), circle.radius.round(9)[:2].tolist()     # it is the moving centrode
     ([0.0, 0.0], [1.5, 1.5])
     """
@@ -352,9 +352,9 @@ def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircl
     constant speed, where all points qualify. Lengths in the user's unit. Raises as `canonical_frame`. Source: Bottema
     and Roth, Theoretical Kinematics, chapter VIII; Bresse (1853).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0, acceleration=2.0)
+    >>> motion = solve(load("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0, acceleration=2.0)
     >>> tangential_circle(motion, "rod").diameter.round(9).tolist()
     [1.5]
     """
@@ -378,9 +378,9 @@ def acceleration_pole(motion: Motion, link: str, on: str = FRAME) -> Number:
     have none or the pose has no rates. It depends on the drivers' accelerations. Raises as `canonical_frame`.
     Source: Bottema and Roth, Theoretical Kinematics, chapter VIII: ``z - z'' / (i alpha - omega^2)``.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0, acceleration=0.0)
+    >>> motion = solve(load("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0, acceleration=0.0)
     >>> abs(acceleration_pole(motion, "rod")).round(9).tolist()      # the centre of the fixed circle
     [0.0]
     """

@@ -33,9 +33,9 @@ def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
     there, InvalidInput for a link seen from itself. Source: O. Bottema and B. Roth, Theoretical Kinematics (1979),
     chapter VIII, the pose being ``pose(on)^-1 pose(link)``.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> crank = relative_link(solve(load_named("crank-rocker"), {"crank": [0.0]}, speed=2.0), "frame", on="crank")
+    >>> crank = relative_link(solve(load("crank-rocker"), {"crank": [0.0]}, speed=2.0), "frame", on="crank")
     >>> crank.angular_velocity.tolist()
     [-2.0]
     """
@@ -52,9 +52,9 @@ def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> Po
     ``motion.poses[on].u`` for world axes. Raises UnknownName for a link or letter that is not there, InvalidInput for a
     link seen from itself and for what is not a point. Source: as `relative_link`.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0)
+    >>> motion = solve(load("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0)
     >>> relative_point(motion, "frame", "O", on="rod").speed.round(9).tolist()     # on a circle of radius 1.5
     [3.0]
     """

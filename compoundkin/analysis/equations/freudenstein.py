@@ -29,8 +29,8 @@ def freudenstein(mechanism: Mechanism | Structure) -> tuple[FourBarConstants | S
 
     These are the four-bars of pins on the frame, and slider-cranks whose guide is on it.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> (found,) = freudenstein(load_named("four-bar-norton"))
+    >>> from compoundkin.files import load
+    >>> (found,) = freudenstein(load("four-bar-norton"))
     >>> {name: round(float(value), 4) for name, value in found.constants.items()}
     {'K1': 2.5, 'K2': 1.25, 'K3': 0.5625, 'K4': 0.8333, 'K5': -2.0417}
     >>> found.text[0]

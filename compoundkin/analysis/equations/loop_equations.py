@@ -91,11 +91,11 @@ def loop_equations(mechanism: Mechanism | Structure, order: int = 0) -> LoopEqua
 
     Raises InvalidInput for more than `MOST_LOOPS` loops and for other orders.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> found = loop_equations(load_named("slider-crank"))
+    >>> from compoundkin.files import load
+    >>> found = loop_equations(load("slider-crank"))
     >>> len(found.loops), len(found.auxiliary), [unknown.key for unknown in found.unknowns]
     (1, 1, ['crank', 'rod', 'piston', 's(stroke)'])
-    >>> found = loop_equations(load_named("slider-crank"), order=2)
+    >>> found = loop_equations(load("slider-crank"), order=2)
     >>> print(found.velocity.matrix.text)
     [ -AB sin(rod)  -1 ]
     [  AB cos(rod)   0 ]

@@ -78,8 +78,8 @@ def newton_iterations(
     Raises InvalidInput for values that are missing and for mechanisms of several designs, UnknownName for other names,
     NotDetermined for a structure that cannot be solved.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> found = newton_iterations(load_named("four-bar-norton"), {"crank": np.deg2rad(40)})
+    >>> from compoundkin.files import load
+    >>> found = newton_iterations(load("four-bar-norton"), {"crank": np.deg2rad(40)})
     >>> found.converged, {name: round(float(np.degrees(v)), 3) for name, v in found.values.items()}
     (True, {'coupler': 20.298, 'rocker': 57.325})
     """

@@ -17,9 +17,9 @@ from compoundkin.model.pairs.loop_terms import LETTERS, Implicit, ProfileVector,
 def text(equation: Equation) -> str:
     """Write an equation as a line of text.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.analysis.equations.loop_equations import loop_equations
-    >>> text(loop_equations(load_named("slider-crank")).loops[0])
+    >>> text(loop_equations(load("slider-crank")).loops[0])
     'OA e^(i crank) + AB e^(i rod) - s(stroke) = 0'
     """
     return _equation(equation, TEXT)

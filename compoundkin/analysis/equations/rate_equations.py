@@ -50,8 +50,8 @@ class SymbolArray(ShortRepr):
     """A matrix of expressions, or a column of them: rows of entries.
 
     >>> from compoundkin.analysis.equations.loop_equations import loop_equations
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> found = loop_equations(load_named("slider-crank"), order=2).acceleration
+    >>> from compoundkin.files import load
+    >>> found = loop_equations(load("slider-crank"), order=2).acceleration
     >>> found.right_side.entries[0][0].text
     "OA crank'' sin(crank) + OA crank'^2 cos(crank) + AB rod'^2 cos(rod)"
     """
@@ -150,9 +150,9 @@ class RateEquations(ShortRepr):
         and for values left out or that do not broadcast.
 
         >>> from compoundkin.analysis.equations.loop_equations import loop_equations
-        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.files import load
         >>> from compoundkin.kinematics import solve
-        >>> m = load_named("slider-crank")
+        >>> m = load("slider-crank")
         >>> found = loop_equations(m, order=1).velocity
         >>> found.at(solve(m, {"crank": [np.pi / 2]}, speed=2.0)).solution.round(12).tolist()
         [[-0.0, -0.24]]

@@ -41,8 +41,8 @@ def write(mechanism: Mechanism, form: str, at: Mapping[str, float] | None = None
     It is drawn `at` values of its drivers (radians, lengths), at the pose nearest to its drawing where they are left
     out. Raises InvalidInput listing all that the format cannot say.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> write(load_named("slider-crank"), "pmks").text.splitlines()[0].split(",")[2]
+    >>> from compoundkin.files import load
+    >>> write(load("slider-crank"), "pmks").text.splitlines()[0].split(",")[2]
     'R'
     """
     known = writable_formats()

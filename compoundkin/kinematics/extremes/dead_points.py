@@ -48,9 +48,9 @@ def dead_points(motion: Motion, quantity: str) -> DeadPoints:
 
     Source: R. L. Norton, Design of Machinery, 5th ed., McGraw-Hill 2012, section 3.2 (toggle positions).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> found = dead_points(solve(load_named("slider-crank-offset")), "B.x")
+    >>> found = dead_points(solve(load("slider-crank-offset")), "B.x")
     >>> np.rad2deg(found.at.drives["crank"]).round(6), found.is_greatest
     (array([165.522488, 352.819244]), array([False,  True]))
     """
@@ -99,10 +99,10 @@ def driver_dead_points(motion: Motion) -> Places:
     Ends of guides are among them; `gaps` tells what stops it. Raises InvalidInput for a single pose.
 
     >>> import warnings
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
     >>> with warnings.catch_warnings(action="ignore"):
-    ...     motion = solve(load_named("triple-rocker"), np.deg2rad(np.arange(-90.0, 91.0, 5.0)))
+    ...     motion = solve(load("triple-rocker"), np.deg2rad(np.arange(-90.0, 91.0, 5.0)))
     >>> np.rad2deg(driver_dead_points(motion).drives["driver"]).round(4).tolist()
     [-88.9768, 88.9768]
     """

@@ -69,9 +69,9 @@ def extremes(motion: Motion, *quantities: str | Measure, by_piece: bool = False)
     grow without limit. Raises UnknownName for names that the motion does not have, InvalidInput for vectors and a
     motion of a single pose.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> found, = extremes(solve(load_named("slider-crank-offset")), "B.x")
+    >>> found, = extremes(solve(load("slider-crank-offset")), "B.x")
     >>> found.greatest.value.round(6), np.rad2deg(found.greatest.at.drives["crank"]).round(6)
     (array([158.745079]), array([352.819244]))
     """
@@ -89,10 +89,10 @@ def pieces(motion: Motion) -> AssembledPieces:
     """Return the assembled pieces of a motion. Raises InvalidInput for a single pose.
 
     >>> import warnings
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
     >>> with warnings.catch_warnings(action="ignore"):
-    ...     motion = solve(load_named("triple-rocker"), np.deg2rad(np.arange(0.0, 361.0, 5.0)))
+    ...     motion = solve(load("triple-rocker"), np.deg2rad(np.arange(0.0, 361.0, 5.0)))
     >>> found = pieces(motion)  # one piece, through the end of the cycle
     >>> np.rad2deg([found.begin.drives["driver"], found.end.drives["driver"]]).round(4).tolist()
     [[271.0232], [88.9768]]

@@ -114,9 +114,9 @@ def between(
     values of others are linear between poses. `order` is the motion's own without it. Rates are by time, or `by_place`
     by the place along the motion. Raises InvalidInput for a motion of a single pose and places beyond its ends.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> found = between(solve(load_named("six-bar")), 0, [0.5, 1.5])
+    >>> found = between(solve(load("six-bar")), 0, [0.5, 1.5])
     >>> np.rad2deg(found.drives["crank"].value).round(9).tolist()
     [2.5, 7.5]
     """

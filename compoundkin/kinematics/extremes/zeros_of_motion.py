@@ -44,9 +44,9 @@ def zeros(motion: Motion, quantity: str | Measure, level: float = 0.0) -> Zeros:
     its first and last pose is counted once. Raises UnknownName for a name that the motion does not have, InvalidInput
     for a vector and a motion of a single pose.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> np.rad2deg(zeros(solve(load_named("slider-crank-offset")), "B.velocity.x").at.drives["crank"]).round(6)
+    >>> np.rad2deg(zeros(solve(load("slider-crank-offset")), "B.velocity.x").at.drives["crank"]).round(6)
     array([165.522488, 352.819244])
     """
     if motion.inputs.poses < 2:

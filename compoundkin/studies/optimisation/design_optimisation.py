@@ -75,7 +75,7 @@ def optimise(
 
     >>> from compoundkin.files import shipped_mechanisms
     >>> from compoundkin.studies.goals.value_goals import least
-    >>> rocker = shipped_mechanisms.load_named("crank-rocker")
+    >>> rocker = load("crank-rocker")
     >>> found = optimise(rocker, {"rocker.C.x": (3.5, 4.5)}, least("rocker.angle.stroke"), starts=4)
     >>> found.value < found.value_before
     True

@@ -335,9 +335,9 @@ MOST_COUNTED = 8
 def structure_name(structure: Structure) -> ChainName:
     """Return what a mechanism is called, with its frame and its drivers. A roller is a part of its follower.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
-    >>> structure_name(decompose(load_named("stephenson-iii"))).title
+    >>> structure_name(decompose(load("stephenson-iii"))).title
     'Stephenson III'
     """
     spun = {spin.link: spin.on for spin in structure.passive}
@@ -358,9 +358,9 @@ def group_truss(group: Group) -> tuple[str, ...]:
 
     Several where multiple pins stand for several; none where no list has it. Higher pairs count as binary links.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
-    >>> group_truss(decompose(load_named("class-iii-six-bar")).groups[0])
+    >>> group_truss(decompose(load("class-iii-six-bar")).groups[0])
     ('5-link truss 1',)
     """
     joints = group_joints(group)
@@ -443,9 +443,9 @@ def _joint(ends: Sequence[int], data: Mapping[str, Any], number: Mapping[str, in
 def group_count(group: Group) -> int | None:
     """Return the number of complex configurations of a group for generic dimensions. None with slides, or where large.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
-    >>> group_count(decompose(load_named("class-iii-six-bar")).groups[0])
+    >>> group_count(decompose(load("class-iii-six-bar")).groups[0])
     6
     """
     if len(group.bodies) > MOST_COUNTED:

@@ -229,9 +229,9 @@ def player(motion: Motion, design: int = 0) -> str:
 
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> player(solve(load_named("crank-rocker"))).splitlines()[0]
+    >>> player(solve(load("crank-rocker"))).splitlines()[0]
     '<!DOCTYPE html>'
     """
     moving = MotionData(Sample(motion, design), most=MOST_POSES, with_centres=False)

@@ -84,8 +84,8 @@ def circuits(
     Source: T. R. Chase and J. A. Mirth, Circuits and branches of single-degree-of-freedom planar linkages, Journal of
     Mechanical Design 115 (1993).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> picture = circuits(load_named("triple-rocker"), "rocker.angle")
+    >>> from compoundkin.files import load
+    >>> picture = circuits(load("triple-rocker"), "rocker.angle")
     >>> [text.get_text() for text in picture.figure.legends[0].get_texts()]
     ['circuit 1, branch 1', 'circuit 1, branch 2']
     """

@@ -58,11 +58,11 @@ def improvement(
 
     Raises UnknownName for quantities that are unknown, InvalidInput without Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.goals.value_goals import least
     >>> from compoundkin.studies.optimisation.design_optimisation import optimise
     >>> free = {"rocker.C.x": (3.5, 4.5)}
-    >>> found = optimise(load_named("crank-rocker"), free, least("rocker.angle.stroke"), starts=4)
+    >>> found = optimise(load("crank-rocker"), free, least("rocker.angle.stroke"), starts=4)
     >>> [line.get_label() for line in improvement(found).figure.axes[0].get_lines()]
     ['before', 'after']
     """
@@ -187,11 +187,11 @@ def starts(optimum: Optimum, *, title: str | None = None, size: tuple[float, flo
     The best come first. Where many ended at the best objective, one can be surer of it. Searches that ended where
     constraints do not hold as well as at the best are crosses where they began. Raises InvalidInput without Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.goals.value_goals import least
     >>> from compoundkin.studies.optimisation.design_optimisation import optimise
     >>> free = {"rocker.C.x": (3.5, 4.5)}
-    >>> found = optimise(load_named("crank-rocker"), free, least("rocker.angle.stroke"), starts=4)
+    >>> found = optimise(load("crank-rocker"), free, least("rocker.angle.stroke"), starts=4)
     >>> starts(found).figure.axes[0].get_xlabel()
     'searches, the best first'
     """

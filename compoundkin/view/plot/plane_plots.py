@@ -58,9 +58,9 @@ def paths(
     poses with the driver's value or the time; the points of the observing link are drawn as crosses. Raises UnknownName
     for points and links that are not there.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> picture = paths(solve(load_named("jansen-leg")), "foot")
+    >>> picture = paths(solve(load("jansen-leg")), "foot")
     >>> picture.figure.axes[0].get_aspect()
     1.0
     """
@@ -126,9 +126,9 @@ def centrodes(
     are not there, InvalidInput for a pose or design that is not there, where no driver moves, or below order 1.
     Source: E. A. Dijksman, Motion Geometry of Mechanisms (1976).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> picture = centrodes(solve(load_named("elliptic-trammel")), "rod")
+    >>> picture = centrodes(solve(load("elliptic-trammel")), "rod")
     >>> [line.get_label() for line in picture.figure.axes[0].get_lines()[:1]]
     ['fixed centrode (frame)']
     """
@@ -232,9 +232,9 @@ def phase(
     motion does not have and for quantities without a rate (take a component of a vector: "G.velocity.x"), InvalidInput
     for vectors and where the motion's order is too low.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> picture = phase(solve(load_named("crank-rocker")), "rocker.angle")
+    >>> picture = phase(solve(load("crank-rocker")), "rocker.angle")
     >>> picture.figure.axes[0].get_ylabel()
     'rocker.angular_velocity [rad/s]'
     """
@@ -272,9 +272,9 @@ def hodograph(
     Raises UnknownName for names that the motion does not have, InvalidInput for other quantities or other units.
     Source: W. R. Hamilton, The Hodograph (1847).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> hodograph(solve(load_named("six-bar")), "G.velocity").figure.axes[0].get_xlabel()
+    >>> hodograph(solve(load("six-bar")), "G.velocity").figure.axes[0].get_xlabel()
     'G.velocity, x [mm/s]'
     """
     motion = motion_of(motion)
@@ -311,9 +311,9 @@ def polar(
     circle is drawn. All quantities of a plot have one unit. Raises UnknownName for names that the motion does not
     have, InvalidInput where units differ or `around` is not an angle.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> polar(solve(load_named("crank-shaper")), "E.velocity").figure.axes[0].name
+    >>> polar(solve(load("crank-shaper")), "E.velocity").figure.axes[0].name
     'polar'
     """
     motion = motion_of(motion)

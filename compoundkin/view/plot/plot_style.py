@@ -102,10 +102,10 @@ def colours(count: int, designs: int) -> tuple[Any, ...]:
 class Plot(Savable):
     """A plot: `figure` is Matplotlib's, to be changed at will before it is saved.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
     >>> from compoundkin.view.plot import plot
-    >>> plot(solve(load_named("six-bar")), "bar.angle").content("svg")[:5]
+    >>> plot(solve(load("six-bar")), "bar.angle").content("svg")[:5]
     b'<?xml'
     """
 

@@ -88,9 +88,9 @@ def plotted_quantity(motion: Motion, name: str) -> Plotted:
 
     Raises UnknownName with the nearest name there is.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> plotted_quantity(solve(load_named("six-bar")), "G.velocity.length").label
+    >>> plotted_quantity(solve(load("six-bar")), "G.velocity.length").label
     'G.velocity.length [mm/s]'
     """
     whole, part = whole_and_part(motion, name)
@@ -101,9 +101,9 @@ def plotted_quantity(motion: Motion, name: str) -> Plotted:
 def rate_name(motion: Motion, name: str) -> str:
     """Return the name of the time derivative of a quantity. Raises UnknownName where it has none that can be named.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> rate_name(solve(load_named("six-bar")), "bar.angle")
+    >>> rate_name(solve(load("six-bar")), "bar.angle")
     'bar.angular_velocity'
     """
     own = plotted_quantity(motion, name)
@@ -238,10 +238,10 @@ def events(motion: Motion) -> Events:
     """Return the gaps and change points of a motion.
 
     >>> import warnings
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
     >>> with warnings.catch_warnings(action="ignore"):
-    ...     motion = solve(load_named("triple-rocker"), {"driver": np.deg2rad([80.0, 88.0, 90.0])})
+    ...     motion = solve(load("triple-rocker"), {"driver": np.deg2rad([80.0, 88.0, 90.0])})
     >>> [round(blank.begin, 3) for blank in events(motion).blanks]     # the limit is interpolated 88.98 degrees
     [1.488]
     """

@@ -69,9 +69,9 @@ def plot(
     UnknownName for names that the motion does not have, InvalidInput for a motion of a single pose, a vector to draw
     against, units that differ, a logarithmic axis of values that are not positive, or without Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> picture = plot(solve(load_named("six-bar")), "bar.angle", "G.velocity")
+    >>> picture = plot(solve(load("six-bar")), "bar.angle", "G.velocity")
     >>> [axes.get_ylabel() for axes in picture.figure.axes]
     ['bar.angle [deg]', 'G.velocity [mm/s]']
     """

@@ -96,10 +96,10 @@ def scatter_matrix(
 
     Raises UnknownName for columns that are unknown, InvalidInput for courses or without Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.study import study
     >>> free = {"crank.B.x": (1.8, 2.2), "coupler.C.x": (5.5, 6.5)}
-    >>> result = study(load_named("crank-rocker"), free, "rocker.angle.stroke", count=64).run()
+    >>> result = study(load("crank-rocker"), free, "rocker.angle.stroke", count=64).run()
     >>> len(scatter_matrix(result).figure.axes)
     9
     """
@@ -230,10 +230,10 @@ def pareto(
     Raises UnknownName for columns that are unknown, InvalidInput for courses or without Matplotlib. Source of the
     name: V. Pareto, Manuale di economia politica (1906).
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.study import study
     >>> free, outputs = {"crank.B.x": (1.8, 2.2)}, ["rocker.angle.stroke", "rocker.angle.least"]
-    >>> result = study(load_named("crank-rocker"), free, outputs, count=64).run()
+    >>> result = study(load("crank-rocker"), free, outputs, count=64).run()
     >>> pareto(result, *outputs, greatest=["rocker.angle.stroke"]).figure.axes[0].get_xlabel()
     'rocker.angle.stroke [deg], greatest'
     """

@@ -121,9 +121,9 @@ def bands(
 
     Raises UnknownName for quantities that are unknown, InvalidInput for figures or without Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
-    >>> found = tolerance(load_named("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
+    >>> found = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
     >>> bands(found).figure.axes[0].get_ylabel()
     'error of rocker.angle\\n[deg]'
     """
@@ -289,10 +289,10 @@ def histogram(
 
     Raises UnknownName for unknown names, InvalidInput for courses of a study, vectors, or without Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.study import study
     >>> stroke = "rocker.angle.stroke"
-    >>> result = study(load_named("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, stroke, count=64).run()
+    >>> result = study(load("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, stroke, count=64).run()
     >>> int(sum(patch.get_height() for patch in histogram(result, stroke).figure.axes[0].patches))
     64
     """
@@ -417,9 +417,9 @@ def contributions(
     Raises UnknownName for outputs that are unknown, InvalidInput for a vector, a pose that there is not, or without
     Matplotlib.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
-    >>> found = tolerance(load_named("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
+    >>> found = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
     >>> [axes.get_xlabel() for axes in contributions(found, "rocker.angle", pose=30).figure.axes]
     ['share of the variance [%]', 'part of the worst case [deg]']
     """

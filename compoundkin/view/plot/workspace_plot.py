@@ -43,8 +43,8 @@ def workspace(
     InvalidInput for another colour.
 
     >>> from compoundkin.configurations.workspace import workspace as region_of
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> picture = workspace(region_of(load_named("five-bar"), "P", cells=40))
+    >>> from compoundkin.files import load
+    >>> picture = workspace(region_of(load("five-bar"), "P", cells=40))
     >>> [line.get_label() for line in picture.figure.axes[0].get_lines()[-1:]]
     ['outer boundary']
     """

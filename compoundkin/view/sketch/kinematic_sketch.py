@@ -300,9 +300,9 @@ class MovingSketch(ShortRepr):
     def shapes(self, k: int) -> list[Shape]:
         """Return all shapes at the k-th assembled pose, those of one link together.
 
-        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.files import load
         >>> from compoundkin.kinematics import solve
-        >>> sketch = moving_sketch(solve(load_named("six-bar")))
+        >>> sketch = moving_sketch(solve(load("six-bar")))
         >>> len(sketch.shapes(0)) == len(sketch.still) + len(sketch.parts)
         True
         """

@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.centres import Status, instant_centres
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load
 from tests import catalog
 from tests.analysis.centres.chains import chains, mechanism
 from tests.analysis.centres.twists import disagreement, loop_twists, solved_twists
@@ -111,7 +111,7 @@ def test_pin_and_infinity() -> None:
 
 
 def test_parallel_lines_cross_at_infinity() -> None:
-    parallelogram = ck.solve(shipped_mechanisms.load_named("parallelogram"), {"crank": ck.deg([30.0, 75.0])})
+    parallelogram = ck.solve(load("parallelogram"), {"crank": ck.deg([30.0, 75.0])})
     centre = instant_centres(parallelogram)["frame", "coupler"]
     assert centre.at_infinity.all()
     direction = centre.direction * np.exp(-1j * ck.deg(np.array([30.0, 75.0])))
@@ -133,7 +133,7 @@ def test_poses_that_are_not_assembled() -> None:
 
 def test_other_lines_where_those_of_the_derivation_coincide() -> None:
     """A shaper's crank upright: pins, guide and pivot in one line, but for what hangs on the lever's end."""
-    motion = ck.solve(shipped_mechanisms.load_named("crank-shaper"), {"crank": ck.deg([37.0, 90.0])})
+    motion = ck.solve(load("crank-shaper"), {"crank": ck.deg([37.0, 90.0])})
     centres = instant_centres(motion)
     texts = {couple: (centres[couple].how, centres[couple].how_at(1)) for couple in centres}
     changed = {couple for couple, (how, at) in texts.items() if how != at}
@@ -255,7 +255,7 @@ def _at_home(joints: dict[str, complex]) -> ck.results.Motion:
 def test_many_poses_are_as_each_alone() -> None:
     """Across the borders of blocks, and where other lines are taken."""
     crank = np.linspace(0.0, 2.0 * np.pi, 4096 * 2 + 5)
-    six_bar = shipped_mechanisms.load_named("crank-shaper")
+    six_bar = load("crank-shaper")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         together = instant_centres(ck.solve(six_bar, {"crank": crank}))

@@ -97,7 +97,7 @@ def test_a_point_at_the_pole_has_a_cusp_there() -> None:
     mechanism = catalog.mechanism("crank-rocker")
     at = ck.deg(62.3)
     pose = ck.solve(mechanism, {"crank": [at]}, speed=1)
-    local = ck.coupler.pole(pose, "coupler").moving
+    local = ck.figures.pole(pose, "coupler").moving
     own = {"B": 0, "C": mechanism.geometry.points["coupler"]["C"], "Q": complex(local[0])}
     links = [ck.link("coupler", **own) if link.name == "coupler" else link for link in mechanism.links.values()]
     motion = ck.solve(ck.Mechanism("Cusp", *links, ck.drive("crank")), {"crank": CRANK})
@@ -158,7 +158,7 @@ def test_wrong_places_points_and_tolerances_are_refused() -> None:
 
 def test_what_is_straight_has_no_arc_but_itself() -> None:
     """Both tracers of the pantograph are led along lines: no circle goes through their places."""
-    features = ck.performance.path_features(catalog.motion("pantograph"), "C")
+    features = ck.figures.path_features(catalog.motion("pantograph"), "C")
     assert features.arc.is_straight
     assert np.isfinite(features.arc.length)
     assert features.arc.deviation == pytest.approx(0.0, abs=1e-12)

@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
 from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.analysis.equations.vector_loops import pair_terms
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.model.pairs.loop_terms import Vector
 from compoundkin.view.report.structure_sections import equation_count
 from tests import catalog
@@ -23,7 +23,7 @@ ZERO = 1e-9
 def solved(name: str) -> ck.results.Motion:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
-        return ck.solve(load_named(name), order=1)
+        return ck.solve(load(name), order=1)
 
 
 def values_of(motion: ck.results.Motion, equations: LoopEquations) -> dict[str, np.ndarray]:

@@ -8,13 +8,13 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equations.freudenstein import FourBarConstants, SliderCrankConstants
 from compoundkin.analysis.equations.reduced_system import pose_values
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests import catalog
 
 
 def test_constants_of_norton() -> None:
     """R. L. Norton, Design of Machinery, example 4-1: d = 100, a = 40, b = 120, c = 80."""
-    (found,) = ck.equations.freudenstein(load_named("four-bar-norton"))
+    (found,) = ck.equations.freudenstein(load("four-bar-norton"))
     assert {name: round(float(value), 4) for name, value in found.constants.items()} == {
         "K1": 2.5, "K2": 1.25, "K3": 0.5625, "K4": 0.8333, "K5": -2.0417,
     }  # fmt: skip
@@ -54,5 +54,5 @@ def test_a_slider_crank_with_an_offset() -> None:
 
 
 def test_loops_without_one_have_none() -> None:
-    assert ck.equations.freudenstein(load_named("oscillating-guide")) == ()
-    assert ck.equations.freudenstein(load_named("planetary-train")) == ()
+    assert ck.equations.freudenstein(load("oscillating-guide")) == ()
+    assert ck.equations.freudenstein(load("planetary-train")) == ()

@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equations.reduced_system import pose_values
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests import catalog
 
 newton = ck.equations.newton_iterations
@@ -41,7 +41,7 @@ DRAWN = ("four-bar-nikravesh", "six-bar", "slider-crank-offset", "dixon-mechanis
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_it_converges_by_squares_to_the_pose_of_the_groups(name: str) -> None:
-    mechanism = load_named(name)
+    mechanism = load(name)
     motion = catalog.motion(name)
     first = {drive.name: float(np.ravel(motion.drives[drive.name].value)[0]) for drive in mechanism.drives}
     solved = pose_values(motion)
@@ -74,7 +74,7 @@ def test_a_singular_start_is_said() -> None:
 
 
 def test_what_cannot_be_iterated() -> None:
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     with pytest.raises(ck.errors.UnknownName, match="coupler"):
         newton(mechanism, {"crank": 1.0}, {"copler": 1.0})
     with pytest.raises(ck.errors.UnknownName, match="crank"):

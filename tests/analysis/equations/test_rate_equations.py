@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equations.reduced_system import pose_values
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.model.pairs.loop_terms import Unknown
 from tests import catalog
 from tests.scaled import scaled
@@ -50,7 +50,7 @@ def test_solutions_are_the_rates_that_the_groups_give(name: str) -> None:
 
 def test_the_slider_crank_has_the_equations_of_the_textbook() -> None:
     """R. L. Norton, Design of Machinery, sections 6.7 and 7.3: terms with w^2 toward the centres, none of Coriolis."""
-    found = ck.loop_equations(load_named("slider-crank"), order=2)
+    found = ck.loop_equations(load("slider-crank"), order=2)
     assert found.velocity.matrix is not found.acceleration.matrix
     assert found.velocity.matrix.text == found.acceleration.matrix.text == "[ -AB sin(rod)  -1 ]\n[  AB cos(rod)   0 ]"
     assert found.velocity.rows == (
@@ -69,7 +69,7 @@ def test_the_slider_crank_has_the_equations_of_the_textbook() -> None:
 
 
 def test_a_moving_guide_adds_the_coriolis_term() -> None:
-    found = ck.loop_equations(load_named("oscillating-guide"), order=2)
+    found = ck.loop_equations(load("oscillating-guide"), order=2)
     assert found.velocity.rows[0] == "s(slot) lever' sin(lever) - s'(slot) cos(lever) = CA crank' sin(crank)"
     assert found.acceleration.right_side.entries[0][0].text.endswith(
         "- s(slot) lever'^2 cos(lever) - 2 s'(slot) lever' sin(lever)"
@@ -85,7 +85,7 @@ def test_a_moving_guide_adds_the_coriolis_term() -> None:
     ],
 )
 def test_gears_and_drivers_between_links_keep_rows(name: str, rows: tuple[str, ...] | None) -> None:
-    found = ck.loop_equations(load_named(name), order=1)
+    found = ck.loop_equations(load(name), order=1)
     if rows is None:  # the plunger does not turn: its driver plainly gives the lever
         assert [own.key for own in found.system.given] == ["lever"]
         assert [own.key for own in found.velocity.unknowns] == ["swing", "s(barrel)"]
@@ -95,7 +95,7 @@ def test_gears_and_drivers_between_links_keep_rows(name: str, rows: tuple[str, .
 
 def test_numbers_of_norton() -> None:
     """R. L. Norton, Design of Machinery, examples 4-1, 6-7 and 7-1: a = 40, b = 120, c = 80, d = 100, 40 deg."""
-    mechanism = load_named("four-bar-norton")
+    mechanism = load("four-bar-norton")
     equations = ck.loop_equations(mechanism, order=2)
     motion = ck.solve(mechanism, {"crank": ck.deg(40.0)}, speed=25.0, acceleration=15.0)
     three, four = ck.deg(20.298), ck.deg(57.325)
@@ -116,7 +116,7 @@ def test_numbers_of_norton() -> None:
 
 def test_numbers_of_nikravesh() -> None:
     """P. E. Nikravesh, AME 352 notes, slider-crank at 65 deg and 1.6 rad/s: -0.344, -0.211; 1.125, -0.035."""
-    mechanism = load_named("slider-crank")
+    mechanism = load("slider-crank")
     motion = ck.solve(mechanism, {"crank": ck.deg(65.0)}, speed=1.6)
     equations = ck.loop_equations(mechanism, order=2)
     first, second = equations.velocity.at(motion), equations.acceleration.at(motion)
@@ -136,7 +136,7 @@ def test_a_limit_position_is_singular() -> None:
     assert found.singular.tolist() == [False, True]
     assert np.isnan(found.solution[1]).all()
     assert found.condition[1] > 1e6
-    parallel = ck.loop_equations(load_named("parallelogram"), order=2).acceleration.at(catalog.motion("parallelogram"))
+    parallel = ck.loop_equations(load("parallelogram"), order=2).acceleration.at(catalog.motion("parallelogram"))
     assert parallel.singular[0]
 
 
@@ -178,7 +178,7 @@ def test_symbols_and_numbers_are_the_same() -> None:
 
 
 def test_orders_that_are_none() -> None:
-    mechanism = load_named("slider-crank")
+    mechanism = load("slider-crank")
     for order in (3, -1, True):
         with pytest.raises(ck.errors.InvalidInput, match="order"):
             ck.loop_equations(mechanism, order=order)
@@ -199,7 +199,7 @@ def test_nothing_unknown_is_no_matrix() -> None:
 
 
 def test_values_stand_for_a_motion() -> None:
-    mechanism = load_named("slider-crank")
+    mechanism = load("slider-crank")
     motion = ck.solve(mechanism, {"crank": [0.3, 0.9]}, speed=2.0, acceleration=1.0)
     equations = ck.loop_equations(mechanism, order=2).acceleration
     values = {**pose_values(motion), "crank'": 2.0, "crank''": 1.0}
@@ -220,11 +220,11 @@ def test_values_stand_for_a_motion() -> None:
 
 def test_the_motion_is_one_of_the_same_mechanism() -> None:
     """A motion whose links have the same names gave numbers of neither mechanism."""
-    equations = ck.loop_equations(load_named("four-bar-norton"), order=1).velocity
+    equations = ck.loop_equations(load("four-bar-norton"), order=1).velocity
     for name in ("crank-rocker", "slider-crank"):
         with pytest.raises(ck.errors.InvalidInput, match="another mechanism"):
-            equations.at(ck.solve(load_named(name)))
-    assert equations.at(ck.solve(load_named("four-bar-norton"))).solution.shape == (73, 2)
+            equations.at(ck.solve(load(name)))
+    assert equations.at(ck.solve(load("four-bar-norton"))).solution.shape == (73, 2)
 
 
 @pytest.mark.parametrize("name", ["groove-cam-plate", "slider-crank-offset"])
@@ -232,7 +232,7 @@ def test_conditions_do_not_depend_on_the_unit(name: str) -> None:
     """Along a profile through points the parameter is a length: in other units all poses were singular."""
     found = []
     for factor in (1.0, 1e-9, 1e9):
-        mechanism = scaled(load_named(name), factor)
+        mechanism = scaled(load(name), factor)
         found.append(ck.loop_equations(mechanism, order=1).velocity.at(ck.solve(mechanism)))
         assert not found[-1].singular.any()
     assert np.allclose(found[1].condition, found[0].condition, rtol=1e-6)

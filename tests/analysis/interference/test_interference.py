@@ -223,7 +223,7 @@ def test_poses_that_are_not_assembled_are_left_out() -> None:
 
 def test_the_jaws_of_the_crusher_come_to_their_gap() -> None:
     """The faces of both jaws as segments, over poses ten times as fine."""
-    crusher = ck.catalog.load_named("jaw-crusher")
+    crusher = ck.load("jaw-crusher")
     found = ck.interference(ck.solve(crusher))
     assert found.passed
     assert found.least is not None

@@ -11,8 +11,8 @@ import pytest
 import shapely
 
 import compoundkin as ck
+from compoundkin.files import load
 from compoundkin.files.exchange.conversion import write
-from compoundkin.files.shipped_mechanisms import load_named
 
 
 def table(mechanism: ck.Mechanism, **options: Any) -> tuple[dict[str, np.ndarray], tuple[str, ...]]:
@@ -57,7 +57,7 @@ def test_the_curves_of_a_round_disc_are_circles_within_the_tolerance() -> None:
 
 
 def test_the_pitch_curve_is_the_way_of_the_roller_seen_from_the_cam() -> None:
-    cams = load_named("disc-cam-roller-program")
+    cams = load("disc-cam-roller-program")
     columns, _ = table(cams, tolerance=1e-3)
     motion = ck.solve(cams)
     pair = next(one for one in cams.written_pairs if one.table == "cams")
@@ -90,12 +90,12 @@ def test_of_several_cams_one_is_named() -> None:
         table(double, cam="bach")
     assert np.abs(np.abs(places(table(double, cam="back", points=64)[0], "profile") - 4j) - 30).max() < 1e-9
     with pytest.raises(ck.errors.InvalidInput, match="it has no cam"):
-        table(load_named("six-bar"))
+        table(load("six-bar"))
 
 
 def test_a_cutter_that_would_cut_into_the_profile_is_refused() -> None:
     """Of y = x^2 / 80 the least radius of curvature is 40, in the hollow at (0, 0), above which the pin runs."""
-    groove = load_named("groove-cam-plate")
+    groove = load("groove-cam-plate")
     for side in (1, -1):
         mirrored = groove if side > 0 else None
         if mirrored is not None:
@@ -119,6 +119,6 @@ def test_a_cutter_that_would_cut_into_the_profile_is_refused() -> None:
 
 
 def test_a_flat_face_has_no_pitch_curve() -> None:
-    columns, notes = table(load_named("flat-faced-follower"), points=16)
+    columns, notes = table(load("flat-faced-follower"), points=16)
     assert not any(name.startswith("pitch") for name in columns)
     assert notes[-1] == "a flat face has no pitch curve"

@@ -16,13 +16,13 @@ import shapely
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 import compoundkin as ck
+from compoundkin.files import load
 from compoundkin.files.exchange.conversion import write
 from compoundkin.files.exchange.dxf.contour_edges import ContourEdge
 from compoundkin.files.exchange.dxf.coupler_paths import whole_motion
 from compoundkin.files.exchange.dxf.dxf_format import FORMAT
 from compoundkin.files.exchange.dxf.outline_contours import contours
 from compoundkin.files.exchange.shown_mechanism import shown_mechanism
-from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 
@@ -30,7 +30,7 @@ FINE = 256  # chords of a quarter turn of shapely's circles
 
 
 def read(mechanism: ck.Mechanism | str, at: dict[str, float] | None = None, **options: Any) -> Any:
-    exported = write(load_named(mechanism) if isinstance(mechanism, str) else mechanism, "dxf", at, **options)
+    exported = write(load(mechanism) if isinstance(mechanism, str) else mechanism, "dxf", at, **options)
     document = ezdxf.read(io.StringIO(exported.content.decode("ascii")))
     audit = document.audit()
     assert not audit.errors
@@ -66,7 +66,7 @@ def polygon_of(polyline: Any) -> Any:
 
 
 def test_links_lie_where_the_pose_has_them_at_true_size() -> None:
-    crusher, at = load_named("jaw-crusher"), {"eccentric": ck.deg(70)}
+    crusher, at = load("jaw-crusher"), {"eccentric": ck.deg(70)}
     shown, document = shown_mechanism(crusher, at), read(crusher, at)
     assert document.header["$INSUNITS"] == 4
     assert {one.dxf.name for one in document.layers} >= {"LINKS", "JOINTS", "GROUND", "CRANKS", "CURVES", "NAMES"}
@@ -91,7 +91,7 @@ def test_links_lie_where_the_pose_has_them_at_true_size() -> None:
 
 
 def test_pins_are_holes_in_every_link_that_they_join() -> None:
-    crusher = load_named("jaw-crusher")
+    crusher = load("jaw-crusher")
     shown, document = shown_mechanism(crusher), read(crusher)
     for letter, links in (("B", ("pitman", "rear-toggle", "front-toggle")), ("D", ("front-toggle", "jaw"))):
         for link in links:
@@ -105,7 +105,7 @@ def test_pins_are_holes_in_every_link_that_they_join() -> None:
 
 
 def test_the_same_drawing_is_the_same_bytes() -> None:
-    first, again = (write(load_named("jansen-leg"), "dxf") for _ in range(2))
+    first, again = (write(load("jansen-leg"), "dxf") for _ in range(2))
     assert first.content == again.content
     assert not ezdxf.options.write_fixed_meta_data_for_testing
     assert first.notes[0] == "the lengths have no unit"
@@ -115,7 +115,7 @@ def test_the_same_drawing_is_the_same_bytes() -> None:
 
 
 def test_a_link_without_outline_is_lines_between_its_points() -> None:
-    leg = load_named("jansen-leg")
+    leg = load("jansen-leg")
     shown, document = shown_mechanism(leg), read(leg)
     (line,) = (one for one in inserted(document, "k").virtual_entities() if one.dxftype() == "LINE")
     ends = {place(line, "start"), place(line, "end")}
@@ -162,7 +162,7 @@ def test_names_that_mean_something_in_dxf_are_names() -> None:
 
 
 def test_paths_are_within_the_stated_error_and_closed() -> None:
-    leg, tolerance = load_named("jansen-leg"), 0.02
+    leg, tolerance = load("jansen-leg"), 0.02
     exported = write(leg, "dxf", curves="foot", tolerance=str(tolerance))
     assert "curves are within 0.02 of the exact ones" in exported.notes
     document = ezdxf.read(io.StringIO(exported.text))
@@ -184,7 +184,7 @@ def test_paths_are_within_the_stated_error_and_closed() -> None:
 
 
 def test_profiles_are_splines_within_the_stated_error_on_their_cam() -> None:
-    plate = load_named("groove-cam-plate")
+    plate = load("groove-cam-plate")
     at = {"plate": 12.0}
     shown = shown_mechanism(plate, at)
     document = ezdxf.read(io.StringIO(FORMAT.write(shown, tolerance=1e-3).text))
@@ -194,7 +194,7 @@ def test_profiles_are_splines_within_the_stated_error_on_their_cam() -> None:
     # the catalog's own formula: y = x^2 / 80, by 25 points of it
     assert np.abs(own.imag - own.real**2 / 80).max() < 1e-3
     assert (own[0], own[-1]) == (pytest.approx(-60 + 45j), pytest.approx(60 + 45j))
-    cams = load_named("disc-cam-offset-roller")
+    cams = load("disc-cam-offset-roller")
     seen = shown_mechanism(cams)
     document = ezdxf.read(io.StringIO(FORMAT.write(seen).text))
     (disc,) = (one for one in inserted(document, "cam").virtual_entities() if one.dxftype() == "SPLINE")
@@ -209,7 +209,7 @@ def test_profiles_are_splines_within_the_stated_error_on_their_cam() -> None:
 
 
 def test_parts_lie_side_by_side_each_on_a_layer_with_its_holes() -> None:
-    crusher = load_named("jaw-crusher")
+    crusher = load("jaw-crusher")
     exported = write(crusher, "dxf", parts="yes")
     document = ezdxf.read(io.StringIO(exported.text))
     model = document.modelspace()
@@ -224,7 +224,7 @@ def test_parts_lie_side_by_side_each_on_a_layer_with_its_holes() -> None:
     assert all(not a.intersects(b) for k, a in enumerate(shapes) for b in shapes[:k])
     assert {one.dxf.name for one in document.layers} >= set(crusher.links)
     with pytest.raises(ck.errors.InvalidInput, match="no link has an outline"):
-        write(load_named("six-bar"), "dxf", parts=True)
+        write(load("six-bar"), "dxf", parts=True)
 
 
 def test_each_sheet_of_a_thick_link_is_a_part() -> None:
@@ -334,7 +334,7 @@ def test_contours_are_the_unions_that_shapely_finds() -> None:
 def test_without_ezdxf_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "ezdxf", None)
     with pytest.raises(ck.errors.InvalidInput, match=r"pip install 'compoundkin\[dxf\]'"):
-        write(load_named("crank-rocker"), "dxf")
+        write(load("crank-rocker"), "dxf")
 
 
 def test_the_page_on_cad_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:

@@ -75,7 +75,7 @@ def same_motion(one: ShownMechanism, other: ShownMechanism, step: float) -> None
 
 @pytest.mark.parametrize("name", SHOWN)
 def test_mechanisms_of_the_catalog_come_back(name: str) -> None:
-    mechanism = ck.catalog.load_named(name)
+    mechanism = ck.load(name)
     shown, exported = written(mechanism)
     found = shown_mechanism(back(exported))
     same_motion(shown, found, 0.02)
@@ -88,7 +88,7 @@ def test_mechanisms_of_the_catalog_come_back(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["scotch-yoke", "elliptic-trammel", "oscillating-cylinder"])
 def test_sliders_stay_between_their_limits(name: str) -> None:
-    exported = written(ck.catalog.load_named(name))[1]
+    exported = written(ck.load(name))[1]
     root = ElementTree.fromstring(exported.text)
     letters = {one.attrib["id"]: one.attrib.get("name", one.attrib["id"]) for one in root.findall("connector")}
     motion = ck.solve(back(exported), order=0)
@@ -189,14 +189,14 @@ def test_what_cannot_be_said_is_listed_at_once() -> None:
         ("sun-and-planet", "Linkage turns all links at an input together"),
     ):
         with pytest.raises(InvalidInput, match=re.escape(said)):
-            written(ck.catalog.load_named(name))
+            written(ck.load(name))
 
 
 def test_class_three_and_units_are_told() -> None:
-    notes = written(ck.catalog.load_named("class-iii-six-bar"))[1].notes
+    notes = written(ck.load("class-iii-six-bar"))[1].notes
     assert notes[0] == "lengths have no unit: 1 is 1 mm there"
     assert "class III" in notes[-1]
-    crane = ck.catalog.load_named("hydraulic-crane")
+    crane = ck.load("hydraulic-crane")
     _, exported = written(crane)
     assert exported.notes[0] == "1 m is 1000 mm there"
     assert 'units="Millimeters"' in exported.text

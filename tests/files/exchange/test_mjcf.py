@@ -61,7 +61,7 @@ def held_against_mujoco(shown: ShownMechanism) -> None:
 
 
 def test_the_catalog_moves_the_same() -> None:
-    for name in ck.catalog.names():
+    for name in ck.exchange.shipped():
         if name not in REFUSED:
             held_against_mujoco(shown(name))
 
@@ -298,7 +298,7 @@ def test_masses_below_those_of_mujoco_are_refused() -> None:
 
 def test_the_range_of_a_driver_is_that_of_the_drawn_pose() -> None:
     """A crank drawn at -145 degrees that is driven from 200 to 230 is drawn at 215."""
-    rocker = ck.catalog.load_named("crank-rocker")
+    rocker = ck.load("crank-rocker")
     at = shown_mechanism(rocker, {"crank": ck.deg(215)})
     drawing = ck.drawn(**{letter: at.place(links[0], letter) for letter, links in rocker.carriers.items()})
     swung = rocker.replace(drawing, ck.drive("crank", values=ck.deg(np.linspace(200, 230, 31))))
@@ -309,7 +309,7 @@ def test_the_range_of_a_driver_is_that_of_the_drawn_pose() -> None:
 
 def test_lengths_below_those_of_mujoco_are_refused() -> None:
     with pytest.raises(InvalidInput, match=r"a mechanism of 7e-06 m is too small for MuJoCo"):
-        FORMAT.write(shown_mechanism(ck.catalog.load_named("crank-rocker").replace(unit="um")))
+        FORMAT.write(shown_mechanism(ck.load("crank-rocker").replace(unit="um")))
     # what is somewhat larger keeps together
     links = {
         "frame": {"A": 0, "D": 11},

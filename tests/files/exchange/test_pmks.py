@@ -222,13 +222,13 @@ def test_tables_of_joints_are_read_however_they_are_written(kind):
 
 
 def test_tables_may_have_several_drivers():
-    five = ck.catalog.load_named("five-bar")
+    five = ck.load("five-bar")
     with pytest.raises(InvalidInput, match="PMKS has one"):
         write(five, "pmks")
     back = read(write(five, "joints").text).mechanism
     assert [one.link for one in back.drives] == [one.link for one in five.drives]
     assert ck.exchange.compare(five, back).within(1e-9)
-    at_one_pin = ck.catalog.load_named("differential")
+    at_one_pin = ck.load("differential")
     assert ck.exchange.compare(at_one_pin, read(write(at_one_pin, "joints").text).mechanism).within(1e-9)
 
 

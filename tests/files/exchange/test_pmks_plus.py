@@ -301,7 +301,7 @@ UNSAID = {"arcs", "belts", "cams", "drives", "faces", "gears", "racks", "roll_ar
 
 def test_the_catalog_comes_back_as_far_as_it_can_be_said() -> None:
     written, refused = 0, set()
-    for name in ck.catalog.names():
+    for name in ck.exchange.shipped():
         first = shown(name)
         try:
             link = FORMAT.write(first)
@@ -392,7 +392,7 @@ def test_the_scale_is_ours_to_give() -> None:
 
 
 def test_loads_are_written_in_the_units_of_the_program() -> None:
-    loaded = ck.catalog.load_named("jaw-crusher-loaded")
+    loaded = ck.load("jaw-crusher-loaded")
     back = read(write(loaded).text).mechanism
     assert back.units is not None
     one, two = shown_mechanism(loaded), shown_mechanism(back)

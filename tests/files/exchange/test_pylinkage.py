@@ -110,7 +110,7 @@ def test_what_is_written_pylinkage_steps(name: str) -> None:
 def test_the_catalog_comes_back_digit_by_digit() -> None:
     """Where the drawing is exact nothing needs to be solved, which makes it quick."""
     said = 0
-    for name in ck.catalog.names():
+    for name in ck.exchange.shipped():
         mechanism = loaded(name)
         try:
             if not {*mechanism.links} <= {*mechanism.drawn_poses}:
@@ -227,7 +227,7 @@ def test_a_link_with_two_parallel_slots_slides() -> None:
 
 
 def test_arcs_that_begin_backwards_are_told() -> None:
-    notes = ck.exchange.write(ck.catalog.load_named("3-rrr"), "pylinkage").notes
+    notes = ck.exchange.write(ck.load("3-rrr"), "pylinkage").notes
     assert "goes to the end of its arc first in pylinkage, and to its beginning here: crank-3" in notes
 
 

@@ -6,7 +6,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.series import Series
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.group_equations import GroupEquations
@@ -55,7 +55,7 @@ def matches(motion, group, found):
 
 
 def test_class_iii_six_bar():
-    mechanism = load_named("class-iii-six-bar")
+    mechanism = load("class-iii-six-bar")
     crank = np.deg2rad(np.arange(0, 361, 30))
     group, found = all_close(mechanism, crank=crank)
     assert found.turns.shape[:3] == (1, 13, 6)
@@ -68,7 +68,7 @@ def test_class_iii_six_bar():
 
 def test_a_driver_inside_the_group():
     """Two links joined by a driven pin are one body, whose shape differs from pose to pose."""
-    mechanism = load_named("stephenson-iii-floating-driver")
+    mechanism = load("stephenson-iii-floating-driver")
     motion = ck.solve(mechanism)
     group, found = all_close(mechanism, EF=motion.drives["EF"].value)
     assert found.certified.all()
@@ -93,14 +93,14 @@ def test_a_group_with_a_slide():
 
 
 def test_dyads_too():
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     name = next(iter(ck.decompose(mechanism).mechanism.drives)).name
     _, found = all_close(mechanism, **{name: np.linspace(0.1, 6, 7)})
     assert found.real_count.tolist() == [[2] * 7]
 
 
 def test_higher_pairs_are_told():
-    group, setting, size = attached(load_named("crank-rocker"), crank=0.3)
+    group, setting, size = attached(load("crank-rocker"), crank=0.3)
 
     class Higher:
         name, title, held, members = "mesh", "gear pair", 1, ("a", "b", "c")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from tests.configurations.mechanisms import four_bar, random_triad
 from tests.support import drawn_values, random_sketch
 
@@ -26,7 +26,7 @@ NAMED = [
 
 @pytest.mark.parametrize("name", NAMED)
 def test_every_configuration_closes_and_is_another_one(name: str) -> None:
-    mechanism = load_named(name)
+    mechanism = load(name)
     found = ck.configurations(mechanism)
     geometry = mechanism.geometry
     points = {letter: found.points(letter) for letter in mechanism.carriers}
@@ -45,7 +45,7 @@ def test_every_configuration_closes_and_is_another_one(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMED)
 def test_a_motion_may_start_from_each_by_itself_and_by_name(name: str) -> None:
-    mechanism = load_named(name)
+    mechanism = load(name)
     values = {
         drive.name: float(np.ravel(0.7 if drive.values is None else drive.values)[0]) for drive in mechanism.drives
     }
@@ -57,7 +57,7 @@ def test_a_motion_may_start_from_each_by_itself_and_by_name(name: str) -> None:
 
 
 def test_the_motion_keeps_to_the_circuit_it_started_on() -> None:
-    mechanism = load_named("class-iii-six-bar")
+    mechanism = load("class-iii-six-bar")
     found = ck.circuits(mechanism)
     pin = next(letter for letter, links in mechanism.pins.items() if "plate" in links)
     for one in ck.configurations(mechanism, {"crank": 0.4}):
@@ -105,7 +105,7 @@ def test_names_that_are_none(modes: object, text: str) -> None:
 
 
 def test_a_configuration_of_another_mechanism_is_refused() -> None:
-    one = ck.configurations(load_named("six-bar"), {"crank": 1.0}).pick(0)
+    one = ck.configurations(load("six-bar"), {"crank": 1.0}).pick(0)
     with pytest.raises(ck.errors.InvalidInput, match="another mechanism"):
         ck.solve(four_bar(1.0, 3.0, 3.0, 4.0), modes=one)
     with pytest.raises(ck.errors.InvalidInput, match="another mechanism"):

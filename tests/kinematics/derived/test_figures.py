@@ -159,7 +159,7 @@ def test_accelerations_are_the_sum_of_three(name: str) -> None:
         point = motion.inputs.ends[pair][1].point
         place = np.asarray(motion.links[link].at(point).position)
         base = motion.poses[guide]
-        seen = ck.coupler.relative_point(motion, link, point, on=guide)
+        seen = ck.figures.relative_point(motion, link, point, on=guide)
         own = motion.links[guide].at(motion.grid.known(np.conjugate(base.u.c[0]) * (place - base.z.c[0]))).acceleration
         relative = np.asarray(seen.acceleration) * motion.grid.known(base.u.c[0])
         whole = np.asarray(motion.links[link].at(point).acceleration)
@@ -200,7 +200,7 @@ def test_pressure_angles_of_cams(name: str, pair: str, follower: str) -> None:
     """As the analysis of the cam has them; for the one body of a follower they are 90 degrees less its transmission."""
     motion = catalog.motion(name)
     found = values(motion, f"{pair}.pressure_angle")
-    np.testing.assert_array_equal(found, ck.cams.cam_analysis(motion, pair).pressure_angle)
+    np.testing.assert_array_equal(found, ck.figures.cam_analysis(motion, pair).pressure_angle)
     assert np.pi / 2 - np.abs(found) == pytest.approx(values(motion, f"{follower}.transmission_angle"), abs=1e-7)
     alone = ck.solve(catalog.mechanism(name), order=0)
     assert values(alone, f"{pair}.pressure_angle") == pytest.approx(found, abs=1e-9)

@@ -49,7 +49,7 @@ def test_stroke_of_an_offset_slider_crank(step: float) -> None:
     assert dead.sense.tolist() == [1.0, -1.0]
 
 
-def programs(law: str) -> tuple[ck.laws.Program, ck.laws.Program]:
+def programs(law: str) -> tuple[ck.laws.Law, ck.laws.Law]:
     """A rise and a fall in time, and over a turn of a cam; they begin and end between poses."""
     both = ck.laws.rise(LIFT, over=SPAN, law=law), ck.laws.dwell(WAIT), ck.laws.fall(LIFT, over=SPAN, law=law)
     first = ck.laws.dwell(2.0 * np.pi - 2.0 * SPAN - WAIT)

@@ -13,7 +13,7 @@ from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, DyadSolver
 from compoundkin.kinematics.groups.equilibrium import reactions_of
@@ -117,7 +117,7 @@ def test_singular_denominators_raise_nothing(kind: type[DyadSolver]) -> None:
 def test_every_way_agrees_with_the_transposed_jacobian(kind: str) -> None:
     """Bars left out, closed forms, teeth: all groups of whole motions, against all equations of all bodies."""
     for name in SHOWN[kind]:
-        motion, rng = ck.solve(load_named(name)), np.random.default_rng(8)
+        motion, rng = ck.solve(load(name)), np.random.default_rng(8)
         (at, *_) = loaded_blocks(motion)
         for solver in motion.solving_order.solvers:
             given_loads = {

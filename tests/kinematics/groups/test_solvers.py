@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.arrays import Number
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.kinematics import groups
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
@@ -39,7 +39,7 @@ def solved(kind: type[GroupSolver]) -> list[tuple[GroupSolver, Block, Block]]:
     """Groups that a way solves: its solver, the block before the group is assembled, and after."""
     found = []
     for name in SHOWN[kind.__name__]:
-        motion = ck.solve(load_named(name), order=2)
+        motion = ck.solve(load(name), order=2)
         for solver in motion.solving_order.solvers:
             if type(solver) is kind:
                 places = np.arange(motion.inputs.poses, dtype=float)[None], np.zeros((1, 1), dtype=int)
@@ -101,7 +101,7 @@ def test_it_tells_why_and_how_far_from_its_limit(kind: type[GroupSolver]) -> Non
 @every_way
 def test_it_leaves_other_groups_to_others(kind: type[GroupSolver]) -> None:
     """All but the last, which takes what is left, refuse the groups of the other ways."""
-    orders = [SolvingOrder(ck.decompose(load_named(name))) for names in SHOWN.values() for name in names]
+    orders = [SolvingOrder(ck.decompose(load(name))) for names in SHOWN.values() for name in names]
     taken = [
         type(solver) is kind
         for solving_order in orders
@@ -140,7 +140,7 @@ class Pinned(GroupSolver):
 
 def told(name: str) -> list[Any]:
     """What is found of a mechanism: its motion, configurations, circuits and gaps."""
-    mechanism = load_named(name)
+    mechanism = load(name)
     motion = ck.solve(mechanism, order=3)
     circuits = ck.circuits(mechanism)
     ends = [(b.name, b.low, b.high) for b in circuits.branches]
@@ -154,4 +154,4 @@ def test_one_line_in_the_registry_adds_a_way(name: str, monkeypatch: pytest.Monk
     expected = told(name)
     monkeypatch.setattr(groups, "SOLVERS", (Pinned, *SOLVERS))
     assert told(name) == expected
-    assert any(type(solver) is Pinned for solver in ck.solve(load_named(name)).tracker.solving_order.solvers)
+    assert any(type(solver) is Pinned for solver in ck.solve(load(name)).tracker.solving_order.solvers)

@@ -19,7 +19,7 @@ from compoundkin.structure import Group
 from tests import catalog
 from tests.support import drawn_values, random_sketch
 
-dyads = ck.dyads
+dyads = ck.equations
 ROUTINES: dict[str, Callable[..., Any]] = {name: getattr(dyads, name.lower()) for name in DYADS}
 # Of the largest of each kind, divided by the margin: next to a limit position rounding of what is given is magnified.
 AGREE = 1e-13

@@ -274,7 +274,7 @@ def test_a_cam_carried_by_the_moving_follower() -> None:
     curve = 30 * np.cos(s) + 20j * np.sin(s) + 50
     nearest = [np.min(np.abs(curve - p)) for p in np.asarray(local)]
     assert np.max(np.abs(np.array(nearest) - 5.0)) < 1e-6
-    found = ck.cams.cam_analysis(motion, "crank/follower")
+    found = ck.figures.cam_analysis(motion, "crank/follower")
     assert found.follower == "follower"
     assert found.oscillates is True
 
@@ -327,9 +327,9 @@ def test_a_roller_as_a_link_turns_without_effect() -> None:
     one, other = solved(rolling), solved(plain)
     assert max(apart(one, other)) < 1e-12
     assert np.max(np.abs(one.links["roller"].angular_velocity)) < 1e-12
-    found = ck.cams.cam_analysis(one, "roller/cam")
+    found = ck.figures.cam_analysis(one, "roller/cam")
     assert found.follower == "follower"
-    assert np.allclose(found.pressure_angle, ck.cams.cam_analysis(other, "follower/cam").pressure_angle, atol=1e-12)
+    assert np.allclose(found.pressure_angle, ck.figures.cam_analysis(other, "follower/cam").pressure_angle, atol=1e-12)
 
 
 def test_a_roller_on_a_rod_of_a_larger_group() -> None:
@@ -377,7 +377,7 @@ def test_instant_centres_by_the_common_normal() -> None:
     """The centre of cam and follower is where the common normal meets the line square to the guide through the axis."""
     motion = solved(with_roller()[1])
     centre = ck.instant_centres(motion)["cam", "follower"].point
-    found = ck.cams.cam_analysis(motion, "follower/cam")
+    found = ck.figures.cam_analysis(motion, "follower/cam")
     middle = motion.points["P"].position
     normal = (middle - found.contact) / 5.0
     assert np.max(np.abs(np.abs(normal) - 1.0)) < 1e-9

@@ -61,7 +61,7 @@ def test_a_cylinder_is_one_thing_that_is_written() -> None:
 def test_a_cylinder_moves_as_two_links_a_slide_and_a_driver_do() -> None:
     values = np.linspace(*STROKE, 41)
     motion = ck.solve(lifted(values), speed=0.05)
-    by_hand = ck.solve(ck.catalog.load_named("hydraulic-crane"), {"rod": values})
+    by_hand = ck.solve(ck.load("hydraulic-crane"), {"rod": values})
     np.testing.assert_allclose(motion.points["T"].acceleration, by_hand.points["T"].acceleration, atol=1e-12)
     np.testing.assert_allclose(length_at(motion.links["jib"].angle), values, atol=1e-12)
     assert [group.name for group in motion.structure.groups] == ["RRR"]
@@ -103,7 +103,7 @@ def test_a_locked_cylinder_holds() -> None:
 @pytest.mark.filterwarnings("ignore::compoundkin.errors.DrawnBeyondEnd")
 def test_a_passive_cylinder_on_a_tracked_group_masks_it_only() -> None:
     """Beyond its stroke nothing is lost: the group without a closed form comes back on its branch."""
-    whole = ck.catalog.load_named("class-iii-six-bar")
+    whole = ck.load("class-iii-six-bar")
     free = ck.solve(whole)
     length = np.abs(free.points["B2"].position - free.points["A1"].position)
     stroke = (float(np.quantile(length, 0.3)), float(np.quantile(length, 0.7)))
@@ -120,7 +120,7 @@ def test_a_passive_cylinder_on_a_tracked_group_masks_it_only() -> None:
 
 
 def test_the_digger_is_written_with_six_links_and_three_cylinders() -> None:
-    digger = ck.catalog.load_named("hydraulic-digger")
+    digger = ck.load("hydraulic-digger")
     assert list(digger.rigid_links) == ["frame", "boom", "stick", "bucket", "rocker", "link"]
     assert list(digger.cylinders) == ["boom-cylinder", "stick-cylinder", "bucket-cylinder"]
     mobility = ck.decompose(digger).mobility
@@ -134,7 +134,7 @@ def test_the_digger_is_written_with_six_links_and_three_cylinders() -> None:
 
 
 def test_the_digger_ends_where_its_cylinders_do() -> None:
-    digger = ck.catalog.load_named("hydraulic-digger")
+    digger = ck.load("hydraulic-digger")
     for name, item in digger.cylinders.items():
         values = {one: float(np.mean(other.stroke)) for one, other in digger.cylinders.items()}
         motion = ck.solve(

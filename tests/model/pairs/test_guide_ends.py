@@ -23,7 +23,7 @@ FOUND = 1e-9
 
 
 def geneva() -> ck.Mechanism:
-    return ck.catalog.load_named("geneva-wheel")
+    return ck.load("geneva-wheel")
 
 
 def slider_crank(*more: Item, reach: Any = (2.5, 3.8), drive: Item | None = None) -> ck.Mechanism:
@@ -156,7 +156,7 @@ def test_a_driver_does_not_go_beyond_its_own_ends(values: np.ndarray) -> None:
 
 
 def test_a_driver_between_moving_links_has_ends() -> None:
-    crane = ck.catalog.load_named("hydraulic-crane")
+    crane = ck.load("hydraulic-crane")
     ram = next(pair for pair in crane.written_pairs if pair.name == "ram")
     drive = crane.drives[0]
     least, most = float(np.min(drive.values)), float(np.max(drive.values))

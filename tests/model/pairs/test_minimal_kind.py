@@ -17,8 +17,8 @@ from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.analysis.equivalents import equivalent_linkage
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, UnassembledPoses
 from compoundkin.cli import cli
+from compoundkin.files import load
 from compoundkin.files.mechanism_files import dumps, loads
-from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import KINDS
 from compoundkin.model.pairs.contract import Drivable, Pair, Replaceable, TurnCounting
@@ -158,7 +158,7 @@ def example(code: str) -> ck.Mechanism:
         wheel = ck.link("wheel", B=(0, 0), T=(10, 0))
         pair = ck.roll_around("wheel", on="frame", at="B", centre_at="A", circle=10, radius=10)
         return ck.Mechanism("Wheel", frame, crank, wheel, pair, ck.drive("crank", values=ck.deg([10, 50, 90])))
-    return load_named(NAMED[code])
+    return load(NAMED[code])
 
 
 def answers(kind: type[Pair]) -> list[str]:

@@ -47,7 +47,7 @@ KINDS = {
     "rigid": bars("prism_generic_rigid"),
     "shaky (infinitesimally movable only)": bars("prism_parallel_infinitesimal"),
     "not assembled": guides(skew=0.01),
-    "mobile": ck.catalog.load_named("six-bar"),
+    "mobile": ck.load("six-bar"),
 }
 
 
@@ -114,7 +114,7 @@ def test_a_block_in_a_single_slot_is_passive():
 
 
 def test_rollers_are_counted_once():
-    cam = ck.catalog.load_named("disc-cam-offset-roller")
+    cam = ck.load("disc-cam-offset-roller")
     found = mobility_analysis(cam)
     assert (found.gruebler, found.at_pose, found.passive) == (1, 1, ())
 

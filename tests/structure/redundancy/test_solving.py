@@ -67,7 +67,7 @@ def test_what_is_not_overconstrained_is_not_looked_at_twice(monkeypatch):
     """The dimensions are asked for only where the count finds too much."""
     monkeypatch.setattr("compoundkin.structure.redundancy.diagnosis.diagnose", lambda *_: pytest.fail("diagnosed"))
     for name in ("six-bar", "four-bar-norton", "slider-crank"):
-        assert decompose(ck.catalog.load_named(name)).relaxation is None
+        assert decompose(ck.load(name)).relaxation is None
 
 
 def test_the_third_crank_turns_as_the_first():
@@ -183,7 +183,7 @@ def test_faults_of_a_loop_of_slides_do_not_contradict_each_other():
 
 
 def test_sound_mechanisms_are_left_as_they_are():
-    structure = decompose(ck.catalog.load_named("six-bar"))
+    structure = decompose(ck.load("six-bar"))
     assert structure.relaxation is None
     assert structure.redundant == ()
 

@@ -13,7 +13,7 @@ from compoundkin.synthesis.chains.mechanism_names import joints_of
 from tests import catalog
 
 
-def shipped(name: str) -> Joints:
+def joints_in(name: str) -> Joints:
     return joints_of(catalog.structure(name).graph)
 
 
@@ -26,9 +26,9 @@ def test_the_count_of_freedoms_is_that_of_the_structure():
 
 
 def test_pins_of_several_links_are_one_joint_whatever_pairs_they_are_drawn_with():
-    peaucellier = shipped("peaucellier")
+    peaucellier = joints_in("peaucellier")
     assert sorted(len(joint.links) for joint in peaucellier.joints) == [2, 2, 3, 3, 3, 3]
-    squeezer = shipped("andrews-squeezer")
+    squeezer = joints_in("andrews-squeezer")
     assert {tuple(squeezer.links[k] for k in joint.links) for joint in squeezer.multiple} == {
         ("frame", "K5", "K7"),
         ("K2", "K3", "K4", "K6"),
@@ -45,7 +45,7 @@ def test_trees_are_all_trees_and_each_once(size):
 
 @pytest.mark.parametrize("name", ["toggle-press", "peaucellier", "andrews-squeezer", "slider-crank"])
 def test_derived_chains_keep_the_count(name):
-    joints = shipped(name)
+    joints = joints_in(name)
     chains = list(derived_chains(joints))
     assert 0 < len(chains) <= number_of_derived_chains(joints)
     assert {(chain.links, chain.mobility) for chain in chains} == {(len(joints.links), joints.mobility)}
@@ -69,9 +69,9 @@ def test_the_form_of_a_mechanism_tells_letters_and_marks_apart():
 
 
 def test_parts_hang_together_at_links_and_pins():
-    excavator = shipped("excavator-arm")
+    excavator = joints_in("excavator-arm")
     parts = [{excavator.links[k] for k in block} for block in excavator.blocks()]
     assert {"frame", "boom", "boom-barrel", "boom-rod"} in parts
     assert {"boom", "stick", "stick-barrel", "stick-rod"} in parts
     assert len(parts) == 3
-    assert len(shipped("peaucellier").blocks()) == 1
+    assert len(joints_in("peaucellier").blocks()) == 1

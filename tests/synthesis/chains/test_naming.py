@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compoundkin.base.errors import UnknownName
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.structure import decompose
 from compoundkin.synthesis.chains import (
     Chain,
@@ -70,7 +70,7 @@ DOUBLE_BUTTERFLY, SINGLE_FLIER = "G?q`qg", "G?qb_w"
 
 
 def named(name: str) -> ChainName:
-    mechanism = load_named(name)
+    mechanism = load(name)
     return name_of(decompose(mechanism).graph, "frame", mechanism.drives[0].link)
 
 
@@ -90,7 +90,7 @@ def test_titles_of_the_catalog_and_well_known_mechanisms_of_the_same_structure()
 
 @pytest.mark.parametrize("name", CHOSEN)
 def test_every_mechanism_of_the_catalog_has_a_name_that_renaming_its_links_does_not_change(name):
-    mechanism = load_named(name)
+    mechanism = load(name)
     graph = decompose(mechanism).graph
     for _, _, data in graph.edges(data=True):
         data["pin"] = data["pair"].letters[0]
@@ -237,7 +237,7 @@ def test_the_driver_is_described_and_part_of_the_code():
 
 
 def test_several_drivers():
-    mechanism = load_named("five-bar")
+    mechanism = load("five-bar")
     graph, driven = decompose(mechanism).graph, [drive.link for drive in mechanism.drives]
     name = name_of(graph, "frame", driven)
     assert name.driven == "binary link next to the frame, binary link next to the frame"

@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, UnknownName
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.synthesis.chains import (
     chains,
     group_truss,
@@ -28,16 +28,16 @@ CASES = [
 @pytest.mark.parametrize("name", ["disc-cam-offset-roller", "oscillating-roller-follower"])
 def test_a_roller_is_a_part_of_its_follower(name):
     # cam, follower and frame; the contact counts as a binary link: the chain is a loop of four
-    title = structure_name(ck.decompose(load_named(name))).title
+    title = structure_name(ck.decompose(load(name))).title
     assert "mobility" not in title
     assert title.startswith("four-bar") or title.endswith("derived from four-bar")
 
 
 def test_six_bars_have_no_variety_and_their_symmetries():
-    name = structure_name(ck.decompose(load_named("stephenson-iii")))
+    name = structure_name(ck.decompose(load("stephenson-iii")))
     assert name.variety == 0
     assert sorted(map(len, name.equivalent_links)) == [2, 2, 2]
-    facts = dict(report(ck.decompose(load_named("stephenson-iii"))).section("chain").blocks[0].facts)
+    facts = dict(report(ck.decompose(load("stephenson-iii"))).section("chain").blocks[0].facts)
     assert facts["links"] == "4 binary, 2 ternary"
 
 

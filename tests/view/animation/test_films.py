@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view.animation import films as gif_module
 from compoundkin.view.animation import films as mp4_module
 from compoundkin.view.animation.films import APART, colour_palette, indices, nearest_table
@@ -29,7 +29,7 @@ needs_ffmpeg = pytest.mark.skipif(
 
 
 def six_bar(poses: int = 13) -> ck.results.Motion:
-    return ck.solve(load_named("six-bar"), {"crank": ck.deg(np.linspace(0.0, 360.0, poses))})
+    return ck.solve(load("six-bar"), {"crank": ck.deg(np.linspace(0.0, 360.0, poses))})
 
 
 def small(**more: object) -> ck.results.Animation:
@@ -77,7 +77,7 @@ def test_a_frame_is_a_picture_with_the_drivers_value_below(tmp_path: Path) -> No
 
 
 def test_the_time_stands_below_a_motion_in_time() -> None:
-    motion = ck.solve(load_named("crank-rocker"), {"crank": 0.0}, speed=np.pi, time=np.linspace(0.0, 2.0, 201))
+    motion = ck.solve(load("crank-rocker"), {"crank": 0.0}, speed=np.pi, time=np.linspace(0.0, 2.0, 201))
     texts = [s.text for s in leaves(motion.animate().frame(25).shapes) if isinstance(s, Text)]
     assert any("at 1.00 s" in text for text in texts)
     assert "time, 0 to 2 s" in motion.animate().svg
@@ -265,7 +265,7 @@ def test_notebooks_show_what_moves() -> None:
 
 
 def test_no_label_leaves_the_picture() -> None:
-    animation = ck.animate(load_named("hydraulic-digger"))
+    animation = ck.animate(load("hydraulic-digger"))
     window = animation.sketch.window
     for k in range(0, len(animation), 8):
         badges = [

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files import shipped_mechanisms
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load, shipped_mechanisms
 from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.centre_pictures import TOGETHER
 from compoundkin.view.sketch.shapes import ArcShape, Band, CircleShape, Polygon, Polyline, Shape, Strokes
@@ -108,7 +107,7 @@ def off(animation: ck.results.Animation, svg: ET.Element, share: float, pose: in
 
 
 def solved(name: str, values: np.ndarray, **more: object) -> ck.results.Motion:
-    mechanism = load_named(name)
+    mechanism = load(name)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(mechanism, {mechanism.drives[0].name: values}, **more)
@@ -253,7 +252,7 @@ def test_a_long_motion_makes_no_larger_file_than_a_short_one() -> None:
 
 
 # every other one: each takes a fifth of a second, and neighbours in the alphabet are often of one kind
-@pytest.mark.parametrize("name", shipped_mechanisms.names()[::2])
+@pytest.mark.parametrize("name", shipped_mechanisms.shipped()[::2])
 def test_every_mechanism_moves(name: str) -> None:
     animation = ck.animate(catalog.motion(name))
     root = ET.fromstring(animation.svg)
@@ -263,7 +262,7 @@ def test_every_mechanism_moves(name: str) -> None:
 
 
 def test_the_arrow_of_a_rolling_wheel_does_not_turn_with_it() -> None:
-    animation = ck.animate(load_named("rolling-wheel"))
+    animation = ck.animate(load("rolling-wheel"))
     heads = []
     for k in range(0, len(animation), 9):
         drive = [s for s in shapes_in(animation.frame(k).shapes) if isinstance(s, Polyline) and s.style == "drive"]

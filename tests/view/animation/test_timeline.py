@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view.animation.timeline import MOST_FRAMES
 
 
@@ -26,7 +26,7 @@ def rocking() -> ck.results.Motion:
     """A rocker driven over a full turn, of which two intervals can be assembled."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
-        return ck.solve(load_named("double-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0))})
+        return ck.solve(load("double-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0))})
 
 
 def indices(animation: ck.results.Animation) -> np.ndarray:
@@ -41,7 +41,7 @@ def test_a_full_turn_goes_on_for_ever_and_shows_its_end_once() -> None:
 
 
 def test_what_does_not_end_as_it_began_goes_back_the_way_it_came() -> None:
-    animation = ck.animate(ck.solve(load_named("six-bar"), {"crank": ck.deg(np.arange(0.0, 91.0, 3.0))}))
+    animation = ck.animate(ck.solve(load("six-bar"), {"crank": ck.deg(np.arange(0.0, 91.0, 3.0))}))
     found = indices(animation)
     assert found.tolist() == [*range(31), *range(29, 0, -1)]
     forced = indices(crank().animate(back=True))
@@ -69,14 +69,14 @@ def test_frames_of_any_number_are_at_most_one_pose_off(poses: int, seconds: floa
 
 def test_uneven_poses_are_shown_evenly_in_the_driver() -> None:
     values = 2.0 * np.pi * np.linspace(0.0, 1.0, 2001) ** 2
-    motion = ck.solve(load_named("six-bar"), {"crank": values})
+    motion = ck.solve(load("six-bar"), {"crank": values})
     shown = values[indices(motion.animate())]
     # poses are at most 0.0063 apart, frames 0.105
     assert np.ptp(np.diff(shown)) < 0.08 * np.mean(np.diff(shown))
 
 
 def test_a_motion_in_time_is_as_fast_as_it_is() -> None:
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     motion = ck.solve(mechanism, {"crank": 0.0}, speed=np.pi, time=np.linspace(0.0, 2.0, 401))
     animation = motion.animate()
     assert animation.timeline.returns
@@ -102,7 +102,7 @@ def test_intervals_that_can_be_assembled_are_shown_each_there_and_back() -> None
 def test_an_interval_across_the_end_of_a_turn_is_one() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
-        motion = ck.solve(load_named("triple-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0, 2.0))})
+        motion = ck.solve(load("triple-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0, 2.0))})
     animation = motion.animate()
     there = animation.sketch.scene.known[animation.timeline.legs[0].poses]
     turned = np.unwrap(ck.deg(2.0 * there))
@@ -144,7 +144,7 @@ def test_unknown_points_and_other_things_are_said() -> None:
 
 
 def test_the_own_range_of_a_mechanism_is_shown_finely_enough() -> None:
-    mechanism = load_named("five-bar")
+    mechanism = load("five-bar")
     motion = ck.solve(mechanism)
     animation = ck.animate(mechanism)
     fine = animation.sketch.motion

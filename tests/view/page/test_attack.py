@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view.report import page
 from tests import catalog
 
@@ -37,7 +37,7 @@ def test_names_that_grow_on_a_phone_stay_in_the_sketch(made: Any, opened: Any) -
 
 
 def test_the_row_of_the_pose_shown_is_marked_as_soon_as_all_rows_are_seen(opened: Any, tmp_path: Path) -> None:
-    page(ck.solve(load_named("six-bar"), {"crank": ck.deg(np.arange(0, 361, 2))})).save(tmp_path / "fine.html")
+    page(ck.solve(load("six-bar"), {"crank": ck.deg(np.arange(0, 361, 2))})).save(tmp_path / "fine.html")
     view = opened(tmp_path / "fine.html")
     hidden = view.value("Number(document.querySelector('tr.more[data-pose]').dataset.pose)")
     view.value(f"k => {PLAYER}.show(k)", hidden)
@@ -88,7 +88,7 @@ def test_without_scripts_there_is_no_section_of_plots(made: Any, opened: Any) ->
 
 
 def test_one_pose_has_no_plots(opened: Any, tmp_path: Path) -> None:
-    page(ck.solve(load_named("six-bar"), {"crank": 0.5})).save(tmp_path / "one.html")
+    page(ck.solve(load("six-bar"), {"crank": 0.5})).save(tmp_path / "one.html")
     view = opened(tmp_path / "one.html")
     assert view.locator(".plot, #motion").count() == 0
     assert "G.\u200bvelocity" in view.text_content(".reading")
@@ -173,7 +173,7 @@ def test_a_rate_that_is_nothing_but_rounding_is_zero(made: Any, opened: Any) -> 
 
 def test_what_cannot_be_known_has_no_unit_and_nothing_is_said_at_every_pose(opened: Any, tmp_path: Path) -> None:
     with pytest.warns(ck.errors.UnassembledPoses):
-        motion = ck.solve(load_named("triple-rocker"), {"driver": ck.deg(np.arange(0, 361, 5))})
+        motion = ck.solve(load("triple-rocker"), {"driver": ck.deg(np.arange(0, 361, 5))})
     page(motion).save(tmp_path / "gap.html")
     view = opened(tmp_path / "gap.html")
     gap = int(np.flatnonzero(~motion.assembled)[0])

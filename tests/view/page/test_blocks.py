@@ -17,7 +17,7 @@ from click.testing import CliRunner
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load
 from compoundkin.model.attributes import with_superscripts
 from compoundkin.view.page.html_document import ASSETS, asset
 from compoundkin.view.page.html_tables import names_of
@@ -109,7 +109,7 @@ def six_bar() -> tuple[Report, str]:
 
 
 def random_structure() -> ck.results.Structure:
-    return ck.decompose(ck.composing.random_mechanism(groups=19, seed=7))
+    return ck.decompose(ck.chains.random_mechanism(groups=19, seed=7))
 
 
 def made_of(name: str) -> tuple[Report, str]:
@@ -171,13 +171,13 @@ def test_all_paragraphs_steps_and_formulas_are_there(six_bar: tuple[Report, str]
 
 
 def test_the_same_motion_gives_the_same_page(six_bar: tuple[Report, str]) -> None:
-    again = page(ck.solve(shipped_mechanisms.load_named("six-bar"))).html
+    again = page(ck.solve(load("six-bar"))).html
     assert again == six_bar[1]
     assert len(again.encode()) < 1_000_000
 
 
 def test_a_full_turn_in_degrees_is_below_a_megabyte_and_more_poses_are_not_all_written() -> None:
-    six_bar = shipped_mechanisms.load_named("six-bar")
+    six_bar = load("six-bar")
     whole = page(ck.solve(six_bar, {"crank": ck.deg(range(361))}, speed=10.0)).html
     assert len(whole.encode()) < 1_000_000
     assert "Show all 361 rows" in whole

@@ -33,7 +33,7 @@ def others(folder: Path) -> dict[str, Path]:
     parts = ck.link("frame", A=0, D=4), ck.link("a", A=0, B=1), ck.link("b", B=0, C=3), ck.link("c", D=0, C=3)
     structure = ck.decompose(ck.Mechanism("Undriven four-bar", *parts))
     made = {"faults": page(structure), "atlas": atlas_report(6).page()}
-    made["random"] = page(ck.decompose(ck.composing.random_mechanism(groups=19, seed=7)))
+    made["random"] = page(ck.decompose(ck.chains.random_mechanism(groups=19, seed=7)))
     for name, one in made.items():
         one.save(folder / f"{name}.html")
     return {name: folder / f"{name}.html" for name in made}

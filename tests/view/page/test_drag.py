@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.programs.dimensions import StatedDimensions, mechanism_with
 from compoundkin.view.page import player
 from tests import catalog
@@ -243,7 +243,7 @@ def test_a_finger_drags_points_and_a_crank(made: Any, opened: Any) -> None:
 
 
 def test_of_two_drivers_each_is_dragged_on_its_own(opened: Any, tmp_path: Path) -> None:
-    motion = ck.solve(load_named("five-bar"))
+    motion = ck.solve(load("five-bar"))
     (tmp_path / "two.html").write_text(player(motion), encoding="utf-8")
     view = opened(tmp_path / "two.html", (800, 900))
     k = view.value(f"{PLAYER}.pose")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.model.attributes import LENGTH
@@ -68,9 +68,7 @@ def test_changed_figures_are_those_of_the_changed_mechanism(name: str, made: Any
 
 def changed(name: str, values: Mapping[str, float]) -> ck.Mechanism:
     """A mechanism of the catalog with other dimensions."""
-    return ck.compile(load_named(name), [next(iter(load_named(name).links)) + ".angle"], free=list(values)).mechanism(
-        dict(values)
-    )
+    return ck.compile(load(name), [next(iter(load(name).links)) + ".angle"], free=list(values)).mechanism(dict(values))
 
 
 def _agree(motion: Motion, figure: list[str], cells: list[str], row: tuple[Cell, ...]) -> None:

@@ -13,7 +13,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.arrays import Number
-from compoundkin.catalog import load_named
+from compoundkin.files import load
 from compoundkin.kinematics import Motion
 from compoundkin.view.page.html_document import asset
 from compoundkin.view.page.live.live_data import live_data
@@ -49,7 +49,7 @@ class Dragged:
     """A mechanism with the dimensions of its page changed at random, again and again."""
 
     def __init__(self, name: str) -> None:
-        mechanism = load_named(name)
+        mechanism = load(name)
         whole = ck.solve(mechanism)
         every = max(1, (whole.inputs.poses - 1) // (POSES - 1))
         self.values = {drive: np.ravel(whole.drives[drive].value)[::every] for drive in whole.drives}
@@ -148,8 +148,8 @@ def live(motion: Motion) -> dict[str, Any]:
 
 
 def test_updates_keep_up_with_the_hand(browser: Any) -> None:
-    six_bar = ck.solve(load_named("six-bar"), {"crank": ck.deg(range(361))}, order=2)
-    large = ck.composing.random_mechanism(groups=20, seed=1)
+    six_bar = ck.solve(load("six-bar"), {"crank": ck.deg(range(361))}, order=2)
+    large = ck.chains.random_mechanism(groups=20, seed=1)
     drawn = float(np.ravel(ck.solve(large).drives[large.drives[0].name].value)[0])
     many = ck.solve(large, {large.drives[0].name: drawn + np.linspace(0.0, 1e-6, 238)}, order=2)
     view = with_paths(browser)
@@ -177,13 +177,13 @@ def test_a_page_that_cannot_be_live_says_why() -> None:
         ("parallelogram", "the motion passes a change point"),
         ("groove-cam-plate", "contacts with a profile are searched for"),
     ):
-        assert why in live(ck.solve(load_named(name)))["live"]["why"]
-    assert live(ck.solve(load_named("six-bar"), {"crank": [0.5]}))["live"] is None
+        assert why in live(ck.solve(load(name)))["live"]["why"]
+    assert live(ck.solve(load("six-bar"), {"crank": [0.5]}))["live"] is None
 
 
 def test_dimensions_are_those_that_may_be_changed_alone() -> None:
     def names(name: str) -> set[str]:
-        return {one["name"] for one in live(ck.solve(load_named(name)))["live"]["dimensions"]}
+        return {one["name"] for one in live(ck.solve(load(name)))["live"]["dimensions"]}
 
     # the arm of wheels with a module is as long as these ask, their teeth are whole
     assert {"sun.S.x", "planet.Q.y"} < names("planetary-train")

@@ -9,7 +9,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files import load
+from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.page.markup import packed_doubles, packed_floats
 from compoundkin.view.page.motion_data import FEWEST_POSES, MOST_POSES, MotionData
 from compoundkin.view.page.viewer import framed_player, player, viewer, viewer_of
@@ -27,7 +28,7 @@ def unpacked(packed: Any, count: int) -> np.ndarray:
 
 
 def six_bar(poses: int = 37) -> ck.results.Motion:
-    return ck.solve(load_named("six-bar"), {"crank": np.linspace(0, 2 * np.pi, poses)}, speed=10)
+    return ck.solve(load("six-bar"), {"crank": np.linspace(0, 2 * np.pi, poses)}, speed=10)
 
 
 def test_packing_is_exact_or_has_seven_digits() -> None:
@@ -98,7 +99,7 @@ def test_long_motions_are_thinned_and_it_is_said() -> None:
 
 
 def test_many_links_have_fewer_poses() -> None:
-    large = ck.composing.random_mechanism(20, seed=3, kinds=("RRR",))
+    large = ck.chains.random_mechanism(20, seed=3, kinds=("RRR",))
     drive = large.drives[0]
     motion = ck.solve(large, {drive.name: drive.values + np.linspace(0, 1e-3, 1000)})
     moving = MotionData(Sample(motion))
@@ -109,12 +110,12 @@ def test_many_links_have_fewer_poses() -> None:
 
 def test_what_plays_on_and_on() -> None:
     assert MotionData(Sample(six_bar())).closes
-    part = ck.solve(load_named("six-bar"), {"crank": ck.deg(range(0, 181, 5))})
+    part = ck.solve(load("six-bar"), {"crank": ck.deg(range(0, 181, 5))})
     assert not MotionData(Sample(part)).closes
-    timed = ck.solve(load_named("six-bar"), {"crank": 0.0}, speed=2.0, time=np.linspace(0, 1.5, 11))
+    timed = ck.solve(load("six-bar"), {"crank": 0.0}, speed=2.0, time=np.linspace(0, 1.5, 11))
     assert MotionData(Sample(timed)).data["seconds"] == pytest.approx(1.5)
     assert MotionData(Sample(timed)).data["along"]["name"] == "time"
-    quick = ck.solve(load_named("six-bar"), {"crank": 0.0}, speed=200.0, time=np.linspace(0, 0.02, 11))
+    quick = ck.solve(load("six-bar"), {"crank": 0.0}, speed=200.0, time=np.linspace(0, 0.02, 11))
     made = viewer(quick)
     assert made.data["seconds"] == pytest.approx(1.0)
     assert "50 times slower" in made.html
@@ -122,7 +123,7 @@ def test_what_plays_on_and_on() -> None:
 
 
 def test_the_pose_shown_first_is_an_assembled_one() -> None:
-    rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
+    rocker = ck.with_driver(load("crank-rocker"), "rocker")
     with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     data = MotionData(Sample(motion)).data
@@ -157,7 +158,7 @@ def test_a_frame_is_small_and_asks_for_nothing() -> None:
     assert len(html) < 320_000
     assert "http" not in html.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", "")
     assert framed_player(six_bar(361)) == html
-    assert ck.solve(load_named("six-bar"), {"crank": ck.deg([30])})._repr_html_() is None
+    assert ck.solve(load("six-bar"), {"crank": ck.deg([30])})._repr_html_() is None
 
 
 def test_a_mechanism_whose_point_is_led_has_a_page() -> None:
@@ -167,7 +168,7 @@ def test_a_mechanism_whose_point_is_led_has_a_page() -> None:
 
 def test_the_catalog_can_be_viewed() -> None:
     """Every sixth mechanism: the live pages of all are made with the site."""
-    for name in names()[::6]:
+    for name in shipped()[::6]:
         try:
             motion = catalog.motion(name)
         except CompoundkinError:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view.page import player
 from compoundkin.view.report import page
 from tests import catalog
@@ -97,7 +97,7 @@ def test_it_plays_and_stops(made: Any, opened: Any) -> None:
 
 
 def test_a_motion_that_does_not_close_goes_there_and_back(opened: Any, tmp_path: Path) -> None:
-    motion = ck.solve(load_named("six-bar"), {"crank": ck.deg(range(0, 91, 10))})
+    motion = ck.solve(load("six-bar"), {"crank": ck.deg(range(0, 91, 10))})
     page(motion).save(tmp_path / "part.html")
     view = opened(tmp_path / "part.html")
     view.value("""() => {
@@ -237,7 +237,7 @@ def test_every_choice_of_a_quantity_draws_a_plot(made: Any, opened: Any) -> None
 
 
 def test_poses_that_cannot_be_assembled_are_said(opened: Callable[..., Any], tmp_path: Path) -> None:
-    rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
+    rocker = ck.with_driver(load("crank-rocker"), "rocker")
     with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     page(motion).save(tmp_path / "rocker.html")
@@ -263,10 +263,10 @@ def test_names_grow_on_a_small_screen(made: Any, opened: Any) -> None:
 
 def test_a_driver_that_goes_back_and_forth_is_plotted_over_poses(opened: Callable[..., Any], tmp_path: Path) -> None:
     there = np.concatenate([np.arange(0, 91, 10), np.arange(80, -1, -10)])
-    page(ck.solve(load_named("six-bar"), {"crank": ck.deg(there)})).save(tmp_path / "back.html")
+    page(ck.solve(load("six-bar"), {"crank": ck.deg(there)})).save(tmp_path / "back.html")
     view = opened(tmp_path / "back.html")
     assert view.value("compoundkin.plots.panels[0].plot.data[0]") == list(range(19))
-    page(ck.solve(load_named("six-bar"), {"crank": ck.deg(range(90, -1, -10))})).save(tmp_path / "down.html")
+    page(ck.solve(load("six-bar"), {"crank": ck.deg(range(90, -1, -10))})).save(tmp_path / "down.html")
     view = opened(tmp_path / "down.html")
     np.testing.assert_allclose(view.value("compoundkin.plots.panels[0].plot.data[0]"), range(0, 91, 10), atol=1e-9)
     set_slider(view, 2)

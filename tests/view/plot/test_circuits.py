@@ -16,7 +16,7 @@ pytest.importorskip("matplotlib")
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view import plot
 from compoundkin.view.plot.circuit_plot import branch_curve, segment_positions, segment_quantity, wrapped_curve
 from tests.configurations.mechanisms import four_bar
@@ -54,7 +54,7 @@ def crossed(axes: Any, value: float) -> list[float]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_curves_cross_a_driver_value_at_its_configurations(name: str) -> None:
-    mechanism = load_named(name)
+    mechanism = load(name)
     letter = ck.decompose(mechanism).groups[-1].inner[0].letters[0]
     x, y = plot.circuits(mechanism, letter).figure.axes
     low, high = x.get_xlim()
@@ -94,7 +94,7 @@ def test_branches_of_a_circuit_meet_at_their_limit_positions(lengths: tuple[floa
 
 
 def test_limit_positions_are_where_coupler_and_rocker_are_in_line() -> None:
-    (axes,) = plot.circuits(load_named("triple-rocker"), "rocker.angle").figure.axes
+    (axes,) = plot.circuits(load("triple-rocker"), "rocker.angle").figure.axes
     dots = sorted({round(x, 9) for x, _ in marks(axes, "o")})
     assert dots == pytest.approx([-LIMIT, LIMIT], abs=1e-8)
     reached = [np.nanmax(line.get_xdata()) for line in lines(axes)]
@@ -104,7 +104,7 @@ def test_limit_positions_are_where_coupler_and_rocker_are_in_line() -> None:
 def test_a_turn_is_not_drawn_across_its_ends() -> None:
     """A crank that turns: within one turn, and no stroke from one side to the other."""
     for name, quantity in (("double-crank", "follower.angle"), ("planetary-train", "planet.angle")):
-        (axes,) = plot.circuits(load_named(name), quantity).figure.axes
+        (axes,) = plot.circuits(load(name), quantity).figure.axes
         for line in lines(axes):
             x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
             assert (np.nanmin(x), np.nanmax(x)) == (0.0, 360.0)
@@ -126,7 +126,7 @@ def test_a_wrapped_curve_is_the_same_curve(steps: list[float], low: float) -> No
 
 
 def test_a_change_point_is_ringed_at_both_ends_of_the_turn() -> None:
-    (axes,) = plot.circuits(load_named("parallelogram"), "P.y").figure.axes
+    (axes,) = plot.circuits(load("parallelogram"), "P.y").figure.axes
     assert sorted({round(x, 6) for x, _ in marks(axes, "o")}) == [0.0, 180.0, 360.0]
 
 
@@ -162,7 +162,7 @@ def test_as_many_colours_and_curves_as_the_reference_has_circuits_and_branches(e
 
 
 def test_the_legend_tells_circuit_and_branch_and_the_own_circuit_is_wide() -> None:
-    found = ck.circuits(load_named("stephenson-iii"))
+    found = ck.circuits(load("stephenson-iii"))
     picture = plot.circuits(found, "FG.angle")
     names, meanings = ([text.get_text() for text in legend.get_texts()] for legend in picture.figure.legends)
     assert names == [f"circuit {branch.circuit}, branch {branch.number}" for branch in found.branches]
@@ -190,14 +190,14 @@ def test_many_circuits_are_grey_but_for_the_own() -> None:
 
 
 def test_without_a_quantity_it_is_what_the_mechanism_states_or_what_tells_branches_apart() -> None:
-    stated = plot.circuits(load_named("crank-rocker"))
+    stated = plot.circuits(load("crank-rocker"))
     assert [axes.get_ylabel() for axes in stated.figure.axes] == ["rocker.angle [deg]", "coupler.angle [deg]"]
     plain = four_bar(4.0, 5.0, 3.0, 7.0, "crank")
     assert [axes.get_ylabel() for axes in plot.circuits(plain).figure.axes] == ["rocker.angle [deg]"]
 
 
 def test_one_driver_of_several_moves_and_the_title_tells_where_the_others_stand() -> None:
-    five_bar = load_named("five-bar")
+    five_bar = load("five-bar")
     picture = plot.circuits(five_bar, "P", driver="left", values={"right": ck.deg(100)})
     assert picture.figure.get_suptitle().endswith("right at 100°")
     place = np.ravel(ck.configurations(five_bar, {"left": ck.deg(70), "right": ck.deg(100)}).points("P"))
@@ -223,11 +223,11 @@ def test_one_driver_of_several_moves_and_the_title_tells_where_the_others_stand(
 )
 def test_wrong_quantities_are_told(name: str, error: type[Exception], told: str) -> None:
     with pytest.raises(error, match=told):
-        plot.circuits(load_named("triple-rocker"), name)
+        plot.circuits(load("triple-rocker"), name)
 
 
 def test_circuits_that_are_found_take_no_options_of_their_finding() -> None:
-    found = ck.circuits(load_named("triple-rocker"))
+    found = ck.circuits(load("triple-rocker"))
     with pytest.raises(ck.errors.InvalidInput, match="found already"):
         plot.circuits(found, "rocker.angle", driver="driver")
     with pytest.raises(ck.errors.InvalidInput, match="is no mechanism"):
@@ -238,11 +238,11 @@ def test_the_command_draws_what_python_draws(tmp_path: Path) -> None:
     target = tmp_path / "a.svg"
     result = CliRunner().invoke(cli, ["plot", "triple-rocker", "rocker.angle", "--circuits", "-o", str(target)])
     assert result.exit_code == 0, result.stderr
-    assert target.read_bytes() == plot.circuits(load_named("triple-rocker"), "rocker.angle").content("svg")
+    assert target.read_bytes() == plot.circuits(load("triple-rocker"), "rocker.angle").content("svg")
     asked = ["plot", "five-bar", "P.x", "--circuits", "--driver", "left", "--drive", "right=100"]
     part = CliRunner().invoke(cli, [*asked, "--from", "20", "--to", "60"])
     wanted = plot.circuits(
-        load_named("five-bar"), "P.x", driver="left", values={"right": ck.deg(100)}, between=ck.deg([20.0, 60.0])
+        load("five-bar"), "P.x", driver="left", values={"right": ck.deg(100)}, between=ck.deg([20.0, 60.0])
     )
     assert part.stdout_bytes == wanted.content("svg")
 

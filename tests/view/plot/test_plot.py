@@ -16,7 +16,7 @@ pytest.importorskip("matplotlib")
 
 import compoundkin as ck
 from compoundkin.analysis.coupler import centrodes as solved_centrodes
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view import plot
 
 ROOT = Path(__file__).parents[3]
@@ -27,7 +27,7 @@ LIMIT = np.rad2deg(np.arccos((4**2 + 7**2 - 8**2) / (2 * 4 * 7)))
 def solved(name: str, values: Any = None, **options: Any) -> ck.results.Motion:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
-        return ck.solve(load_named(name), values, **options)
+        return ck.solve(load(name), values, **options)
 
 
 @pytest.fixture(scope="module")
@@ -215,7 +215,7 @@ def test_what_is_nothing_but_rounding_is_drawn_as_constant() -> None:
     (axes,) = ck.plot(motion, "follower.angular_velocity").figure.axes
     assert axes.get_ylim() == (pytest.approx(0.5), pytest.approx(1.5))
     assert texts(axes) == []
-    slider = ck.solve(load_named("slider-crank-offset"))
+    slider = ck.solve(load("slider-crank-offset"))
     velocity, turn = ck.plot(slider, "B.velocity.y", "piston.angular_velocity").figure.axes
     assert texts(velocity) == texts(turn) == []
     # a zero rate of an angle goes by the driver's, 10 rad/s, whatever the lengths

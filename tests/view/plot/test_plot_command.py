@@ -15,7 +15,7 @@ pytest.importorskip("matplotlib")
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view import plot
 
 PAGE = (Path(__file__).parents[3] / "docs" / "plots.md").read_text("utf-8")
@@ -34,7 +34,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
 def test_a_file_has_the_plot_that_python_draws(run: Run) -> None:
     found = run("six-bar", "bar.angle", "G.velocity", "-o", "a.svg")
     assert (found.exit_code, found.stderr) == (0, "Wrote a.svg.\n")
-    motion = ck.solve(load_named("six-bar"), order=2)
+    motion = ck.solve(load("six-bar"), order=2)
     assert Path("a.svg").read_bytes() == ck.plot(motion, "bar.angle", "G.velocity").content("svg")
 
 
@@ -63,7 +63,7 @@ def test_stdout_has_an_svg_of_any_kind(
 ) -> None:
     found = run("six-bar", *args)
     assert found.exit_code == 0, found.stderr
-    assert found.stdout_bytes == draw(ck.solve(load_named("six-bar"), order=2)).content("svg")
+    assert found.stdout_bytes == draw(ck.solve(load("six-bar"), order=2)).content("svg")
 
 
 def test_the_order_is_what_the_quantities_need(run: Run) -> None:
@@ -124,5 +124,5 @@ def test_the_commands_of_the_page_run(run: Run, line: str) -> None:
 
 def test_fine_steps_are_drawn_as_asked_for(run: Run) -> None:
     found = run("six-bar", "bar.angle", "--from", "0", "--to", "90", "--step", "1")
-    motion = ck.solve(load_named("six-bar"), np.deg2rad(np.arange(0.0, 91.0)), order=2)
+    motion = ck.solve(load("six-bar"), np.deg2rad(np.arange(0.0, 91.0)), order=2)
     assert found.stdout_bytes == ck.plot(motion, "bar.angle").content("svg")

@@ -78,7 +78,7 @@ def test_checks_of_forces_are_part_of_the_outcome_and_fail_it() -> None:
 
 
 def test_what_equilibrium_leaves_open_and_friction_are_told() -> None:
-    bare = ck.catalog.load_named("parallelogram-third-crank")
+    bare = ck.load("parallelogram-third-crank")
     held = ck.Mechanism("Held", *bare.items, ck.force("coupler", (100, -300), at="P"), units=UNITS)
     told = forces_report(ck.force_analysis(ck.solve(held, {"crank": ck.deg([60, 90])}))).text(200)
     assert "Equilibrium does not determine the force along A B of crank in A" in told

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.files import load
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import column_texts
@@ -46,7 +46,7 @@ def test_text_is_ascii_where_the_mechanism_is(six_bar: ck.results.Motion) -> Non
 
 
 def test_the_same_report_is_the_same_text(six_bar: ck.results.Motion) -> None:
-    again = report(ck.solve(load_named("six-bar")))
+    again = report(ck.solve(load("six-bar")))
     for written_as in FORMS:
         assert written_as(report(six_bar)) == written_as(again)
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files import load
+from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.report_data import Alert, FormulaBlock, Paragraph, StepBlock, TableBlock
 from compoundkin.view.report.structure_sections import equation_count
@@ -64,12 +65,12 @@ def test_each_group_says_what_it_uses_and_yields(six_bar: ck.results.Motion) -> 
     assert facts[2]["yields"] == "bar, block; point G"
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", shipped())
 def test_equations_equal_unknowns_where_the_drivers_determine_the_motion(name: str) -> None:
     structure = catalog.structure(name)
     count, mobility = equation_count(structure), structure.mobility
     # as many too many as there are redundant ones, where it moves although it is overconstrained
-    redundant = mobility.drivers - mobility.freedoms if ck.decompose(load_named(name)).relaxation else 0
+    redundant = mobility.drivers - mobility.freedoms if ck.decompose(load(name)).relaxation else 0
     assert count.equations == count.unknowns + redundant
 
 
@@ -191,7 +192,7 @@ def test_several_drivers_number_the_poses() -> None:
 
 def test_a_driver_held_still_is_said_and_no_column() -> None:
     values = {"boom-cylinder": 2.65, "stick-cylinder": np.linspace(2.6, 3.3, 8), "bucket-cylinder": 2.0}
-    made = report(ck.solve(load_named("excavator-arm"), values))
+    made = report(ck.solve(load("excavator-arm"), values))
     assert "boom-cylinder = 2.65 m and bucket-cylinder = 2 m" in texts(made, "outputs")
     assert table(made, "outputs").columns[0].name == "stick-cylinder"
 
@@ -376,7 +377,7 @@ def test_limit_poses_are_said_to_be_checked_in_position_only() -> None:
 
 
 def test_a_published_number_of_a_group_that_has_no_pose_fails() -> None:
-    mechanism = load_named("class-iii-six-bar")
+    mechanism = load("class-iii-six-bar")
     far = mechanism.replace(ck.link("crank", O=(0, 0), A3=(200, 0)), ck.expect("plate.angle", 1.0, 1.0, crank=0.0))
     with pytest.raises(ck.errors.NotAssembled):
         ck.solve(far)
@@ -391,7 +392,7 @@ def test_a_published_number_of_a_group_that_has_no_pose_fails() -> None:
 
 
 def test_a_mechanism_is_reported_as_its_motion_or_as_its_structure() -> None:
-    mechanism = load_named("crank-rocker")
+    mechanism = load("crank-rocker")
     assert report(mechanism).text() == report(ck.solve(mechanism)).text()
     undriven = four_bar()
     assert report(undriven).json() == report(ck.decompose(undriven)).json()
@@ -403,6 +404,6 @@ def test_a_mechanism_is_reported_as_its_motion_or_as_its_structure() -> None:
 
 
 def test_a_report_is_the_same_whatever_it_is_about_for_its_page() -> None:
-    made = report(ck.solve(load_named("crank-rocker")))
+    made = report(ck.solve(load("crank-rocker")))
     assert made == Report(made.title, made.sections, made.outcome)
     assert repr(made).startswith("Report('")

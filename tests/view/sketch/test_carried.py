@@ -7,7 +7,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError, InvalidInput, NotAssembled
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files import load
+from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.sketch.kinematic_sketch import layered, moving_sketch
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, leaves, shape_corners
@@ -84,9 +85,9 @@ def test_rates_and_their_one_scale() -> None:
 
 
 def test_poses_that_cannot_be_assembled_are_left_out() -> None:
-    motion = ck.solve(load_named("crank-rocker"), {"crank": ck.deg([0, 30, 60])})
+    motion = ck.solve(load("crank-rocker"), {"crank": ck.deg([0, 30, 60])})
     assert moving_sketch(motion).scene.count == 3
-    rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
+    rocker = ck.with_driver(load("crank-rocker"), "rocker")
     with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     sketch = moving_sketch(motion)
@@ -129,7 +130,7 @@ def test_labels_stay_upright_and_near_their_points() -> None:
 
 
 def test_every_other_mechanism_of_the_catalog_moves() -> None:
-    for name in names()[::2]:
+    for name in shipped()[::2]:
         try:
             motion = solved(name)
         except CompoundkinError:

@@ -84,10 +84,10 @@ def test_free_bodies_name_everything() -> None:
 
 
 def test_a_pin_of_three_links_acts_on_each() -> None:
-    bare = ck.catalog.load_named("toggle-press")
+    bare = ck.load("toggle-press")
     press = ck.Mechanism("Press", *bare.items, ck.force("slider", (-10000, 0), at="D"), units=UNITS)
     forces = ck.force_analysis(ck.solve(press))
-    bare = ck.catalog.load_named("planetary-train")
+    bare = ck.load("planetary-train")
     train = ck.Mechanism("Train", *bare.items, ck.torque("sun", 2000.0), units=UNITS)
     for one in (forces, ck.force_analysis(ck.solve(train))):
         scene = scene_of(one.motion, None, 3, 0)
@@ -102,6 +102,6 @@ def test_wrong_wishes() -> None:
     with pytest.raises(UnknownName, match="plate"):
         ck.draw(six_bar_forces(), kind="free-bodies", link="plat")
     with pytest.raises(InvalidInput, match="units"):
-        ck.draw(ck.catalog.load_named("six-bar"), kind="free-bodies")
+        ck.draw(ck.load("six-bar"), kind="free-bodies")
     with pytest.raises(InvalidInput, match="ghosts"):
         ck.draw(six_bar_forces(), ghosts=3)

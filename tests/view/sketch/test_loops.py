@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load
 from compoundkin.structure import decompose, loop_count
 from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
@@ -33,7 +33,7 @@ def headings(picture: ck.results.Picture) -> list[str]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_there_is_a_panel_for_each_loop_that_eulers_formula_counts(name: str) -> None:
-    structure = decompose(shipped_mechanisms.load_named(name))
+    structure = decompose(load(name))
     picture = ck.draw(structure, kind="loops")
     count = len(structure.pairs) - len(structure.mechanism.links) + 1
     assert headings(picture) == [f"loop {k}" for k in range(1, count + 1)]
@@ -45,17 +45,17 @@ def test_there_is_a_panel_for_each_loop_that_eulers_formula_counts(name: str) ->
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_picture_is_well_formed_and_the_same_every_time(name: str) -> None:
-    source = ck.draw(shipped_mechanisms.load_named(name), kind="loops").svg
+    source = ck.draw(load(name), kind="loops").svg
     ET.fromstring(source)
     assert "nan" not in source
-    assert ck.draw(shipped_mechanisms.load_named(name), kind="loops").svg == source
+    assert ck.draw(load(name), kind="loops").svg == source
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.0, 6.2))
 def test_the_corners_are_the_solved_points_and_the_vectors_the_links(angle: float) -> None:
     """In order the points that neighbouring links share; each vector as long as its link, whose lengths are known."""
-    motion = ck.solve(shipped_mechanisms.load_named("stephenson-iii"), ck.deg(100.0) + 0.1 * np.sin([angle]))
+    motion = ck.solve(load("stephenson-iii"), ck.deg(100.0) + 0.1 * np.sin([angle]))
     scene = scene_of(motion, None, 0, 0)
     for loop in motion.structure.loops:
         corners = loop_polygon(scene, loop)
@@ -70,7 +70,7 @@ def test_the_corners_are_the_solved_points_and_the_vectors_the_links(angle: floa
 
 
 def test_across_a_slide_a_vector_leads_along_its_guide() -> None:
-    motion = ck.solve(shipped_mechanisms.load_named("slider-crank"), {"crank": [0.7]})
+    motion = ck.solve(load("slider-crank"), {"crank": [0.7]})
     (loop,) = motion.structure.loops
     corners = [corner.at for corner in loop_polygon(scene_of(motion, None, 0, 0), loop)]
     ways = np.diff([*corners, corners[0]])
@@ -81,7 +81,7 @@ def test_across_a_slide_a_vector_leads_along_its_guide() -> None:
 
 def test_the_arrows_run_around_in_the_colour_of_the_loop() -> None:
     """Each arrow begins where the one before it ends, but for the circles of the pins; and has its loop's colour."""
-    picture = ck.draw(shipped_mechanisms.load_named("stephenson-iii"), kind="loops")
+    picture = ck.draw(load("stephenson-iii"), kind="loops")
     for k, panel in enumerate(panels(picture), start=1):
         own = [s for s in panel.shapes if isinstance(s, Polyline) and s.style == style_of("bar", k)]
         pins = [s.centre for s in panel.shapes if isinstance(s, CircleShape)]
@@ -94,14 +94,14 @@ def test_the_arrows_run_around_in_the_colour_of_the_loop() -> None:
 
 def test_vectors_on_one_line_are_drawn_beside_it() -> None:
     """The loops of a planetary train lie on the line of the axes: there and back are two lines that do not touch."""
-    for panel in panels(ck.draw(shipped_mechanisms.load_named("planetary-train"), kind="loops")):
+    for panel in panels(ck.draw(load("planetary-train"), kind="loops")):
         first, second = [s for s in panel.shapes if isinstance(s, Polyline) and s.style.startswith("bar")]
         e = (first.points[1] - first.points[0]) / abs(first.points[1] - first.points[0])
         assert abs((np.conjugate(e) * (second.points[0] - first.points[0])).imag) == pytest.approx(12.0)
 
 
 def test_many_links_make_small_panels_and_not_more_of_them_than_anyone_reads() -> None:
-    mechanism = ck.composing.random_mechanism(40, seed=3)
+    mechanism = ck.chains.random_mechanism(40, seed=3)
     picture = ck.draw(mechanism, kind="loops")
     count = loop_count(decompose(mechanism))
     assert len(panels(picture)) == min(count, MOST) > 15
@@ -129,4 +129,4 @@ def test_an_open_chain_has_no_loops() -> None:
 def test_the_command_writes_what_python_draws() -> None:
     result = CliRunner().invoke(cli, ["draw", "six-bar", "--structure", "loops"])
     assert result.exit_code == 0
-    assert result.stdout == ck.draw(shipped_mechanisms.load_named("six-bar"), kind="loops").svg
+    assert result.stdout == ck.draw(load("six-bar"), kind="loops").svg

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 import compoundkin as ck
 from compoundkin.base.poses import Pose
 from compoundkin.cli import cli
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load, shipped_mechanisms
 from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.model.pairs.symbols import Mark, Pin, Sliding, strap_line
 from compoundkin.structure import decompose
@@ -44,7 +44,7 @@ every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.code for kind in K
 
 @cache
 def _scene(name: str) -> Scene:
-    return scene_of(shipped_mechanisms.load_named(name), None, None, 0)
+    return scene_of(load(name), None, None, 0)
 
 
 def test_every_mark_is_drawn() -> None:
@@ -52,7 +52,7 @@ def test_every_mark_is_drawn() -> None:
     assert {*PAINTED, Pin} == set(get_args(Mark))
 
 
-@pytest.mark.parametrize("name", shipped_mechanisms.names())
+@pytest.mark.parametrize("name", shipped_mechanisms.shipped())
 def test_a_guide_is_as_long_as_the_motion_uses_it(name: str) -> None:
     for seen in _scene(name).pair_marks:
         if isinstance(seen.mark, Sliding):
@@ -95,14 +95,14 @@ def test_a_belt_touches_its_pulleys_and_cuts_neither(seed: int, crossed: bool) -
 @pytest.mark.parametrize("view", ["groups", "loops", "graph", "circle"])
 @pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "planetary-train", "excavator-arm", "scissor-lift"])
 def test_structure_pictures_are_well_formed_and_the_same_every_time(name: str, view: str) -> None:
-    mechanism = shipped_mechanisms.load_named(name)
+    mechanism = load(name)
     source = ck.draw(mechanism, kind=view).svg
     ET.fromstring(source)
-    assert ck.draw(shipped_mechanisms.load_named(name), kind=view).svg == source
+    assert ck.draw(load(name), kind=view).svg == source
 
 
 def test_the_parts_are_the_groups_in_solving_order() -> None:
-    mechanism = shipped_mechanisms.load_named("jansen-leg")
+    mechanism = load("jansen-leg")
     picture = ck.draw(mechanism, kind="groups")
     headings = [
         s.text for s in leaves(picture.shapes) if isinstance(s, Text) and s.style == "heading" and s.text != "+"
@@ -113,7 +113,7 @@ def test_the_parts_are_the_groups_in_solving_order() -> None:
 
 
 def test_the_graph_has_a_node_for_each_link_and_a_line_for_each_pair() -> None:
-    structure = decompose(shipped_mechanisms.load_named("six-bar"))
+    structure = decompose(load("six-bar"))
     picture = ck.draw(structure, kind="graph")
     titles = [shape.title for shape in picture.shapes if isinstance(shape, ShapeGroup)]
     assert set(structure.mechanism.links) <= set(titles)
@@ -125,7 +125,7 @@ def test_the_graph_has_a_node_for_each_link_and_a_line_for_each_pair() -> None:
 
 
 def test_the_circle_diagram_has_a_chord_for_each_centre() -> None:
-    mechanism = shipped_mechanisms.load_named("six-bar")
+    mechanism = load("six-bar")
     picture = ck.draw(mechanism, kind="circle")
     lines = [shape for shape in leaves(picture.shapes) if isinstance(shape, Polyline)]
     assert len(lines) == 15
@@ -134,7 +134,7 @@ def test_the_circle_diagram_has_a_chord_for_each_centre() -> None:
 
 
 def test_overconstrained_mechanisms_that_move_are_drawn_as_they_are_written() -> None:
-    mechanism = shipped_mechanisms.load_named("wedge-press")
+    mechanism = load("wedge-press")
     picture = ck.draw(mechanism, at=20.0)
     blocks = [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style.startswith("pin ")]
     assert len(blocks) == 3
@@ -150,12 +150,12 @@ def test_structure_pictures_tell_what_they_cannot_show() -> None:
         ck.draw(loose, kind="net")
     with pytest.raises(ck.errors.InvalidInput, match="is no motion or mechanism or structure"):
         ck.draw("six-bar", kind="groups")
-    motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
+    motion = ck.solve(load("crank-rocker"))
     assert ck.draw(motion, kind="groups").svg == ck.draw(motion.mechanism, kind="groups").svg
 
 
 def test_a_picture_is_asked_only_what_belongs_to_its_kind() -> None:
-    motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
+    motion = ck.solve(load("crank-rocker"))
     for kind, words in (
         ("graph", {"at": 0.5}),
         ("graph", {"at": np.array([0.5])}),
@@ -172,7 +172,7 @@ def test_a_picture_is_asked_only_what_belongs_to_its_kind() -> None:
 
 @pytest.mark.parametrize("kind", ["groups", "loops"])
 def test_groups_and_loops_are_drawn_at_a_pose_that_is_asked_for(kind: str) -> None:
-    motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
+    motion = ck.solve(load("crank-rocker"))
     there = ck.draw(motion, kind=kind, pose=20).svg
     assert there != ck.draw(motion, kind=kind).svg
     assert there == ck.draw(motion, at=float(motion.drives["crank"].value[20]), kind=kind).svg
@@ -184,7 +184,7 @@ def test_groups_and_loops_are_drawn_at_a_pose_that_is_asked_for(kind: str) -> No
 
 
 def test_pictures_are_saved_in_three_forms(tmp_path: Path) -> None:
-    picture = ck.draw(shipped_mechanisms.load_named("crank-rocker"))
+    picture = ck.draw(load("crank-rocker"))
     for suffix, start in ((".svg", b"<svg"), (".png", b"\x89PNG"), (".pdf", b"%PDF")):
         picture.save(tmp_path / f"a{suffix}")
         assert (tmp_path / f"a{suffix}").read_bytes().startswith(start)
@@ -204,7 +204,7 @@ def test_a_picture_that_cannot_be_made_leaves_the_file_as_it_was(
 
     monkeypatch.setattr(builtins, "__import__", missing)
     with pytest.raises(ck.errors.InvalidInput, match=r"compoundkin\[pictures\]"):
-        ck.draw(shipped_mechanisms.load_named("crank-rocker")).save(target)
+        ck.draw(load("crank-rocker")).save(target)
     assert target.read_bytes() == b"before"
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
@@ -212,7 +212,7 @@ def test_a_picture_that_cannot_be_made_leaves_the_file_as_it_was(
 @pytest.mark.parametrize("name", ["a.gif", "a", "missing/a.svg"])
 def test_files_that_cannot_be_written_are_told(tmp_path: Path, name: str) -> None:
     with pytest.raises(ck.errors.InvalidInput):
-        ck.draw(shipped_mechanisms.load_named("crank-rocker")).save(tmp_path / name)
+        ck.draw(load("crank-rocker")).save(tmp_path / name)
 
 
 # --- the command line ------------------------------------------------------------------------------------
@@ -304,4 +304,4 @@ def _luminance(colour: str) -> float:
 def test_the_gallery_shows_the_whole_catalog() -> None:
     root = ET.fromstring(GALLERY.read_text(encoding="utf-8"))
     inner = [element.get("id") for element in root.iter("{http://www.w3.org/2000/svg}svg")][1:]
-    assert inner == list(shipped_mechanisms.names()), "write it again: python -m tests.pictures"
+    assert inner == list(shipped_mechanisms.shipped()), "write it again: python -m tests.pictures"

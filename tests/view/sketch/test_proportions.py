@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.files import load
 from compoundkin.files import shipped_mechanisms
 from compoundkin.view.sketch.kinematic_sketch import in_layers, window_on
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
@@ -65,7 +66,7 @@ def test_a_block_is_in_proportion_to_the_links_that_carry_it(crank: float) -> No
 
 
 def laid_of(name: str) -> list[Laid]:
-    scene = scene_of(shipped_mechanisms.load_named(name), None, None, 0)
+    scene = scene_of(load(name), None, None, 0)
     return in_layers(Painter(scene, window_on(scene)))
 
 
@@ -117,10 +118,10 @@ def test_pistons_are_what_is_called_so_and_never_leave_their_bores_on_the_side_o
         ("hand-pump", 1),
         ("toggle-press", 0),
     ):
-        motion = ck.solve(shipped_mechanisms.load_named(name))
+        motion = ck.solve(load(name))
         assert sum(map(is_piston, scene_of(motion, None, None, 0).pair_marks)) == count
     for sense, mechanism in ((1, "slider-crank"), (-1, "slider-crank-crossed")):
-        motion = ck.solve(shipped_mechanisms.load_named(mechanism))
+        motion = ck.solve(load(mechanism))
         for pose in (0, 17, 36):
             picture = ck.draw(motion, pose=pose)
             (body,) = [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style.startswith("pin ")]
@@ -131,7 +132,7 @@ def test_pistons_are_what_is_called_so_and_never_leave_their_bores_on_the_side_o
 
 
 def test_a_sliding_follower_has_a_stem_that_stays_in_its_bush() -> None:
-    motion = ck.solve(shipped_mechanisms.load_named("disc-cam-roller-program"))
+    motion = ck.solve(load("disc-cam-roller-program"))
     for pose in (0, 20, 45):
         picture = ck.draw(motion, pose=pose)
         (rod,) = [s for s in leaves(picture.shapes) if isinstance(s, Polyline) and s.style == "bar1"]

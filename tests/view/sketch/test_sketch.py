@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load, shipped_mechanisms
 from compoundkin.model.elements import Link
 from compoundkin.view.notebook import MOST_LINKS
 from compoundkin.view.sketch.labels import ROOM, text_half
@@ -22,13 +22,13 @@ from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyl
 from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, SMALL
 
 GOLDEN = Path(__file__).parent / "golden"
-every_mechanism = pytest.mark.parametrize("name", shipped_mechanisms.names())
+every_mechanism = pytest.mark.parametrize("name", shipped_mechanisms.shipped())
 SIZES = {"letter": LETTER, "number": SMALL, "centre-name": SMALL, "code": SMALL}
 
 
 @cache
 def drawn(name: str) -> ck.results.Picture:
-    return ck.draw(shipped_mechanisms.load_named(name))
+    return ck.draw(load(name))
 
 
 def four_bar() -> ck.Mechanism:
@@ -105,7 +105,7 @@ def test_a_path_is_that_of_the_point_and_ghosts_are_other_poses() -> None:
 def test_a_path_is_broken_where_poses_cannot_be_assembled() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        motion = ck.solve(shipped_mechanisms.load_named("triple-rocker"), ck.deg(np.arange(0, 361, 2.0)))
+        motion = ck.solve(load("triple-rocker"), ck.deg(np.arange(0, 361, 2.0)))
     runs = np.count_nonzero(np.diff(np.concatenate([[0], motion.assembled.astype(int), [0]])) == 1)
     assert runs > 1
     assert len(of(ck.draw(motion, paths="C"), "path")) == runs
@@ -141,7 +141,7 @@ def test_the_velocity_polygon_has_images_similar_to_the_links() -> None:
 @pytest.mark.parametrize("kind", ["velocity", "acceleration"])
 @pytest.mark.parametrize("name", ["crank-rocker", "disc-cam-offset-roller", "six-bar", "planetary-train"])
 def test_the_legend_of_a_polygon_is_on_its_picture(name: str, kind: str) -> None:
-    picture = ck.draw(shipped_mechanisms.load_named(name), kind="polygon", vectors=kind)
+    picture = ck.draw(load(name), kind="polygon", vectors=kind)
     notes = of(picture, "note")
     assert len(notes) == 2
     for note in notes:
@@ -189,8 +189,8 @@ def test_the_source_is_small_well_formed_and_the_same_every_time(name: str) -> N
     assert "inf" not in source.replace("at infinity", "").lower()
     assert len(source) < 20_000
     # drawn anew of every fourth: a fifth of a second each
-    if name in shipped_mechanisms.names()[::4]:
-        assert ck.draw(shipped_mechanisms.load_named(name)).svg == source
+    if name in shipped_mechanisms.shipped()[::4]:
+        assert ck.draw(load(name)).svg == source
 
 
 @every_mechanism
@@ -220,7 +220,7 @@ def test_labels_do_not_overlap(name: str) -> None:
 
 @given(st.floats(0.0, 6.28))
 def test_labels_do_not_overlap_at_any_pose(angle: float) -> None:
-    assert not overlaps(ck.draw(shipped_mechanisms.load_named("jansen-leg"), at=angle, centres=False))
+    assert not overlaps(ck.draw(load("jansen-leg"), at=angle, centres=False))
 
 
 def overlaps(picture: ck.results.Picture) -> list[tuple[str, str]]:
@@ -281,7 +281,7 @@ def test_unknown_names_are_told() -> None:
 
 def test_a_pose_that_does_not_close_is_told() -> None:
     with pytest.raises(ck.errors.NotAssembled):
-        ck.draw(shipped_mechanisms.load_named("triple-rocker"), at=ck.deg(170))
+        ck.draw(load("triple-rocker"), at=ck.deg(170))
 
 
 def test_a_mechanism_that_cannot_be_solved_is_shown_as_drawn() -> None:

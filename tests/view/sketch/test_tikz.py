@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files import shipped_mechanisms
+from compoundkin.files import load
 from compoundkin.view.sketch.shapes import CircleShape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_style import CLASSES, GROUPED, declarations, style_of
 from compoundkin.view.sketch.svg import svg
@@ -67,7 +67,7 @@ def commands_of(body: str) -> list[str]:
     ],
 )
 def test_a_picture_as_tikz_has_the_lines_and_texts_of_its_svg(name: str, words: dict[str, object]) -> None:
-    picture = ck.draw(shipped_mechanisms.load_named(name), **words)
+    picture = ck.draw(load(name), **words)
     text = picture.content("tikz").decode()
     assert text == picture.content("tikz").decode()
     commands = commands_of(body_of(text))
@@ -117,7 +117,7 @@ def test_arcs_bulge_to_the_side_that_they_have_as_svg() -> None:
 
 def test_a_picture_as_tikz_is_as_large_as_its_pdf() -> None:
     """Sizes in points: CairoSVG's page, and TikZ's bounding box by its units."""
-    picture = ck.draw(shipped_mechanisms.load_named("crank-rocker"), size=400)
+    picture = ck.draw(load("crank-rocker"), size=400)
     page = re.search(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", picture.content("pdf")).groups()  # type: ignore[union-attr]
     unit = float(re.search(r"x=([\d.]+)bp", picture.content("tikz").decode())[1])  # type: ignore[index]
     assert [float(side) for side in page] == pytest.approx([picture.width * unit, picture.height * unit], rel=2e-3)

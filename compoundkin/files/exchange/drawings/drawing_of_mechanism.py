@@ -41,8 +41,8 @@ def drawing_of(shown: ShownMechanism) -> Drawing:
     Raises InvalidInput listing all that no drawing can say.
 
     >>> from compoundkin.files.exchange.shown_mechanism import shown_mechanism
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> [guide.key for guide in drawing_of(shown_mechanism(load_named("slider-crank"))).guides]
+    >>> from compoundkin.files import load
+    >>> [guide.key for guide in drawing_of(shown_mechanism(load("slider-crank"))).guides]
     ['stroke']
     """
     mechanism = shown.mechanism

@@ -24,8 +24,8 @@ def site_name(plan: ModelPlan, letter: str, link: str) -> str:
 
     >>> from compoundkin.files.exchange.mjcf.model_plan import plan_of
     >>> from compoundkin.files.exchange.shown_mechanism import shown_mechanism
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> plan = plan_of(shown_mechanism(load_named("slider-crank")))
+    >>> from compoundkin.files import load
+    >>> plan = plan_of(shown_mechanism(load("slider-crank")))
     >>> site_name(plan, "A", "crank"), site_name(plan, "A", "rod")
     ('A', 'A on rod')
     """

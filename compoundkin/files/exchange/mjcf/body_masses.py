@@ -42,8 +42,8 @@ def units_of(mechanism: Mechanism) -> ModelUnits:
 
     MuJoCo has none, but its defaults suit metres and kilograms; lengths of an unknown unit stay as they are.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> units_of(load_named("six-bar")).told
+    >>> from compoundkin.files import load
+    >>> units_of(load("six-bar")).told
     'lengths are in m (1 mm is 0.001 m), masses in kg, forces in N, torques in N m'
     """
     length = LENGTHS.get(mechanism.unit)

@@ -119,8 +119,8 @@ def joint_rates(plan: ModelPlan) -> Mapping[str, float]:
 
     >>> from compoundkin.files.exchange.mjcf.model_plan import plan_of
     >>> from compoundkin.files.exchange.shown_mechanism import shown_mechanism
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> round(joint_rates(plan_of(shown_mechanism(load_named("slider-crank"))))["O"], 9)
+    >>> from compoundkin.files import load
+    >>> round(joint_rates(plan_of(shown_mechanism(load("slider-crank"))))["O"], 9)
     1.6
     """
     found = {name: rate for branch, link in plan.bodies.values() for name, rate in _rates(plan, branch, link)}

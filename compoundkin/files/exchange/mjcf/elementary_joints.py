@@ -66,8 +66,8 @@ def chain_of(shown: ShownMechanism, pair: Pair) -> JointChain | None:
     """Return the joints of a pair; None where no hinges and slides are one.
 
     >>> from compoundkin.files.exchange.shown_mechanism import shown_mechanism
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> shown = shown_mechanism(load_named("quick-return-pin-in-slot"))
+    >>> from compoundkin.files import load
+    >>> shown = shown_mechanism(load("quick-return-pin-in-slot"))
     >>> [joint.is_hinge for pair in shown.pairs for joint in chain_of(shown, pair).joints]
     [False, True]
     """

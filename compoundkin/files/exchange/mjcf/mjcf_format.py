@@ -39,8 +39,8 @@ class MjcfFormat(Writable):
         """Return the model. Raises InvalidInput listing all that hinges, slides and their sums cannot say.
 
         >>> from compoundkin.files.exchange.shown_mechanism import shown_mechanism
-        >>> from compoundkin.files.shipped_mechanisms import load_named
-        >>> found = FORMAT.write(shown_mechanism(load_named("slider-crank")))
+        >>> from compoundkin.files import load
+        >>> found = FORMAT.write(shown_mechanism(load("slider-crank")))
         >>> found.text.count("<body "), found.text.count("<connect ")
         (3, 1)
         """

@@ -242,9 +242,9 @@ def followed_quantities(motion: Motion_of_kinematics, outputs: Sequence[str] = (
     They are those of its outputs, the rates of these, transmission indices and Coriolis accelerations, as far as a
     program can tell them. Of a vector it is the whole vector.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> followed_quantities(solve(load_named("jansen-leg")))[:3]
+    >>> followed_quantities(solve(load("jansen-leg")))[:3]
     ('foot.position', 'foot.velocity', 'foot.acceleration')
     """
     asked = dict.fromkeys(name.removesuffix(f".{LENGTH}") for name in _quantity_names(motion, outputs))

@@ -74,9 +74,9 @@ def mechanism_template(
     number those that are written in degrees. Together they describe what `mechanism_with` makes, in these `modes`;
     `drawn` as it stands on the page, where modes have no signs.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> bars = load_named("four-bar-meriam")
+    >>> bars = load("four-bar-meriam")
     >>> pieces = mechanism_template(StatedDimensions(bars, solve(bars).inputs.ends), ["AB.B.x"])
     >>> next(piece["changed"] for piece in pieces if isinstance(piece, dict))
     ['\n[links.AB]\npoints = { A = [0, 0], B = [', 0, ', 0] }\n']
@@ -210,9 +210,9 @@ def _merged(pieces: Iterator[Any]) -> list[Any]:
 def configuration_modes(motion: Motion) -> tuple[list[Mode], bool]:
     """Return the modes of groups with signs, and whether others need a drawing. The motion has one design.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> configuration_modes(solve(load_named("crank-rocker")))
+    >>> configuration_modes(solve(load("crank-rocker")))
     ([Mode(links=('coupler',), sign=-1)], False)
     """
     mechanism, solvers = motion.mechanism, motion.solving_order.solvers

@@ -32,9 +32,9 @@ def panel_data(stated: StatedDimensions, names: Sequence[str]) -> dict[str, Any]
     "length" from a point to another one, which is moved; "angle" at the first from the second to the third; "turn" of
     the line through both in the link's own frame; "x" and "y". `fixed` are points that cannot be changed, by link.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
-    >>> bars = load_named("crank-rocker")
+    >>> bars = load("crank-rocker")
     >>> stated = StatedDimensions(bars, solve(bars).inputs.ends)
     >>> panel_data(stated, ["crank.B.x", "crank.B.y"])["links"]
     [{'name': 'crank', 'rows': [['length', ['A', 'B'], False], ['turn', ['A', 'B'], True]]}]
