@@ -7,7 +7,6 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import load
-from compoundkin.files import shipped_mechanisms
 from compoundkin.view.sketch.kinematic_sketch import in_layers, window_on
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
 from compoundkin.view.sketch.picture_options import scene_of
