@@ -26,24 +26,8 @@ if TYPE_CHECKING:
     from compoundkin.structure import Structure
     from compoundkin.view.sketch import Picture
 
+
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-def names_option(flag: str, name: str, metavar: str, text: str) -> Callable[[F], F]:
-    """Return an option of names, each given by itself or several with commas between them."""
-    return click.option(flag, name, multiple=True, metavar=metavar, callback=lambda _c, _p, given: split_names(given),
-                        help=text)  # fmt: skip
-
-
-def split_names(given: Sequence[str]) -> tuple[str, ...]:
-    """Return names given one by one or with commas between them.
-
-    >>> split_names(["G.x,G.y", "bar"])
-    ('G.x', 'G.y', 'bar')
-    """
-    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
-
-
 SPEED = click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
                      help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).")  # fmt: skip
 SECOND_RATE = click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
@@ -57,29 +41,10 @@ AT = click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
                   "if left out.")  # fmt: skip
 ORDER = click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
                      "otherwise what the outputs need, at least 2.")  # fmt: skip
-# The options of a motion but for its order.
-OPTIONS: tuple[Any, ...] = (
-    click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
-    click.option("--from", "start", type=float, metavar="VALUE", help="First value of the only driver."),
-    click.option("--to", "stop", type=float, metavar="VALUE", help="Last value of the only driver."),
-    click.option("--step", "step", type=float, metavar="VALUE", help="Distance between its values."),
-    click.option("--drive", "drives", multiple=True, metavar="NAME=VALUES",
-                 help="Values of a driver: crank=35, crank=0,35,60 or crank=0:360:5 (from:to:step)."),
-    click.option("--time", "time", metavar="SECONDS",
-                 help="Solve at these times: 0:2:0.01 (from:to:step) or 0,0.5,1. Drivers move by their laws, others "
-                 "from their value by their speed and acceleration."),
-    SPEED,
-    SECOND_RATE,
-    MODE,
-    names_option("--output", "outputs", "QUANTITY",
-                 "Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
-)  # fmt: skip
 # Options of sketches.
 VECTORS = (VELOCITY, ACCELERATION)
 ARROWS = click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
 LABELS = click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
-PATHS = names_option("--path", "paths", "POINT",
-                     "Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip
 # Options of forces.
 STATICS = click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
 HOLDING = click.option("--holding", default="", metavar="PAIR",
@@ -101,6 +66,42 @@ FORCE_OPTIONS: tuple[Any, ...] = (
     STATICS,
     HOLDING,
 )
+
+
+def names_option(flag: str, name: str, metavar: str, text: str) -> Callable[[F], F]:
+    """Return an option of names, each given by itself or several with commas between them."""
+    return click.option(flag, name, multiple=True, metavar=metavar, callback=lambda _c, _p, given: split_names(given),
+                        help=text)  # fmt: skip
+
+
+def split_names(given: Sequence[str]) -> tuple[str, ...]:
+    """Return names given one by one or with commas between them.
+
+    >>> split_names(["G.x,G.y", "bar"])
+    ('G.x', 'G.y', 'bar')
+    """
+    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
+
+
+# The options of a motion but for its order.
+OPTIONS: tuple[Any, ...] = (
+    click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
+    click.option("--from", "start", type=float, metavar="VALUE", help="First value of the only driver."),
+    click.option("--to", "stop", type=float, metavar="VALUE", help="Last value of the only driver."),
+    click.option("--step", "step", type=float, metavar="VALUE", help="Distance between its values."),
+    click.option("--drive", "drives", multiple=True, metavar="NAME=VALUES",
+                 help="Values of a driver: crank=35, crank=0,35,60 or crank=0:360:5 (from:to:step)."),
+    click.option("--time", "time", metavar="SECONDS",
+                 help="Solve at these times: 0:2:0.01 (from:to:step) or 0,0.5,1. Drivers move by their laws, others "
+                 "from their value by their speed and acceleration."),
+    SPEED,
+    SECOND_RATE,
+    MODE,
+    names_option("--output", "outputs", "QUANTITY",
+                 "Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
+)  # fmt: skip
+PATHS = names_option("--path", "paths", "POINT",
+                     "Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip
 
 
 def drive_options(command: F) -> F:

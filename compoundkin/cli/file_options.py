@@ -25,13 +25,15 @@ if TYPE_CHECKING:
     from compoundkin.view.report import Report
     from compoundkin.view.sketch import Picture
 
-F = TypeVar("F", bound=Callable[..., Any])
 
+F = TypeVar("F", bound=Callable[..., Any])
 FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
 # The key of a command's context under which --whole is stored.
 WHOLE = "whole report"
 # Names of standard output where a file is expected.
 STDOUT = ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
+# Mechanisms with more pairs are not decomposed for a summary: finding redundant constraints may take minutes.
+_MOST_PAIRS = 100
 
 
 class Destination(click.ParamType[Any]):
@@ -217,10 +219,6 @@ def _report_text(report: Report, form: str) -> str:
     if form == "text":
         return report.text(whole=True)
     return {"markdown": report.markdown, "json": report.json}[form]()
-
-
-# Mechanisms with more pairs are not decomposed for a summary: finding redundant constraints may take minutes.
-_MOST_PAIRS = 100
 
 
 def is_foreign_file(source: str) -> bool:

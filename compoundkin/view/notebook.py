@@ -41,8 +41,6 @@ from compoundkin.view.sketch import draw
 
 # Pictures of more links than these take more than a second: they are drawn where they are asked for.
 MOST_LINKS = 30
-
-
 # What shows itself as blocks of a report.
 _BLOCKS: dict[type, Callable[[Any], Iterable[Block]]] = {
     Centres: centre_blocks,

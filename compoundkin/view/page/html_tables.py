@@ -22,6 +22,11 @@ from compoundkin.view.sketch.sketch_style import COLOURS
 from compoundkin.view.sketch.svg import link_names
 
 Links = tuple[str, ...]
+RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
+# Cells with more letters than this are broken into lines, and get room for them.
+LONG = 24
+# The column that tells the units of others.
+UNIT = "unit"
 
 
 @dataclass(frozen=True)
@@ -190,17 +195,6 @@ def _row_head(shown: HtmlTable, cell: Cell, text: str, links: tuple[str, ...]) -
 
 def _links_attribute(names: tuple[str, ...]) -> str:
     return f' data-links="{link_names(names)}"' if names else ""
-
-
-RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
-
-
-# Cells with more letters than this are broken into lines, and get room for them.
-LONG = 24
-
-
-# The column that tells the units of others.
-UNIT = "unit"
 
 
 def cell_html(column: Column, cell: Cell, text: str) -> str:

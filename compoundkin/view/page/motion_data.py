@@ -38,21 +38,17 @@ from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
 
 # A page holds so many poses at most, fewer where there are many links: its data shall stay well below a megabyte.
 MOST_POSES, FEWEST_POSES = 721, 121
-
-
 MOST_NUMBERS = 90_000
-
-
 # Of a link there are so many numbers at every pose.
 OF_A_LINK = 9
-
-
 # Of more links than these the instant centres are left out.
 MOST_LINKS = 12
-
-
 # How long a motion takes to play, in seconds: one that is not in time; one in time at least and at most.
 CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
+# A place that moves on its link by less than this part of the size is fixed there.
+FIXED_PLACE = 1e-9
+# Plots that a page makes by itself go to accelerations.
+ORDERS = range(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,10 +242,6 @@ def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[l
                 yield [index[tuple(sorted(step.centre))], *known]
 
 
-# A place that moves on its link by less than this part of the size is fixed there.
-FIXED_PLACE = 1e-9
-
-
 def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
     """Return the arrows of forces at some poses.
 
@@ -290,10 +282,6 @@ def _force_arrow(
         return {**found, "link": links[shown.link], "x": float(known[0].real), "y": float(known[0].imag)}
     at = course.at[chosen]
     return {**found, "at": [packed_floats(at.real), packed_floats(at.imag)]}
-
-
-# Plots that a page makes by itself go to accelerations.
-ORDERS = range(3)
 
 
 def plot_data(moving: MotionData) -> dict[str, Any]:

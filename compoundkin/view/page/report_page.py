@@ -38,11 +38,7 @@ from compoundkin.view.sketch import Picture, draw
 
 # Of more links than this no picture is legible, and drawing takes long.
 MOST_LINKS = 100
-
-
 Subject: TypeAlias = Structure | Motion
-
-
 # Which view of the structure stands at the head of which section, and what is said below it.
 VIEWS = {
     "chain": ("graph", "The kinematic graph: links are its nodes, pairs the lines between them."),
@@ -56,13 +52,15 @@ VIEWS = {
     ),
     "derivation": ("circle", "The circle diagram: a line for each instant centre, numbered in the order of the steps."),
 }
-
-
 OUTPUTS = "outputs"
-
-
 # More cells than these make a page slow and large: the table then has the poses of the report.
 MOST_CELLS = 12_000
+# What draws the plots.
+PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plot_panel.js", "plots.js")
+# More outputs than these are no page: the tables have all.
+MOST_OUTPUTS = 6
+# The key of a section, its plot, and what is said below it.
+SectionPlot: TypeAlias = tuple[str, Plot, str]
 
 
 def section_figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
@@ -218,10 +216,6 @@ def open_in_browser(path: Path) -> bool:
         return False
 
 
-# What draws the plots.
-PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plot_panel.js", "plots.js")
-
-
 def with_viewer(document: Document, moving: Viewer) -> Document:
     """Return a document with the moving sketch beside its text.
 
@@ -239,14 +233,6 @@ def with_viewer(document: Document, moving: Viewer) -> Document:
     before = tuple((key, title) for key, title, _ in first)
     changed = replace(document, viewer=moving.html, sections=sections, before=before)
     return replace(changed, data=data, scripts=scripts, styles=styles)
-
-
-# More outputs than these are no page: the tables have all.
-MOST_OUTPUTS = 6
-
-
-# The key of a section, its plot, and what is said below it.
-SectionPlot: TypeAlias = tuple[str, Plot, str]
 
 
 def study_figures(found: object) -> dict[str, str]:

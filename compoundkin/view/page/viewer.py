@@ -25,16 +25,10 @@ from compoundkin.view.sketch.svg import FONT, elements, link_names, svg_number
 
 # So many names below the sketch are stops of the keyboard.
 MOST_STOPS = 12
-
-
 # How much faster or slower than that the motion may be played.
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2")
-
-
 # Plots of a page go to accelerations.
 MOST_ORDER = 2
-
-
 # What can be shown in the sketch, as it is called: its key, the words, and what they say at length.
 SWITCHES = (
     (VELOCITY, "velocities", "velocity vectors of all points"),
@@ -42,6 +36,23 @@ SWITCHES = (
     ("forces", "forces", "forces in pairs, loads, weights and inertia"),
     ("centres", "instant centres", "instant centres with the lines that give them"),
     ("names", "names", "letters of points and numbers of links"),
+)
+# A notebook keeps every output that it shows: a few dozen kilobytes each are enough.
+MOST_POSES = 181
+# The frame is so high, in pixels: the sketch as it is on a page so wide, the controls below it, those of changes.
+WIDTH, HIGHEST, CONTROLS, CHANGES = 640.0, 448.0, 190.0, 72.0
+PLAYER_STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}.sketch{max-height:448px}"
+PANEL_KEY, PANEL_TITLE = "dimensions", "Dimensions"
+PANEL_HINT = (
+    "Change a number, and the mechanism follows. Arrow keys step it, with Shift ten times as far; "
+    "a field that is focused says in which range the mechanism assembles."
+)
+# What can be taken along: its key, the words of its button, what they say at length.
+SHARE_BUTTONS = (
+    ("toml", "Copy as TOML", "Copy the mechanism with these dimensions as a mechanism file"),
+    ("link", "Copy link", "Copy the address of this page with these dimensions"),
+    ("csv", "CSV", "Save drivers, outputs and points at all poses"),
+    ("svg", "SVG", "Save the sketch as it is shown"),
 )
 
 
@@ -211,17 +222,6 @@ def _plots_html(moving: MotionData) -> str:
     return element("div", lines([element("div", "", class_="panels"), row]), class_="plots")
 
 
-# A notebook keeps every output that it shows: a few dozen kilobytes each are enough.
-MOST_POSES = 181
-
-
-# The frame is so high, in pixels: the sketch as it is on a page so wide, the controls below it, those of changes.
-WIDTH, HIGHEST, CONTROLS, CHANGES = 640.0, 448.0, 190.0, 72.0
-
-
-PLAYER_STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}.sketch{max-height:448px}"
-
-
 def player(motion: Motion, design: int = 0) -> str:
     """Return a document that shows one design under a slider and a button.
 
@@ -266,24 +266,6 @@ def framed_player(motion: Motion) -> str:
     style = f"width:100%;max-width:{WIDTH:.0f}px;height:{height:.0f}px;border:1px solid #8886;border-radius:8px"
     title = f"{motion.mechanism.title}, moving"
     return f'<iframe srcdoc="{safe(document)}" title="{safe(title)}" style="{style}" sandbox="allow-scripts"></iframe>'
-
-
-PANEL_KEY, PANEL_TITLE = "dimensions", "Dimensions"
-
-
-PANEL_HINT = (
-    "Change a number, and the mechanism follows. Arrow keys step it, with Shift ten times as far; "
-    "a field that is focused says in which range the mechanism assembles."
-)
-
-
-# What can be taken along: its key, the words of its button, what they say at length.
-SHARE_BUTTONS = (
-    ("toml", "Copy as TOML", "Copy the mechanism with these dimensions as a mechanism file"),
-    ("link", "Copy link", "Copy the address of this page with these dimensions"),
-    ("csv", "CSV", "Save drivers, outputs and points at all poses"),
-    ("svg", "SVG", "Save the sketch as it is shown"),
-)
 
 
 def panel_section() -> str:

@@ -28,11 +28,7 @@ LOOP_NOTATION = (
     "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; "
     "the frame's angle is zero. AB' starts or ends where a guide is, from which its displacement counts."
 )
-
-
 IMPLICIT_FUNCTIONS = "Of {pairs} no more is known than functions F of the angles and displacements in brackets."
-
-
 _MEANING = {
     "angle": "angle of the link",
     "displacement": "displacement along the guide",
@@ -42,6 +38,33 @@ _MEANING = {
     "y": "way across the pair in y of its first link",
     "given": "value of the driver",
 }
+# A matrix in brackets is no wider (characters); a wider one is written entry by entry.
+WIDEST = 76
+# A matrix of more columns is not set as mathematics: nobody could read it.
+MOST_COLUMNS = 24
+RATE_NOTATION = (
+    "A prime, in formulas a dot, is a derivative by time: crank' is the angular velocity of the link crank, s''(slot) "
+    "the second rate of the displacement s(slot)."
+)
+FUNCTION_RATES = (
+    "The derivatives dF/d( ) of a function F of which no more is known are found by series; F'' is its second rate "
+    "while its arguments have constant rates."
+)
+ONE_MATRIX = "A is the matrix of both velocities and accelerations, its columns those of x = ({})."
+_SYMBOLS = {
+    True: "With input a, coupler b, output c and frame d",
+    False: "With crank a, rod b and offset e of the guide",
+}
+NEWTON_METHOD = (
+    "Each step solves A d = -F for the corrections d, with the matrix A and the residuals F of the loop equations at "
+    "the estimates. Near the pose each correction is about the square of the one before."
+)
+# Poses that differ by less (radians, or parts of the size) are one.
+SAME = 1e-6
+SAME_POSE = "This is the pose that the groups give one by one."
+OTHER_POSE = "This is another configuration than that of the groups: choose estimates nearer to it."
+# Numbers of the matrix below this part of its largest are rounding, and shown as 0.
+ROUNDING = 1e-12
 
 
 def equations_section(found: LoopEquations) -> Section:
@@ -85,29 +108,6 @@ def _first_length(length: object) -> float:
     return float(np.ravel(np.asarray(length))[0])
 
 
-# A matrix in brackets is no wider (characters); a wider one is written entry by entry.
-WIDEST = 76
-
-
-# A matrix of more columns is not set as mathematics: nobody could read it.
-MOST_COLUMNS = 24
-
-
-RATE_NOTATION = (
-    "A prime, in formulas a dot, is a derivative by time: crank' is the angular velocity of the link crank, s''(slot) "
-    "the second rate of the displacement s(slot)."
-)
-
-
-FUNCTION_RATES = (
-    "The derivatives dF/d( ) of a function F of which no more is known are found by series; F'' is its second rate "
-    "while its arguments have constant rates."
-)
-
-
-ONE_MATRIX = "A is the matrix of both velocities and accelerations, its columns those of x = ({})."
-
-
 def constants_section(found: LoopEquations) -> Section | None:
     """Return Freudenstein's equations with their constants; None where no loop has one."""
     blocks: list[Block] = []
@@ -118,12 +118,6 @@ def constants_section(found: LoopEquations) -> Section | None:
         told = ", ".join(f"{name} = {number_text(float(np.ravel(value)[0]))}" for name, value in numbers.items())
         blocks.append(Paragraph(f"{_SYMBOLS[isinstance(own, FourBarConstants)]}: {told}."))
     return Section("constants", "Freudenstein's equation", tuple(blocks)) if blocks else None
-
-
-_SYMBOLS = {
-    True: "With input a, coupler b, output c and frame d",
-    False: "With crank a, rod b and offset e of the guide",
-}
 
 
 def rates_section(found: LoopEquations) -> Section:
@@ -166,26 +160,6 @@ def _matrix_text(rates: RateEquations) -> str:
 def _system_latex(rates: RateEquations) -> str:
     unknown = r" \\ ".join(LATEX.unknown(own, rates.order) for own in rates.unknowns)
     return rf"A \begin{{bmatrix}} {unknown} \end{{bmatrix}} = {rates.right_side.latex}"
-
-
-NEWTON_METHOD = (
-    "Each step solves A d = -F for the corrections d, with the matrix A and the residuals F of the loop equations at "
-    "the estimates. Near the pose each correction is about the square of the one before."
-)
-
-
-# Poses that differ by less (radians, or parts of the size) are one.
-SAME = 1e-6
-
-
-SAME_POSE = "This is the pose that the groups give one by one."
-
-
-OTHER_POSE = "This is another configuration than that of the groups: choose estimates nearer to it."
-
-
-# Numbers of the matrix below this part of its largest are rounding, and shown as 0.
-ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,6 +35,8 @@ from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
 from compoundkin.view.report.wording import counted, listed, number_text
 
+DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
+
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
     """Report each driver with its range and rates. Angles and lengths in tables of their own."""
@@ -218,9 +220,6 @@ def _change_points_text(motion: Motion, k: int, design: int) -> str:
     _, times = np.unique(places[design][np.isfinite(places[design])], return_counts=True)
     count = int(np.count_nonzero(times % 2))
     return f"; it changes at {counted(count, 'change point')}" if count else ""
-
-
-DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
 
 
 @dataclass(frozen=True)

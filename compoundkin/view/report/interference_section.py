@@ -12,20 +12,17 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
-from compoundkin.view.report.wording import counted, joined_links, listed, number_text
+from compoundkin.view.report.wording import counted, joined_links, listed, number_text, point_text, sentence
 
-# So many clearances are listed, the least first.
+# At most so many clearances are listed, the least first.
 MOST_CLEARANCES = 12
-# Of more designs than these the first ones are told.
+# At most so many designs are reported.
 MOST_DESIGNS = 3
 INTERFERENCE = "interference"
 
 
 def interference_or_error(motion: Motion) -> Interference | InvalidInput | None:
-    """Return what touches, None where there are no outlines.
-
-    Where they cannot be compared it is the reason.
-    """
+    """Return the interference of outlines, the error where they cannot be compared, None without outlines."""
     if not motion.mechanism.outlines:
         return None
     try:
@@ -35,7 +32,7 @@ def interference_or_error(motion: Motion) -> Interference | InvalidInput | None:
 
 
 def interference_sections(sample: Sample, found: Interference | InvalidInput | None) -> tuple[Section, ...]:
-    """Return the section on outlines. None where there are none."""
+    """Return the section on outlines; none without outlines."""
     if found is None:
         return ()
     if isinstance(found, InvalidInput):
@@ -46,21 +43,21 @@ def interference_sections(sample: Sample, found: Interference | InvalidInput | N
 
 
 def with_interference(outcome: Outcome, found: Interference | InvalidInput | None) -> Outcome:
-    """Return what a report comes to, with what touches."""
+    """Return an outcome with the number of touches."""
     if not isinstance(found, Interference):
         return outcome
     return replace(outcome, touching=len(found.touching), compared=found.verdict)
 
 
 def interference_blocks(sample: Sample, found: Interference) -> Iterator[Block]:
-    """Yield what there is to say of a design's touches and clearances."""
+    """Yield a design's touches and clearances."""
     touches = [one for one in found.touches if one.design == sample.design]
     clearances = [one for one in found.clearances if one.design == sample.design]
     text = (
         "Outlines that share a layer are compared, at the poses and between them. Of joined links, what reaches the"
         " points of their joint overlaps by nature and is left out."
     )
-    yield Paragraph(f"{found.verdict[:1].upper()}{found.verdict[1:]}. {text}")
+    yield Paragraph(f"{sentence(found.verdict)} {text}")
     if found.missing:
         yield Paragraph(f"{counted(found.missing, 'pose')} that cannot be assembled are left out.")
     yield from (Alert(f"{touch_sentence(sample, one)}.") for one in touches)
@@ -75,13 +72,13 @@ def interference_blocks(sample: Sample, found: Interference) -> Iterator[Block]:
 
 
 def blocks_of_designs(found: Interference) -> Iterator[Block]:
-    """Yield what there is to say of the first designs, or the only one."""
+    """Yield touches and clearances of the first designs."""
     for design in range(found.motion.inputs.designs)[:MOST_DESIGNS]:
         yield from interference_blocks(Sample(found.motion, design), found)
 
 
 def touch_sentences(motion: Motion, found: Interference | InvalidInput | None) -> Iterator[str]:
-    """Yield all touches in words, of several designs with the design."""
+    """Yield all touches in words; with several designs each names its design."""
     for one in found.touches if isinstance(found, Interference) else ():
         of = f", design {one.design}" if motion.inputs.designs > 1 else ""
         yield f"interference: {touch_sentence(Sample(motion, one.design), one)}{of}"
@@ -90,10 +87,9 @@ def touch_sentences(motion: Motion, found: Interference | InvalidInput | None) -
 def touch_sentence(sample: Sample, touch: LinkTouch) -> str:
     """Return one touch in words. "crank and frame touch from crank 75.5225 deg to 104.478 deg, first at (0, 7)"."""
     layers = f"{'layer' if len(touch.layers) == 1 else 'layers'} {listed(map(str, touch.layers))}"
-    where = f"first at ({number_text(touch.at.real)}, {number_text(touch.at.imag)})"
     two = f"{touch.one} and {touch.other} on {layers}"
     if sample.poses == 1:
-        return f"{two} touch, at ({number_text(touch.at.real)}, {number_text(touch.at.imag)})"
+        return f"{two} touch, at {point_text(touch.at)}"
     spans = [
         f"{one.name} {_driver_value(one, touch.begin)} to {_driver_value(one, touch.end)}" for one in sample.varying
     ]
@@ -101,7 +97,7 @@ def touch_sentence(sample: Sample, touch: LinkTouch) -> str:
         spans = [f"{number_text(touch.times[0])} s to {number_text(touch.times[1])} s", *spans]
     if touch.open_begin and touch.open_end and touch.first <= touch.last:
         return f"{two} touch all the way from {'; '.join(spans)}"
-    return f"{two} touch from {'; '.join(spans)}, {where}"
+    return f"{two} touch from {'; '.join(spans)}, first at {point_text(touch.at)}"
 
 
 def _driver_value(driver: Quantity, values: Mapping[str, float]) -> str:

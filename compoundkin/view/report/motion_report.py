@@ -44,6 +44,9 @@ from compoundkin.view.report.verification_sections import (
 )
 from compoundkin.view.report.wording import brief, counted, number_text
 
+# An energy below this part of the greatest is rounding.
+ENERGY_ROUNDING = 1e-12
+
 
 def checks_section(sample: Sample, check: Check) -> Section:
     """Return all findings of the checks, each with its worst value's place."""
@@ -63,18 +66,17 @@ def checks_section(sample: Sample, check: Check) -> Section:
     return Section("checks", "Checks", (Paragraph(text), findings_table(sample, check)))
 
 
-def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = "") -> Report:
-    """Report a motion of one design. What it is one of is `told` of it."""
-    # they are gone through more than once
+def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = "") -> Report:
+    """Report a motion of one design; `note` says which of several designs it is."""
     sample, structure, outputs = Sample(motion), motion.structure, tuple(outputs)
-    # outputs first: an unknown name is said before the slower work is done
+    # outputs first: an unknown name is an error before the slower work is done
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
     check, published = verify(motion), comparisons(structure)
     forces, touching = loaded_forces(motion), interference_or_error(motion)
     outcome = with_interference(outcome_of(motion, with_force_findings(check, forces), published), touching)
     sections = (
-        about_section(structure, motion_summary(outcome), told),
+        about_section(structure, motion_summary(outcome), note),
         *counted_sections(structure, motion=motion),
         solving_section(structure, motion),
         drivers_section(structure, sample),
@@ -92,7 +94,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = ""
 
 
 def motion_summary(outcome: Outcome) -> str:
-    """Return the one line that says whether all is well."""
+    """Return the outcome in one line."""
     return f"{'; '.join(_outcome_clauses(outcome))}."
 
 
@@ -112,10 +114,7 @@ def _outcome_clauses(outcome: Outcome) -> Iterator[str]:
 
 
 def check_report(motion: Motion) -> Report:
-    """Report all findings about a motion, what failed in words.
-
-    It also says where its first design is not assembled.
-    """
+    """Report all findings about a motion, the failed ones in words, and where its first design is not assembled."""
     sample, check, forces = Sample(motion), verify(motion), loaded_forces(motion)
     both = with_force_findings(check, forces)
     touching = interference_or_error(motion)
@@ -131,7 +130,7 @@ def check_report(motion: Motion) -> Report:
 
 
 def centres_report(motion: Motion, design: int = 0) -> Report:
-    """Report a design's instant centres at the first pose. It says why where the pose cannot be assembled."""
+    """Report a design's instant centres at the first pose, or why the pose cannot be assembled."""
     check_design(design, motion.inputs.designs)
     motion = motion_of_design(motion, design)
     sample = Sample(motion)
@@ -141,10 +140,6 @@ def centres_report(motion: Motion, design: int = 0) -> Report:
     return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed)), motion)
 
 
-# An energy below this part of the greatest is rounding.
-ENERGY_ROUNDING = 1e-12
-
-
 def simulation_report(found: Simulation) -> Report:
     """Report a simulation."""
     motion = found.motion
@@ -152,7 +147,7 @@ def simulation_report(found: Simulation) -> Report:
 
 
 def whole_simulation_report(found: Simulation, outputs: Sequence[str] = ()) -> Report:
-    """Report a simulation and all there is to say of its motion."""
+    """Report a simulation and its motion."""
     whole = report_of_motion(found.motion, outputs)
     about, *others = whole.sections
     return replace(whole, sections=(about, _simulation_section(found), *others))
@@ -165,11 +160,11 @@ def _simulation_section(found: Simulation) -> Section:
 def _simulation_blocks(found: Simulation) -> Iterator[Block]:
     units = found.motion.mechanism.units
     times = np.ravel(found.times)
-    told = f"{number_text(float(times[-1]))} s in {counted(found.steps, 'step')}, each to {brief(found.tolerance)}"
+    length = f"{number_text(float(times[-1]))} s in {counted(found.steps, 'step')}, each to {brief(found.tolerance)}"
     energy = f"the energy balance is off by at most {brief(float(found.energy.worst))} of its peak"
     unit = "" if units is None else f" ({number_text(float(found.energy.peak))} {units.moment})"
-    yield Paragraph(f"Free under masses and loads for {told}; {energy}{unit}.")
-    yield Paragraph("Drivers, whose coordinates were found:")
+    yield Paragraph(f"Free under masses and loads for {length}; {energy}{unit}.")
+    yield Paragraph("Drivers, whose coordinates are computed:")
     yield _drivers_table(found)
     yield Paragraph("Energies; the work is that of loads without a potential and of drivers that are prescribed:")
     yield _energies_table(found)
@@ -180,7 +175,7 @@ def _simulation_blocks(found: Simulation) -> Iterator[Block]:
 
 
 def _drivers_table(found: Simulation) -> TableBlock:
-    """Where each driver begins and ends, how far it goes, how fast."""
+    """Return the first, last, least and greatest value of each driver, and its greatest speed."""
     motion, rows = found.motion, list[tuple[Cell, ...]]()
     for name, drive in motion.drives.items():
         value, rate = np.ravel(drive.value), np.ravel(drive.rate)
@@ -193,7 +188,7 @@ def _drivers_table(found: Simulation) -> TableBlock:
 
 
 def _energies_table(found: Simulation) -> TableBlock:
-    """Each energy at the beginning and the end, and its extremes."""
+    """Return each energy at the beginning and the end, and its extremes."""
     energy, units = found.energy, found.motion.mechanism.units
     unit = "" if units is None else units.moment
     named = {"kinetic": energy.kinetic, "potential": energy.potential, "work": energy.work}

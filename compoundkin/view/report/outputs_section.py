@@ -21,21 +21,22 @@ from compoundkin.model.attributes import DEGREES, LENGTH, RADIANS, TIME, motion_
 from compoundkin.structure import decompose, roman
 from compoundkin.view.report.pose_sample import ROUNDING, Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
-from compoundkin.view.report.wording import counted, listed, number_text, ordinal_text
+from compoundkin.view.report.wording import counted, listed, number_text, ordinal_text, point_text, sentence
 
-_NO_OUTPUTS = (Paragraph("No outputs are named."),)
-
-
-# A mechanical advantage at a toggle position.
-INFINITE = "inf"
+# A mechanical advantage at a toggle position, an extreme that is constant, and one that grows without limit.
+INFINITE, ALWAYS, WITHOUT_LIMIT = "inf", "always", "without limit"
+# The key of rows of extremes, by which a live page computes them again.
+RANGE = "range"
+FOLLOWER_MOTIONS = {True: "oscillates about a pin", False: "translates on a slide", None: "has no guide of its own"}
 
 
 def moving_sections(sample: Sample, outputs: Sequence[str]) -> tuple[Section, ...]:
     """Return the sections of the outputs, with their extremes, and of cams."""
-    found = outputs_at_poses(sample, outputs)
-    known = SampleExtremes(sample, found)
+    quantities = outputs_at_poses(sample, outputs)
+    known = SampleExtremes(sample, quantities)
     figures = figures_blocks(sample, [name for name in outputs if motion_figure(name)[1]])
-    blocks = (Paragraph(_introduction(sample)), outputs_table(sample, found)) if found else _NO_OUTPUTS
+    table = (Paragraph(_introduction(sample)), outputs_table(sample, quantities))
+    blocks = table if quantities else (Paragraph("No outputs are named."),)
     moving = Section("outputs", "Outputs over the cycle", (*blocks, *extremes_blocks(known), *figures))
     return moving, *cams_sections(known)
 
@@ -46,7 +47,7 @@ def outputs_at_poses(sample: Sample, outputs: Sequence[str]) -> list[Quantity]:
 
 
 def figures_blocks(sample: Sample, names: Sequence[str]) -> Iterator[Block]:
-    """Yield the figures of the whole motion, or why one is not told."""
+    """Yield the figures of the whole motion, or the reason why one is missing."""
     rows: list[tuple[Cell, ...]] = []
     for name in names:
         try:
@@ -74,13 +75,13 @@ def _introduction(sample: Sample) -> str:
     every = "all" if sample.every == 1 else f"every {ordinal_text(sample.every)} of"
     text = f"{every} {counted(sample.poses, 'pose')}" if sample.poses > 1 else "a single pose"
     constant = [driver for driver in sample.drivers if driver not in sample.varying]
-    held = [f"{driver.name} = {driver.values[0]:g} {driver.unit}" for driver in constant]
+    fixed = [f"{driver.name} = {driver.values[0]:g} {driver.unit}" for driver in constant]
     missing = " A dash: not assembled." if not sample.assembled.all() else ""
-    return f"{text[:1].upper() + text[1:]}{'; ' + listed(held) if held else ''}.{missing}"
+    return f"{sentence(f'{text}; {listed(fixed)}' if fixed else text)}{missing}"
 
 
 def _output_columns(sample: Sample, found: Quantity) -> Iterator[tuple[Column, Any]]:
-    """One column for a number, two for a vector."""
+    """Yield one column for a number, two for a vector."""
     floor = sample.floor(found)
     for k, part in enumerate(found.components):
         yield Column(part.name, part.unit, "fixed", floor, follows=k > 0), part.values
@@ -93,7 +94,7 @@ def _cell(value: Any) -> float | str | None:
 
 
 def equivalent_section(sample: Sample) -> Section | None:
-    """Report what stands for each higher pair at the first pose with rates. None without any."""
+    """Return the section on what replaces each higher pair at the first pose with rates; None without any."""
     motion = sample.motion
     regular = np.flatnonzero(sample.of(np.broadcast_to(motion.regular, motion.failed.shape).reshape(motion.shape)))
     if not len(regular):
@@ -126,25 +127,12 @@ def _equivalent_link(length: float | None) -> tuple[Cell, Cell]:
 
 
 def _centre_text(centre: complex | None) -> str:
-    return "straight" if centre is None else f"({centre.real:.6g}, {centre.imag:.6g})"
-
-
-FOLLOWER_MOTIONS = {True: "oscillates about a pin", False: "translates on a slide", None: "has no guide of its own"}
-
-
-ALWAYS, WITHOUT_LIMIT = "always", "without limit"
-
-
-# What rows of extremes are, as figures of the motion.
-RANGE = "range"
+    return "straight" if centre is None else point_text(centre)
 
 
 @dataclass(frozen=True, eq=False)
 class SampleExtremes:
-    """The extremes of the outputs and of the cams of a sample.
-
-    They are found at once, for solving again takes its time.
-    """
+    """The extremes of the outputs and of the cams of a sample, computed together, as each solves the motion again."""
 
     sample: Sample
     outputs: Sequence[Quantity]
@@ -158,12 +146,12 @@ class SampleExtremes:
 
     @cached_property
     def measures(self) -> tuple[tuple[Measure, ...], ...]:
-        """What is listed of each cam."""
+        """The measures of each cam."""
         return tuple(tuple(_cam_measures(self.sample, found)) for found in self.cams)
 
     @cached_property
     def parts(self) -> Mapping[str, Quantity]:
-        """What is listed of the outputs."""
+        """The components of the outputs, and the lengths of rates."""
         return {name: part for one in self.outputs for name, part in _listed_parts(one)}
 
     @cached_property
@@ -173,8 +161,8 @@ class SampleExtremes:
         return bool(np.count_nonzero(found) > 1)
 
     @cached_property
-    def found(self) -> tuple[tuple[Extremes, ...], tuple[Extremes, ...]]:
-        """Those of the outputs, and those of all cams."""
+    def extremes(self) -> tuple[tuple[Extremes, ...], tuple[Extremes, ...]]:
+        """The extremes of the outputs, and those of all cams."""
         sample, of_cams = self.sample, [one for measures in self.measures for one in measures]
         if sample.poses < 2 or not sample.assembled.any():
             return (), ()
@@ -185,12 +173,9 @@ class SampleExtremes:
 
 
 def extremes_blocks(known: SampleExtremes) -> Iterator[Block]:
-    """Yield the least and the greatest value of each output, and where. Of each assembled piece, if there are several.
-
-    They are found by solving again between the poses.
-    """
+    """Yield the least and the greatest value of each output with their places, of each assembled piece."""
     sample, rows, figures = known.sample, [], []
-    found, _ = known.found
+    found, _ = known.extremes
     for one, part in zip(found, known.parts.values(), strict=bool(found)):
         floor = sample.floor(part)
         for k in np.flatnonzero(one.least.at.design == sample.design):
@@ -205,7 +190,7 @@ def extremes_blocks(known: SampleExtremes) -> Iterator[Block]:
 
 
 def _listed_parts(found: Quantity) -> Iterator[tuple[str, Quantity]]:
-    """Yield what is listed of an output: components, and the length of a rate."""
+    """Yield the components of an output, and the length of a rate."""
     for part in found.components:
         yield part.name, part
     if found.is_vector and found.order:
@@ -229,10 +214,7 @@ def _piece_text(sample: Sample, k: int) -> str:
 
 
 def extremes_row(sample: Sample, found: Extremes, k: int, floor: float) -> tuple[Cell, ...]:
-    """Return the least value and where it is first taken, the greatest and where.
-
-    Differences by rounding are none.
-    """
+    """Return the least value and its first place, the greatest and its place; differences by rounding count as none."""
     sides = found.least, found.greatest
     low, high = (_in_degrees(found.unit, float(side.value[k])) for side in sides)
     if np.isnan(low):
@@ -255,7 +237,7 @@ def _in_degrees(unit: str, value: float) -> float:
 
 
 def _place_values(sample: Sample, at: Places) -> Any:
-    """Places as the tables of a report count them: by the time, the only driver that changes, or the pose."""
+    """Return places as in the tables of a report: by time, the only driver that changes, or the pose."""
     column = sample.places[0]
     if column.name == TIME and at.time is not None:
         return at.time
@@ -265,9 +247,9 @@ def _place_values(sample: Sample, at: Places) -> Any:
 
 
 def cams_sections(known: SampleExtremes) -> tuple[Section, ...]:
-    """Return one section for all cams, where there are any."""
+    """Return one section for all cams, if any."""
     blocks: list[Block] = []
-    of_cams = iter(known.found[1])
+    of_cams = iter(known.extremes[1])
     for cam, measures in zip(known.cams, known.measures, strict=True):
         blocks += _cam_blocks(known.sample, cam, measures, tuple(islice(of_cams, len(measures))))
     return (Section("cams", "Cams", tuple(blocks)),) if blocks else ()
@@ -293,7 +275,7 @@ def _cam_blocks(
 
 
 def _cam_row(sample: Sample, measure: Measure, found: Extremes | None) -> tuple[Cell, ...]:
-    """The extremes of something of a cam, at a single pose its value."""
+    """Return the extremes of a measure of a cam, at a single pose its value."""
     unit = DEGREES if measure.unit == RADIANS else measure.unit
     if found is not None:
         return measure.name, unit, *extremes_row(sample, found, sample.design, 0.0)
@@ -302,33 +284,33 @@ def _cam_row(sample: Sample, measure: Measure, found: Extremes | None) -> tuple[
 
 
 def _cam_measures(sample: Sample, found: CamAnalysis) -> Iterator[Measure]:
-    """What is listed of a cam. A radius of curvature is without limit where the profile is straight."""
+    """Yield the measures of a cam. A radius of curvature is without limit where the profile is straight."""
     unit = unit_of(sample.motion.mechanism.unit, "length")
-    listed: list[tuple[str, str, Callable[[CamAnalysis], Any]]] = [
+    measures: list[tuple[str, str, Callable[[CamAnalysis], Any]]] = [
         ("pressure angle", RADIANS, lambda cam: cam.pressure_angle),
         ("radius of curvature of the profile", unit, lambda cam: cam.radius_of_curvature),
     ]
     if found.pitch_radius is not None and found.roller_rate is not None:
-        listed.append(("radius of curvature of the pitch curve", unit, lambda cam: cam.pitch_radius))
-    listed.append(("sliding at the contact", f"{unit}/s", lambda cam: cam.sliding))
+        measures.append(("radius of curvature of the pitch curve", unit, lambda cam: cam.pitch_radius))
+    measures.append(("sliding at the contact", f"{unit}/s", lambda cam: cam.sliding))
     if found.roller_rate is not None:
-        listed.append(("spin of a roller that rolls", "rad/s", lambda cam: cam.roller_rate))
-    kept = _CachedAnalysis(found)
+        measures.append(("spin of a roller that rolls", "rad/s", lambda cam: cam.roller_rate))
+    analysis = _CachedAnalysis(found)
     pace = driver_pace(sample.motion)
     natural = {RADIANS: 1.0, unit: sample.motion.size, f"{unit}/s": sample.motion.size * pace, "rad/s": pace}
-    for title, its_unit, asked in listed:
-        yield Measure(title, its_unit, 1, partial(kept.of, asked), scale=natural[its_unit])
+    for title, its_unit, function in measures:
+        yield Measure(title, its_unit, 1, partial(analysis.of, function), scale=natural[its_unit])
 
 
 class _CachedAnalysis:
-    """The analysis of a cam over the last motion that was asked for: of one motion several things are asked."""
+    """The analysis of a cam over the last motion, of which several measures are evaluated."""
 
     def __init__(self, last: CamAnalysis) -> None:
         self.last = last
 
-    def of(self, asked: Callable[[CamAnalysis], Any], motion: Motion) -> Any:
-        """Return something of the analysis over a motion; what is infinite is left out."""
+    def of(self, function: Callable[[CamAnalysis], Any], motion: Motion) -> Any:
+        """Return a function of the analysis over a motion, NaN where it is infinite."""
         if self.last.motion is not motion:
             self.last = cam_analysis(motion, self.last.pair.name)
-        values = np.asarray(asked(self.last))
+        values = np.asarray(function(self.last))
         return np.where(np.isfinite(values), values, np.nan)

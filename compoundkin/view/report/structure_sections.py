@@ -30,21 +30,25 @@ from compoundkin.view.report.report_data import (
     StepBlock,
     TableBlock,
 )
-from compoundkin.view.report.wording import counted, joined_links, kind_of_link, listed, number_text
+from compoundkin.view.report.wording import counted, joined_links, kind_of_link, listed, number_text, sentence
 
 # A coordinate below this part of the mechanism's size is the rounding of a zero.
 ROUNDING = 1e-12
-
-
 PLACED = ", in the link's own frame"
-
-
 # So many links are named in a sentence.
 MOST_NAMED = 12
+# A report names so many pairs.
+MOST_PAIRS = 12
+# More classes of links or more names than these are counted instead of written out.
+MANY = 8
+_DYAD = 2
+_LOWER = 2
+# Beyond these a report lists only the first: a reader has seen enough.
+MOST_LOOPS = 20
 
 
 def links_section(structure: Structure, design: int = 0) -> Section:
-    """Return the links. What each is called by its number of pairs, its points in its own frame, its pairs."""
+    """Return the section on links: kind by the number of pairs, points in the link's own frame, pairs."""
     itself = without_leads(structure)
     pairs, placed = _pairs_by_link(structure), not structure.mechanism.unplaced
     points = _point_places(structure, design) if placed else _point_letters(structure)
@@ -53,8 +57,8 @@ def links_section(structure: Structure, design: int = 0) -> Section:
     )
     columns = (Column("link"), Column("kind"), Column(f"points{PLACED if placed else ''}"), Column("pairs"))
     unplaced = [] if placed else [Paragraph(_unplaced_sentence(structure))]
-    said = Paragraph(_by_kind(itself)), *_prescribed_blocks(structure), *unplaced
-    return Section("links", "Links", (*said, TableBlock(columns, rows)))
+    introduction = Paragraph(_by_kind(itself)), *_prescribed_blocks(structure), *unplaced
+    return Section("links", "Links", (*introduction, TableBlock(columns, rows)))
 
 
 def _unplaced_sentence(structure: Structure) -> str:
@@ -81,7 +85,7 @@ def _by_kind(structure: Structure) -> str:
 
 
 def _prescribed_blocks(structure: Structure) -> Iterator[Block]:
-    """What is thought to lead points and to turn links."""
+    """Yield how points and links with prescribed motion are constrained."""
     for item in structure.mechanism.prescribed_motions.values():
         on = f" on {item.on}" if item.on != FRAME else ""
         if item.link:
@@ -94,12 +98,12 @@ def _prescribed_blocks(structure: Structure) -> Iterator[Block]:
 
 
 def _point_letters(structure: Structure) -> dict[str, str]:
-    """The points of every link by their letters."""
+    """Return the points of every link by their letters."""
     return {name: ", ".join(item.letters) for name, item in structure.mechanism.links.items()}
 
 
 def _point_places(structure: Structure, design: int) -> dict[str, str]:
-    """The points of every link with their places."""
+    """Return the points of every link with their coordinates."""
     geometry = structure.mechanism.geometry
     floor = ROUNDING * geometry.size
     return {
@@ -109,7 +113,7 @@ def _point_places(structure: Structure, design: int) -> dict[str, str]:
 
 
 def _point_text(point: Number, floor: float, design: int) -> str:
-    """A point as (x, y); one that changes along the motion or between designs as it is at the first pose."""
+    """Return a point as (x, y), at the first pose where it changes."""
     if np.ndim(point):
         rows = np.asarray(point).reshape(-1, np.shape(point)[-1])
         point = rows[min(design, len(rows) - 1), 0]
@@ -118,7 +122,7 @@ def _point_text(point: Number, floor: float, design: int) -> str:
 
 
 def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
-    """The pairs of every link: the pins by their letters, then those written out."""
+    """Return the pairs of every link: pins by their letters, then the others."""
     mechanism = structure.mechanism
     found: dict[str, list[str]] = {name: [] for name in mechanism.links}
     named = [*mechanism.real_pins.items(), *((pair.name, pair.members) for pair in mechanism.real_pairs)]
@@ -129,7 +133,7 @@ def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
 
 
 def pairs_section(structure: Structure) -> Section:
-    """Return the pairs. What kind each is, which links it joins and where, and what drives it."""
+    """Return the section on pairs: kind, links, points, driver."""
     drivers = {step.pair.name: name for name, step in structure.driven.items()}
     rows = tuple(
         (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined_links(pair.members),
@@ -141,7 +145,7 @@ def pairs_section(structure: Structure) -> Section:
 
 
 def _real_pairs(structure: Structure) -> Iterator[Pair]:
-    """All pairs but those that are only thought. A pin that is led joins its other links one after another."""
+    """Yield the real pairs. A pin with prescribed motion joins its other links one after another."""
     mechanism, thought = structure.mechanism, structure.mechanism.auxiliary_links
     led = [letter for letter, names in mechanism.pins.items() if not thought.isdisjoint(names)]
     written = {pair.name for pair in mechanism.written_pairs}
@@ -166,37 +170,33 @@ def _multiple_pins(structure: Structure) -> Iterator[Block]:
 
 
 def faults_section(structure: Structure) -> Section:
-    """Tell what keeps the structure from being solved, with remedies."""
-    alerts = tuple(Alert(_as_sentence(fault.text), fault.remedy) for fault in structure.faults)
+    """Return the section on faults that prevent solving, with remedies."""
+    alerts = tuple(Alert(sentence(fault.text), fault.remedy) for fault in structure.faults)
     return Section("faults", "What stands in the way", (Paragraph("The mechanism cannot be solved as it is."), *alerts))
 
 
-def _as_sentence(text: str) -> str:
-    return text[:1].upper() + text[1:] + "."
-
-
 def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
-    """Return the parts of a mechanism and what counting them tells."""
+    """Return the sections on links, pairs, mobility, chain and loops."""
     parts = links_section(structure, design), pairs_section(structure), mobility_section(structure, motion)
     return (*parts, chain_section(without_leads(structure)), loops_section(structure))
 
 
 def about_section(structure: Structure, outcome: str = "", more: str = "") -> Section:
-    """Tell what the mechanism is, in which units, and what the report comes to."""
+    """Return the introduction: description, source, units, structure and outcome in short."""
     in_short = structure_summary(structure)
     mechanism = structure.mechanism
-    said = (
+    texts = (
         mechanism.description,
         f"Source: {mechanism.source}" if mechanism.source else "",
         f"Lengths in {mechanism.unit or 'the unit of the file (none is named)'}, angles in degrees, time in seconds.",
         more,
     )
     short = Paragraph(f"{in_short} {outcome}" if outcome else in_short, badged=outcome)
-    return Section("about", "", (*(Paragraph(text) for text in said if text), short))
+    return Section("about", "", (*(Paragraph(text) for text in texts if text), short))
 
 
 def structure_summary(structure: Structure) -> str:
-    """Return the one line that says what it is made of."""
+    """Return numbers of links and pairs, mobility, groups and class in one line."""
     mechanism, freedoms = structure.mechanism, structure.mobility.freedoms
     text = f"In short: {mechanism.in_numbers}, mobility {freedoms}"
     if structure.relaxation and not structure.faults:
@@ -207,27 +207,13 @@ def structure_summary(structure: Structure) -> str:
     return f"{text}; it cannot be solved." if structure.faults else f"{text}."
 
 
-# A report names so many pairs.
-MOST_PAIRS = 12
-
-
-# More classes of links or more names than these are counted instead of written out.
-MANY = 8
-
-
-_DYAD = 2
-
-
-_LOWER = 2
-
-
 def mobility_section(structure: Structure, motion: Motion | None = None) -> Section:
-    """Report the mobility, whether the drivers determine the motion, and what the dimensions say."""
+    """Return the section on mobility: the count, whether the drivers determine the motion, the actual dimensions."""
     mobility, found = structure.mobility, mobility_analysis(structure, _middle_pose(motion) if motion else None)
-    # that no pose was found of what seems sound says nothing against it
+    # a sound structure without a known pose agrees with its count
     plain = found.agrees or (found.finite is None and not structure.faults)
     verdict = mobility.verdict
-    text = f"{verdict[:1].upper()}{verdict[1:]}." if plain else f"By the count alone, {verdict}."
+    text = sentence(verdict) if plain else f"By the count alone, {verdict}."
     if mobility.is_determinate and structure.faults:
         text += " The count is right as a whole but not in every part: see below."
     if found.agrees:
@@ -237,7 +223,7 @@ def mobility_section(structure: Structure, motion: Motion | None = None) -> Sect
 
 
 def _middle_pose(motion: Motion) -> dict[str, Pose] | None:
-    """A pose of the first design, about the middle of its motion."""
+    """Return a regular pose near the middle of a motion of one design."""
     good = np.flatnonzero(motion.regular[0])
     if not len(good) or motion.inputs.designs > 1:
         return None
@@ -246,7 +232,7 @@ def _middle_pose(motion: Motion) -> dict[str, Pose] | None:
 
 
 def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:
-    """Return the freedoms by count and dimensions, and what follows. The dimensions are general ones and its own."""
+    """Yield the freedoms by the count, at general dimensions and at the actual ones, and conclusions."""
     known = "" if found.at_pose is None else str(found.at_pose)
     rows = [("by the count", str(found.gruebler), ""),
             ("at general dimensions", str(found.generic), str(found.redundant_generic))]  # fmt: skip
@@ -255,7 +241,7 @@ def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:
                  ("of these, motions and not infinitesimal", str(found.finite), str(found.redundant))]  # fmt: skip
     columns = Column("mobility"), Column("freedoms", style="each"), Column("redundant coordinates", style="each")
     yield TableBlock(columns, tuple(rows))
-    yield Paragraph(f"{found.verdict[:1].upper()}{found.verdict[1:]}.")
+    yield Paragraph(sentence(found.verdict))
     yield from (Paragraph(text) for text in _remarks(found))
 
 
@@ -274,7 +260,7 @@ def _remarks(found: MobilityAnalysis) -> Iterator[str]:
 
 
 def chain_section(structure: Structure) -> Section:
-    """Report the kinematic chain: name, driven link, assortment, variety, symmetry, trusses of larger groups."""
+    """Return the section on the kinematic chain: name, drivers, assortment, variety, symmetry, trusses of groups."""
     name = structure_name(structure)
     return Section("chain", "Kinematic chain", (StepBlock(name.title, tuple(_chain_facts(structure, name))),))
 
@@ -304,7 +290,7 @@ def _chain_facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, s
 
 
 def _missing_truss(group: Group) -> str:
-    """Why a group has no truss in the list; up to some links that is complete."""
+    """Return why a group has no truss in the list, which is complete up to MOST_LINKS links."""
     if len(group.bodies) < MOST_LINKS and all(pair.held == _LOWER for pair in (*group.inner, *group.outer)):
         return "no Baranov truss, for a part of it is rigid on its own, as a driver between moving links makes it"
     return "a truss that is in no list"
@@ -316,7 +302,7 @@ def _variety(degree: int) -> str:
 
 def _symmetry(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]]:
     if not name.symmetries:
-        yield "symmetry", f"not looked for among more than {MOST_COMPARED} links"
+        yield "symmetry", f"not computed for more than {MOST_COMPARED} links"
         return
     classes = [links for links in name.equivalent_links if len(links) > 1]
     if not classes:
@@ -328,17 +314,13 @@ def _symmetry(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]
 
 
 def _group_trusses(structure: Structure) -> Iterator[tuple[str, str]]:
-    """The Baranov truss of each group larger than a dyad, groups numbered in solving order."""
+    """Yield the Baranov truss of each group larger than a dyad, by its number in solving order."""
     larger = [(k, group) for k, group in enumerate(structure.groups, 1) if len(group.bodies) > _DYAD]
     for k, group in larger[:MANY]:
         trusses = group_truss(group)
         yield f"group {k}", f"{group.name}: {' or '.join(trusses) or _missing_truss(group)}"
     if len(larger) > MANY:
         yield "groups", f"{len(larger) - MANY} more are larger than dyads"
-
-
-# Beyond these a report lists only the first: a reader has seen enough.
-MOST_LOOPS = 20
 
 
 @dataclass(frozen=True)

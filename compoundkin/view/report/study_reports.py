@@ -38,14 +38,16 @@ from compoundkin.view.report.verification_sections import findings_table, outcom
 from compoundkin.view.report.wording import brief, counted, listed, number_text, objective_quantity, objective_text
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
-
-
 # Of more reasons and circuits only so many are told, the most frequent ones.
 MOST_STATES = 12
-
-
 # Before where in the motion it is that a design does not assemble.
 _PLACE = re.compile(" (at|between) ")
+# Errors and shares say something with so many digits.
+DIGITS = 4
+# So many designs at which searches ended are listed, the best first.
+MOST_MINIMA = 8
+# Speeds that differ by no more than this part are the same: some programs have rpm of three decimals.
+_SAME_SPEED = 1e-3
 
 
 def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequence[str] = (), best: int = 1) -> Report:
@@ -149,10 +151,6 @@ def _figure_columns(found: StudyResult) -> list[StudyColumn]:
 def _display_unit(column: StudyColumn) -> tuple[float, str]:
     """Return the factor to the unit that people are shown, and that unit."""
     return (float(degrees(1.0)), DEGREES) if column.unit == RADIANS else (1.0, column.unit)
-
-
-# Errors and shares say something with so many digits.
-DIGITS = 4
 
 
 def tolerance_report(found: ToleranceAnalysis, outputs: Sequence[str] = ()) -> Report:
@@ -264,10 +262,6 @@ def _rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
 
 
-# So many designs at which searches ended are listed, the best first.
-MOST_MINIMA = 8
-
-
 def optimum_report(found: Optimum, outputs: Sequence[str] = ()) -> Report:
     """Report a search of better dimensions; its page plots `outputs`."""
     check, motion = found.check, found.motion
@@ -366,10 +360,6 @@ def _minima_table(found: Optimum, several: tuple[LocalMinimum, ...]) -> TableBlo
 def _real_parts(value: complex) -> tuple[float, ...]:
     """Return the real numbers of a dimension."""
     return (value.real, value.imag) if isinstance(value, complex) else (float(value),)
-
-
-# Speeds that differ by no more than this part are the same: some programs have rpm of three decimals.
-_SAME_SPEED = 1e-3
 
 
 def comparison_report(found: MechanismComparison) -> Report:

@@ -29,6 +29,11 @@ from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import brief, counted, listed, number_text
 
+# A report lists this many gaps; a sweep may have thousands.
+MOST_GAPS = 10
+# Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
+MOST_LISTED = 12
+
 
 def outcome_of(motion: Motion, check: Check | None = None, published: Sequence[Comparison] = ()) -> Outcome:
     """Return the outcome of a motion, its findings and published numbers."""
@@ -85,10 +90,6 @@ def _group_of(structure: Structure, name: str) -> str:
         if name in group.links or name in [pair.name for pair in (*group.inner, *group.outer)]:
             return f"in the {group.name} group of {' and '.join(group.links)}"
     return ""
-
-
-# A report lists this many gaps; a sweep may have thousands.
-MOST_GAPS = 10
 
 
 def gaps_sections(sample: Sample, key: str = "gaps") -> tuple[Section, ...]:
@@ -156,10 +157,6 @@ def gaps_of(sample: Sample) -> tuple[Gap, ...]:
     axes = sample.motion.shape[:-1]
     design = tuple(int(i) for i in np.unravel_index(sample.design, axes)) if axes else ()
     return tuple(gap for gap in gaps(sample.motion) if gap.design == design)
-
-
-# Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
-MOST_LISTED = 12
 
 
 @dataclass(frozen=True)

@@ -16,19 +16,11 @@ from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.view.report.report_data import Cell, Column
 
 SIGNIFICANT = 6
-
-
 # Outside of these, numbers are written with exponents.
 LARGEST, SMALLEST = 1e7, 1e-3
-
-
 MISSING = "-"
-
-
 # Powers of seconds, and numbers that are multiplied; names may have anything else.
 _TYPESET = re.compile(r"(?<=/s)\^[23]\b|(?<=\d) \* (?=\d)")
-
-
 _KINDS = ("free", "singular", "binary", "ternary", "quaternary", "quinary", "senary")
 
 

@@ -14,14 +14,12 @@ from compoundkin.view.page.live.live_assets import is_live
 
 # What is written of a link at every pose.
 OF_POSES = ("x", "y", "angle", "v", "a")
-
-
 # What often goes on by equal steps.
 STEPPED = ("indices", "along", "drivers")
-
-
 # Directions that differ by less are one: rates have seven digits.
 SAME_DIRECTION = 1e-4
+# Whole numbers up to this are written in two bytes.
+TWO_BYTES = 2**15
 
 
 def compact(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -101,10 +99,6 @@ def unpacked(text: str | float | None, poses: int) -> Number:
         return np.full(poses, np.nan if text is None else text)
     form = "<f8" if text.startswith("d:") else "<f4"
     return np.frombuffer(b64decode(text[2:]), form).astype(float)
-
-
-# Whole numbers up to this are written in two bytes.
-TWO_BYTES = 2**15
 
 
 def table_data(table: OperationTable) -> dict[str, Any]:

@@ -38,6 +38,9 @@ from compoundkin.view.page.live.panel_data import panel_data, template_data
 from compoundkin.view.page.markup import packed_doubles
 from compoundkin.view.report.pose_sample import Sample
 
+# In parts of the largest value: what is packed with seven digits agrees.
+AGREES = 1e-9
+
 
 def live_data(sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str]) -> dict[str, Any] | None:
     """Return what a page needs to be live, or why it cannot be.
@@ -172,10 +175,6 @@ class LiveData:
             parts = {part: self.places[node] for part, node in nodes.items()}
             own = self._own.has_output(output, [*nodes.values()])
             yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped, "own": own}
-
-
-# In parts of the largest value: what is packed with seven digits agrees.
-AGREES = 1e-9
 
 
 @dataclass(frozen=True, eq=False)

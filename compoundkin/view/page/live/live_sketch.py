@@ -45,6 +45,14 @@ from compoundkin.view.sketch.shapes import (
 )
 from compoundkin.view.sketch.traced_numbers import LEAST, Traced, traced, untraced
 
+# What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
+LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
+# Points of a link that are less than this off a line, in parts of its length, are a bar.
+FLAT = 0.02
+# What the pose of a link is told by: the place of its origin, the unit vector of its angle.
+POSE = "pose"
+PLACE, TURN = ("x", "y"), ("cos", "sin")
+
 
 def live_sketch(
     sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str], sketch: MovingSketch
@@ -55,14 +63,6 @@ def live_sketch(
         return live
     redraw = redrawn_parts(sketch, [one["name"] for one in live["dimensions"]])
     return {**live, "redraw": redraw, "handles": handle_data(sketch.scene, {name: k for k, name in enumerate(links)})}
-
-
-# What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
-LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
-
-
-# Points of a link that are less than this off a line, in parts of its length, are a bar.
-FLAT = 0.02
 
 
 def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
@@ -178,13 +178,6 @@ def _kind(shape: Shape) -> tuple[str, Sequence[Sequence[Number]]]:
     if isinstance(shape, Polyline | Polygon | Band):
         return LINES, [shape.points]
     return LINES, []
-
-
-# What the pose of a link is told by: the place of its origin, the unit vector of its angle.
-POSE = "pose"
-
-
-PLACE, TURN = ("x", "y"), ("cos", "sin")
 
 
 def traced_scene(scene: Scene, motion: Motion, free: Sequence[FreeDimension]) -> tuple[Scene, OperationGraph]:

@@ -22,33 +22,17 @@ from compoundkin.programs.dimensions import FreeDimension, StatedDimensions, mec
 
 # Texts in TOML do not hold it: there a character of control is written as an escape.
 _EDGE = "\x00"
-
-
 _HOLE = re.compile(f"{_EDGE}(\\d+)(d?){_EDGE}")
-
-
 LINKS, POINTS = "links", "points"
-
-
 # What comes before the links: single entries, and tables of the whole.
 _HEAD = ("format", *(key.name for key in HEAD), GRAVITY.name)
-
-
 _IN_DEGREES = ("angle", "turn", "sweep")
-
-
 _ENDS = ("from", "to")
-
-
 # Tables that choose the configuration: where a mechanism is changed they say which one it is in.
 _MODES = "modes"
-
-
 # A text in pieces: texts, indices of dimensions, and lists: of one index where degrees are written, of a letter and
 # 0 or 1 where x or y of a point is.
 Pieces: TypeAlias = list[str | int | list[Any]]
-
-
 # Whether it is a link, and its name: pairs may have the names of links.
 Owner: TypeAlias = tuple[bool, str]
 
