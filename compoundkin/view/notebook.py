@@ -39,9 +39,9 @@ from compoundkin.view.report.whole_report import Studied, report
 from compoundkin.view.report.wording import counted, listed
 from compoundkin.view.sketch import draw
 
-# Pictures of more links than these take more than a second: they are drawn where they are asked for.
+# Pictures of more links take more than a second and are drawn on request only.
 MOST_LINKS = 30
-# What shows itself as blocks of a report.
+# Objects displayed as blocks of a report.
 _BLOCKS: dict[type, Callable[[Any], Iterable[Block]]] = {
     Centres: centre_blocks,
     MobilityAnalysis: analysis_blocks,
@@ -51,9 +51,9 @@ _BLOCKS: dict[type, Callable[[Any], Iterable[Block]]] = {
 
 
 def html_of(what: object) -> str | None:
-    """Return what a notebook shows of an object. None where it had better show the text.
+    """Return the HTML of an object in a notebook; None where its text is better.
 
-    It never raises: an object that was made without an error is not to end in one because a cell ends with it.
+    It never raises, so that a cell that made an object without an error does not end with one.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -67,7 +67,7 @@ def html_of(what: object) -> str | None:
 
 
 def svg_of(what: Mechanism | Structure | Motion) -> str | None:
-    """Return the picture of a mechanism or of one taken apart. None where it would take long."""
+    """Return the picture of a mechanism, a structure or a motion; None where it would take long."""
     mechanism = what if isinstance(what, Mechanism) else what.mechanism
     if len(mechanism.links) > MOST_LINKS:
         return None
@@ -84,25 +84,19 @@ def _picture_of(what: Mechanism | Structure | Motion) -> str | None:
 
 
 def _mechanism_picture(mechanism: Mechanism) -> str | None:
-    """The sketch; none where a pose would have to be searched that is not likely to exist, which takes seconds.
-
-    The graph of what has letters alone.
-    """
+    """Return the sketch, or the graph of a mechanism without coordinates; None where a search would take seconds."""
     if mechanism.unplaced:
         return draw(mechanism, kind="graph").svg
     return None if decompose(mechanism).faults and not mechanism.sketch else draw(mechanism).svg
 
 
 def _structure_picture(structure: Structure) -> str:
-    """The groups; the graph of what cannot be taken apart."""
+    """Return the groups, or the graph of a structure with faults."""
     return draw(structure, kind="graph" if structure.faults else "groups").svg
 
 
 def unguarded(what: object) -> str:
-    """Return what `html_of` gives, errors and all.
-
-    Numbers that are not defined everywhere are no reason for a warning.
-    """
+    """Return what `html_of` gives, but raise errors; warnings on undefined numbers are ignored."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return "\n".join(_parts(what))
@@ -142,7 +136,7 @@ def _(what: Structure) -> Iterator[str]:
 
 
 def _groups_table(structure: Structure) -> TableBlock:
-    """The frame with its driven links, then each group: what it is, its links, what it is attached to."""
+    """Return the frame with its driven links, then each group with its links and what it is attached to."""
     columns = (Column("no.", style="each"), Column("group"), Column("class"), Column("order", style="each"),
                Column("links"), Column("uses"))  # fmt: skip
     name = "frame and driver" if len(structure.ground.driven) == 1 else "frame and drivers"

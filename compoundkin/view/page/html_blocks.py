@@ -34,7 +34,7 @@ CAPTION = "text-align:left;caption-side:top;font-weight:bold;padding:.5em 0"
 FITTED = "max-width:100%;height:auto;"
 # The section that stands in the head of the page, and the one whose steps are the groups.
 ABOUT, GROUPS = "about", "groups"
-# Sections whose numbers are of the dimensions that the report is about: pages that change them say so.
+# Sections whose numbers depend on the dimensions: a page with changed dimensions marks them.
 OF_DIMENSIONS = frozenset((
     "links", "circuits", "outputs", "performance", "checks", "published", "gaps", "forces", "force-checks", "centres",
     "secondary", "velocities", "figures", "limits", "toggles", "changes", "cams", "configurations", "branches",
@@ -51,7 +51,7 @@ def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
 
 
 def plain_table(table: TableBlock, caption: str = "") -> str:
-    """Write a table whose first column names its rows. It is in a box that scrolls where it is wider than the page."""
+    """Write a table whose first column names its rows, in a box that scrolls where it is wider than the page."""
     rows = table.selected_rows
     cells = [column_texts(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
     sides = [RIGHT if column.is_number else LEFT for column in table.columns]
@@ -70,7 +70,7 @@ def plain_table(table: TableBlock, caption: str = "") -> str:
 
 
 def plain_figure(svg: str, caption: str) -> str:
-    """Write a picture, not wider than the page, with what stands below it."""
+    """Write a picture, not wider than the page, with a caption."""
     fitted = svg.replace('style="', f'style="{FITTED}', 1)
     return f'<figure style="margin:0 0 .5em">\n{fitted}<figcaption>{caption}</figcaption>\n</figure>'
 
@@ -122,8 +122,8 @@ def _(block: TableBlock) -> str:
 class Blocks:
     """Writes a report as HTML.
 
-    `names` tell which links a row is about, `figures` are pictures at the head of sections, by the key of the section,
-    and `poses` are the poses of the rows of a section's first table.
+    `names` relate rows to links, `figures` are pictures at the head of sections by the section's key, and `poses` are
+    the poses of the rows of a section's first table.
     """
 
     names: Names = field(default_factory=Names)
@@ -146,7 +146,7 @@ class Blocks:
         return element("section", f"\n{body}\n", id=section.key, aria_labelledby=named, data_depends=depends)
 
     def about(self, sections: Sequence[Section]) -> str:
-        """Write what stands in the head of the page. The paragraphs of the section about the whole."""
+        """Write the introduction in the head of the page."""
         return lines(part for section in sections if section.key == ABOUT for part in self._blocks(section))
 
     def _blocks(self, section: Section) -> Iterator[str]:
@@ -162,7 +162,7 @@ class Blocks:
                 yield self._block(block)
 
     def _table(self, section: Section, table: TableBlock, k: int, number: int) -> str:
-        """The table; what introduces it with a colon is its name, or else the section."""
+        """Return the table; its caption is the clause before it that ends with a colon, else the section's title."""
         before = section.blocks[k - 1] if k else None
         caption = f"{section.title or 'Report'}{f', {number}' if number > 1 else ''}"
         if isinstance(before, Paragraph) and before.text.endswith(":"):
@@ -171,7 +171,7 @@ class Blocks:
         return table_html(HtmlTable(table, f"{section.key}-table-{number}", caption, self.names, poses))
 
     def _step(self, section: Section, step: StepBlock, k: int) -> str:
-        """A step; those in solving order are about the links of their groups."""
+        """Return a step; those in solving order belong to the links of their groups."""
         links = self.names.members[k] if section.key == GROUPS and k < len(self.names.members) else ()
         title = safe(step.title)
         if links:
@@ -187,7 +187,7 @@ class Blocks:
 
     @_block.register
     def _(self, block: Paragraph) -> str:
-        # the badges at the head of the page say the rest
+        # badges at the head of the page repeat the rest
         return element("p", safe(typeset(block.text.removesuffix(block.badged).rstrip())))
 
     @_block.register
@@ -205,7 +205,7 @@ class Blocks:
 
 
 def _formula(block: FormulaBlock) -> str:
-    """A formula as mathematics where it comes as such, read out as its text; else as it is written."""
+    """Return a formula as mathematics with its text for screen readers; without LaTeX as text."""
     written = element("code", safe(typeset(block.text)))
     if block.latex:
         with suppress(UnknownLatex):

@@ -27,7 +27,7 @@ PAGE_COLOURS: dict[str, tuple[str, str]] = {
     "bad": ("#b3261e", "#ff8a80"),
     "bad-ground": ("#fdf0ee", "#2e1817"),
 }
-# The page asks for nothing from anywhere, whatever gets into it. Source: W3C, Content Security Policy Level 3.
+# The page loads nothing from elsewhere. Source: W3C, Content Security Policy Level 3.
 POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; "
     "base-uri 'none'; form-action 'none'"
@@ -37,13 +37,13 @@ ICON = (
     "%3Cpath d='M3 12L6 4L13 7' fill='none' stroke='%230067b1' stroke-width='2'/%3E"
     "%3Ccircle cx='3' cy='12' r='2'/%3E%3Ccircle cx='6' cy='4' r='2'/%3E%3Ccircle cx='13' cy='7' r='2'/%3E%3C/svg%3E"
 )
-# Lines with patterns or templates stay as they are; a stroke between spaces divides. Spaces say nothing elsewhere but
+# Lines with patterns or templates stay as they are; a stroke between spaces divides. Elsewhere spaces matter only
 # beside signs, as in "a - -b".
 PLAIN, TEXT = re.compile(r"['`\\]|(?<! )/|/(?! )"), re.compile('("[^"]*")')
 SPACES, STOPS = re.compile(r" ?(=>|[=,:;?*{}()\[\]&|]) ?"), re.compile(r"(?<=[:;,{}]) | (?=[{}])")
 # A line of comment.
 REMARK = re.compile(r"//.*|/\*[^*]*\*/")
-# What is said of a line at its end, where nothing can be a text.
+# A comment at the end of a line without texts.
 END_REMARK = re.compile(r" +// [^\"'`]*$")
 SCRIPTS = ("tables.js", "light.js")
 THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
@@ -51,7 +51,7 @@ THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
 
 @cache
 def asset(name: str) -> str:
-    """Return the text of a file. Of our own without indents and lines of comment, a sixth of it.
+    """Return the text of an asset; our own without indents and comments, a sixth smaller.
 
     >>> "sortable" in asset("vendor/sortable.min.js"), "//" in asset("theme.js")
     (True, False)
@@ -65,7 +65,7 @@ def asset(name: str) -> str:
 
 
 def _minified_script(line: str) -> str:
-    """Return a line of a script without spaces that say nothing. Texts and patterns stay as they are."""
+    """Return a line of a script without needless spaces; texts and patterns stay as they are."""
     if PLAIN.search(line):
         return line
     parts = TEXT.split(line)
@@ -73,12 +73,12 @@ def _minified_script(line: str) -> str:
 
 
 def _minified_style(line: str) -> str:
-    """Return a line of a style sheet without spaces that say nothing."""
+    """Return a line of a style sheet without needless spaces."""
     return line if PLAIN.search(line) or '"' in line else STOPS.sub("", line)
 
 
 def vendored_library(name: str, licence: str, gives: str = "") -> str:
-    """Return a library as part of a page. With its licence, and in a function, so that its names stay its own.
+    """Return a library as part of a page, with its licence, in a function so that its names stay private.
 
     What it `gives` is then `compoundkin.uPlot`, or whatever its name is.
 
@@ -108,11 +108,10 @@ def page_palette() -> str:
 
 @dataclass(frozen=True)
 class Document:
-    """What a page is made of: markup, safe already, but for its title.
+    """The parts of a page as markup, but for its title.
 
-    `contents` are the keys and titles of sections. `viewer` is what stands beside the text: the moving sketch and its
-    plots. `styles` and `scripts` are what it needs besides those of every page, and `data` elements with data for
-    scripts.
+    `contents` are the keys and titles of sections. `viewer` stands beside the text: the moving sketch and its plots.
+    `styles` and `scripts` are those beyond every page's own, and `data` elements with data for scripts.
     """
 
     title: str
@@ -177,7 +176,7 @@ def _script(text: str) -> str:
 
 
 def _theme() -> str:
-    """The switch between light and dark, shown by scripts."""
+    """Return the switch between light and dark, which scripts reveal."""
     options = lines(
         f'<label><input type="radio" name="theme" value="{key}"{" checked" if key == "auto" else ""}>'
         f"<span>{text}</span></label>"
@@ -193,7 +192,7 @@ def _contents(sections: Iterable[tuple[str, str]]) -> str:
 
 
 def _badges(outcome: Outcome) -> Iterator[str]:
-    """What the report comes to: a mark and words each."""
+    """Yield the outcome of a report as badges: a mark and a text each."""
     if not outcome.solvable:
         yield _badge(False, "cannot be solved")
     if outcome.poses:

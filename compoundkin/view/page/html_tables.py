@@ -25,15 +25,15 @@ Links = tuple[str, ...]
 RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
 # Cells with more letters than this are broken into lines, and get room for them.
 LONG = 24
-# The column that tells the units of others.
+# The column of units.
 UNIT = "unit"
 
 
 @dataclass(frozen=True)
 class Names:
-    """The names in a mechanism. Links with the number of their group, members of pairs, links of points, groups.
+    """The names in a mechanism: links with the number of their group, members of pairs, links of points, groups.
 
-    Without a structure there is nothing to tell, and every name is about no link.
+    Without a structure no name refers to a link.
     """
 
     groups: Mapping[str, int] = field(default_factory=dict)
@@ -47,7 +47,7 @@ class Names:
         return tuple(tuple(link for link, own in self.groups.items() if own == k) for k in range(len(self.titles)))
 
     def about(self, text: str) -> Links:
-        """Return the links that the words of a cell are about. None where it is about something else.
+        """Return the links that the words of a cell name, none for other words.
 
         >>> names = Names({"bar": 1, "frame": 0}, {"slot": ("bar", "frame")}, {"G": ("bar",)})
         >>> names.about("|G.velocity|"), names.about("slot"), names.about("none")
@@ -105,7 +105,7 @@ def _name_readings(text: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class HtmlTable:
-    """A table with its name on the page and what it is called. It has the poses of its rows, if they are poses."""
+    """A table with its id, caption, names, and the poses of its rows, if they are poses."""
 
     table: TableBlock
     key: str
@@ -123,7 +123,7 @@ def table_html(shown: HtmlTable) -> str:
 
 
 def _tools(shown: HtmlTable) -> str:
-    """The buttons of a table; those that only scripts serve are shown by scripts."""
+    """Return the buttons of a table, which scripts reveal."""
     more = f"Show all {len(shown.table.rows):,} rows"
     told = {"aria_expanded": "false", "data_more": more, "data_fewer": "Show fewer rows"}
     folded = [] if shown.table.shown is None else [_button("more", more, shown, **told)]
@@ -172,7 +172,7 @@ def _row(shown: HtmlTable, k: int, texts: Sequence[str], needed: set[int] | None
 
 
 def _links_of_row(shown: HtmlTable, row: Sequence[Cell]) -> tuple[str, ...]:
-    """The links that a row is about: what its first words name."""
+    """Return the links that the first words of a row name."""
     for cell in row:
         if isinstance(cell, str) and (links := shown.names.about(cell)):
             return links
@@ -182,7 +182,7 @@ def _links_of_row(shown: HtmlTable, row: Sequence[Cell]) -> tuple[str, ...]:
 
 
 def _row_head(shown: HtmlTable, cell: Cell, text: str, links: tuple[str, ...]) -> str:
-    """The head of a row: the cell of its name, a button where it names links."""
+    """Return the head of a row, a button where it names links."""
     if not isinstance(cell, str) or not cell:
         return ""
     inside = breakable(text)
@@ -198,7 +198,7 @@ def _links_attribute(names: tuple[str, ...]) -> str:
 
 
 def cell_html(column: Column, cell: Cell, text: str) -> str:
-    """Return a cell of a table that is read as some text."""
+    """Return a cell of a table with its text."""
     if isinstance(cell, bool):
         result, mark, word = RESULTS[cell]
         inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
@@ -209,7 +209,7 @@ def cell_html(column: Column, cell: Cell, text: str) -> str:
 
 
 def _exact_attributes(column: Column, cell: Cell, text: str) -> Iterator[str]:
-    """What a number is sorted by and copied as, where that is not what is shown: every digit of it."""
+    """Yield every digit of a number for sorting and copying, where the text is rounded."""
     if not column.is_number and not isinstance(cell, tuple):
         return
     digits = [_digits(column, value) for value in (cell if isinstance(cell, tuple) else (cell,))]
@@ -220,9 +220,9 @@ def _exact_attributes(column: Column, cell: Cell, text: str) -> Iterator[str]:
 
 
 def packed_cells(columns: Sequence[Column], row: Sequence[Cell], texts: Sequence[str]) -> tuple[str, str] | None:
-    """Return the attribute of a row of numbers, and its cells.
+    """Return the attribute of a row of numbers with all digits, and its cells; None for a row of anything else.
 
-    The attribute has all digits. A script gives each cell what `cell_html` writes. None for a row of anything else.
+    A script writes each cell as `cell_html` does.
     """
     numbers = [_cell_number(column, cell) for column, cell in zip(columns, row, strict=True)]
     known = [number for number in numbers if number is not None]
@@ -233,7 +233,7 @@ def packed_cells(columns: Sequence[Column], row: Sequence[Cell], texts: Sequence
 
 
 def _cell_number(column: Column, cell: Cell) -> float | None:
-    """A cell as a number, NaN where it is not known; None where it is something else."""
+    """Return a cell as a number, NaN where it is unknown; None for anything else."""
     if not column.is_number or isinstance(cell, bool | str | tuple):
         return None
     if cell is None or not isfinite(cell):

@@ -40,7 +40,7 @@ def packed_floats(values: Number) -> str | float | None:
 
 
 def component_values(values: Number, floor: float) -> dict[str, Number]:
-    """Return the components of a quantity. What is rounding is zero, as in the report's tables.
+    """Return the components of a quantity, rounding set to zero as in the report's tables.
 
     >>> component_values(np.array([2.0 + 1e-15j]), 1e-12)
     {'x': array([2.]), 'y': array([0.])}
@@ -63,7 +63,7 @@ def _packed(values: Number, form: str, mark: str) -> str | float | None:
 
 
 def safe(text: str) -> str:
-    """Return text in which nothing is taken for markup, in elements and in attributes.
+    """Return text without markup, for elements and attributes.
 
     >>> safe('<b> & "c"')
     '&lt;b&gt; &amp; &quot;c&quot;'
@@ -105,7 +105,7 @@ def screen_reader_text(text: str) -> str:
 
 
 def data_script(name: str, value: Any) -> str:
-    """Write data for scripts, found by the id `name`. No text in it can end the element."""
+    """Write data for scripts, found by the id `name`; no text in it can end the element."""
     text = json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return f'<script type="application/json" id="{safe(name)}">{embedded(text)}</script>'
 

@@ -53,10 +53,10 @@ ORDERS = range(3)
 
 @dataclass(frozen=True, eq=False)
 class MotionData:
-    """One design of a motion with its sketch. It says which of its poses a page holds.
+    """One design of a motion with its sketch, at the poses that a page holds.
 
-    It holds `most` of them, fewer where there are many links. Raises NotAssembled where no pose is assembled,
-    InvalidInput where links change their dimensions on the way.
+    These are at most `most`, fewer where there are many links. Raises NotAssembled where no pose is assembled,
+    InvalidInput where links change their dimensions along the motion.
     """
 
     sample: Sample
@@ -76,7 +76,7 @@ class MotionData:
 
     @cached_property
     def chosen(self) -> Number:
-        """The indices of the poses that the page holds. All, or so many as there is room for and the one shown."""
+        """The indices of the poses that the page holds: all, or as many as there is room for and the initial one."""
         links = len(self.motion.mechanism.links)
         most = min(self.most, max(FEWEST_POSES, MOST_NUMBERS // (OF_A_LINK * links)))
         places = np.linspace(0, self.sample.poses - 1, min(most, self.sample.poses)).round().astype(int)
@@ -84,7 +84,7 @@ class MotionData:
 
     @cached_property
     def start(self) -> int:
-        """The index, among those that the page holds, of the pose shown first."""
+        """The index, among the poses of the page, of the initial one."""
         return int(np.searchsorted(self.chosen, self.sketch.pose))
 
     def of(self, values: Any) -> Number:
@@ -93,7 +93,7 @@ class MotionData:
 
     @cached_property
     def closes(self) -> bool:
-        """Whether the last pose is the first one again. The motion can be played on and on then."""
+        """Whether the last pose equals the first one, so that the motion can be repeated."""
         return bool(self.sample.assembled.all()) and self.sample.poses > 1 and self.sketch.scene.closes
 
     @property
@@ -139,7 +139,7 @@ class MotionData:
         return loaded_forces(self.motion) if self.with_centres else None
 
     def _overlays(self) -> dict[str, Any]:
-        """What can be shown in the sketch: vectors, instant centres, forces where there are any."""
+        """Return the vectors, instant centres and forces that the sketch can show."""
         found = force_data(self.sketch, self.forces, self._numbers, self.chosen) if self.forces is not None else {}
         return {"vectors": dict(self._vectors()), **self._centres(), **({"forces": found} if found else {})}
 
@@ -149,7 +149,7 @@ class MotionData:
 
     @cached_property
     def slowness(self) -> float | None:
-        """How many times slower than it runs a motion in time is played. None for one that is not in time."""
+        """How many times slower than real time a motion in time is played; None for one that is not in time."""
         times = self.sample.times
         if times is None or np.ptp(times) == 0:
             return None
@@ -167,7 +167,7 @@ class MotionData:
 
     @cached_property
     def links(self) -> tuple[str, ...]:
-        """The links that there are to be seen."""
+        """The visible links."""
         thought = self.motion.mechanism.auxiliary_links
         return tuple(name for name in self.motion.mechanism.links if name not in thought)
 
@@ -201,7 +201,7 @@ class MotionData:
         return [[self._numbers[p.link], p.at.real, p.at.imag, int(p.turns)] for p in self.sketch.parts]
 
     def _vectors(self) -> Iterator[tuple[str, Any]]:
-        """For each kind of vectors its scale, picture units for a unit of theirs, and what is said of it."""
+        """Yield for each kind of vectors its scale, picture units for a unit of theirs, and its text."""
         for kind, (order, _) in KINDS_OF_VECTOR.items():
             scale = self.sketch.scale(kind) if order <= self.motion.order else None
             if scale is not None:
@@ -209,7 +209,7 @@ class MotionData:
                              "shortest": SHORTEST}  # fmt: skip
 
     def _centres(self) -> dict[str, Any]:
-        """The instant centres in homogeneous coordinates, and for each secondary one the centres that give it."""
+        """Return the instant centres in homogeneous coordinates, and the centres that determine each secondary one."""
         mechanism = self.motion.mechanism
         if not self.with_centres or len(mechanism.links) > MOST_LINKS or not mechanism.drives:
             return {"centres": [], "lines": []}
@@ -243,10 +243,7 @@ def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[l
 
 
 def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
-    """Return the arrows of forces at some poses.
-
-    They have one scale, and each its place, force, kind and words.
-    """
+    """Return the arrows of forces at some poses, to one scale, each with place, force, kind and text."""
     courses = drawn_force_courses(sketch, forces)
     scales = force_scales(sketch, forces, courses)
     if not scales:
@@ -266,7 +263,7 @@ def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], c
 def _force_arrow(
     forces: Forces, course: ForceCourse, links: Mapping[str, int], chosen: Number, design: int
 ) -> dict[str, Any]:
-    """One arrow. Its place is a point of its link where it is fixed there, else a place at every pose."""
+    """Return one arrow, at a point of its link where it is fixed there, else at a place for every pose."""
     link, shown = forces.links[course.shown.link], course.shown
 
     def row(values: Any) -> Number:
@@ -285,11 +282,10 @@ def _force_arrow(
 
 
 def plot_data(moving: MotionData) -> dict[str, Any]:
-    """Return the pace of the axis, the jumps, and what is rounding.
+    """Return the pace of the plots' axis, the jumps, and the bounds of rounding.
 
     The pace is at the page's poses, rounding of lengths and angles by the orders of their rates. A jump has its place,
-    counted in the page's poses, whether it is the end or the beginning of a smooth stretch, and
-    what outputs and drivers are there.
+    counted in the page's poses, whether it begins a smooth stretch, and the values of outputs and drivers.
     """
     return {"rate": _pace(moving), "jumps": _jumps(moving), "rounding": _rounding(moving)}
 

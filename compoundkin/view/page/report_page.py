@@ -39,7 +39,7 @@ from compoundkin.view.sketch import Picture, draw
 # Of more links than this no picture is legible, and drawing takes long.
 MOST_LINKS = 100
 Subject: TypeAlias = Structure | Motion
-# Which view of the structure stands at the head of which section, and what is said below it.
+# The view of the structure at the head of a section, and its caption.
 VIEWS = {
     "chain": ("graph", "The kinematic graph: links are its nodes, pairs the lines between them."),
     "groups": (
@@ -59,7 +59,7 @@ MOST_CELLS = 12_000
 PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plot_panel.js", "plots.js")
 # More outputs than these are no page: the tables have all.
 MOST_OUTPUTS = 6
-# The key of a section, its plot, and what is said below it.
+# The key of a section, its plot, and its caption.
 SectionPlot: TypeAlias = tuple[str, Plot, str]
 
 
@@ -69,7 +69,7 @@ def section_figures(sections: Sequence[Section], subject: Subject | None) -> dic
 
 
 def sketch_figure(subject: Subject) -> str:
-    """Return the kinematic sketch of one pose as a figure. It is "" where there is none."""
+    """Return the kinematic sketch of one pose as a figure; "" where it cannot be drawn."""
     if not _is_legible(subject):
         return ""
     try:
@@ -82,7 +82,7 @@ def sketch_figure(subject: Subject) -> str:
 
 
 def picture_figure(picture: Picture, caption: str) -> str:
-    """Return a picture with what is said below it. It is in a box that scrolls where it would become too small."""
+    """Return a picture with a caption, in a box that scrolls where it would become too small."""
     told = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
     box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **told)
     return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
@@ -95,7 +95,7 @@ def _view_figures(sections: Sequence[Section], subject: Subject) -> Iterator[tup
             try:
                 yield section.key, picture_figure(draw(subject, kind=view), caption)
             except CompoundkinError:
-                # what has faults cannot be taken apart; the report says why
+                # a structure with faults cannot be decomposed
                 continue
 
 
@@ -116,7 +116,7 @@ class EveryPose(Sample):
 def with_every_pose(
     sections: Sequence[Section], motion: Motion, outputs: Sequence[str], design: int
 ) -> tuple[Sequence[Section], tuple[int, ...]]:
-    """Return sections with the outputs at every pose, and the rows' poses. The rows are those of the table.
+    """Return sections with the outputs at every pose, and the poses of the rows.
 
     `outputs` are those that the report was made with.
     """
@@ -138,7 +138,7 @@ def with_every_pose(
 
 
 def _first_table(section: Section | None) -> TableBlock | None:
-    """The first table of a section."""
+    """Return the first table of a section."""
     blocks = section.blocks if section else ()
     return next((block for block in blocks if isinstance(block, TableBlock)), None)
 
@@ -157,10 +157,7 @@ class Page(Savable):
         return self.html.encode("utf-8")
 
     def open(self) -> Path:
-        """Write it to a temporary file and show that in the browser.
-
-        It is shown where there is one; the file's path is returned.
-        """
+        """Write it to a temporary file, show that in the browser if there is one, and return its path."""
         path = temporary_page()
         self.save(path)
         open_in_browser(path)
@@ -202,14 +199,14 @@ def _document(title: str, sections: Sequence[Section], outcome: Outcome, blocks:
 
 
 def temporary_page() -> Path:
-    """Return a new file for a page that is only looked at."""
+    """Return a new temporary file for a page."""
     handle, name = tempfile.mkstemp(prefix="compoundkin-", suffix=suffix_for("page", "html"))
     os.close(handle)
     return Path(name)
 
 
 def open_in_browser(path: Path) -> bool:
-    """Tell whether a browser could be asked to show a file."""
+    """Return whether a browser could be started to show a file."""
     try:
         return webbrowser.open(path.resolve().as_uri())
     except (OSError, webbrowser.Error):
@@ -236,9 +233,9 @@ def with_viewer(document: Document, moving: Viewer) -> Document:
 
 
 def study_figures(found: object) -> dict[str, str]:
-    """Return the plots of what is reported as figures, by the keys of sections.
+    """Return the plots of a study, a tolerance analysis or a search as figures, by the keys of sections.
 
-    They are none without Matplotlib, and of what is neither a study nor the like.
+    Without Matplotlib there are none.
     """
     pictures: dict[str, str] = {}
     for key, plot, caption in _study_plots(found) if find_spec("matplotlib") else ():
@@ -247,7 +244,7 @@ def study_figures(found: object) -> dict[str, str]:
 
 
 def _plot_figure(plot: Plot, caption: str) -> str:
-    """A plot with what is said below it; as an image, for its names would meet those of others."""
+    """Return a plot with a caption, as an image, so that ids of several plots do not clash."""
     source = f"data:image/svg+xml;base64,{b64encode(plot.content('svg')).decode('ascii')}"
     image = f'<img src="{source}" alt="{safe(caption)}" style="max-width:100%;height:auto">'
     return element("figure", f"{image}\n<figcaption>{safe(caption)}</figcaption>")

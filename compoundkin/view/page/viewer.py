@@ -29,7 +29,7 @@ MOST_STOPS = 12
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2")
 # Plots of a page go to accelerations.
 MOST_ORDER = 2
-# What can be shown in the sketch, as it is called: its key, the words, and what they say at length.
+# Switches of the sketch: key, label, explanation.
 SWITCHES = (
     (VELOCITY, "velocities", "velocity vectors of all points"),
     (ACCELERATION, "accelerations", "acceleration vectors of all points"),
@@ -39,7 +39,7 @@ SWITCHES = (
 )
 # A notebook keeps every output that it shows: a few dozen kilobytes each are enough.
 MOST_POSES = 181
-# The frame is so high, in pixels: the sketch as it is on a page so wide, the controls below it, those of changes.
+# Width and greatest height of the sketch in a notebook, heights of its controls and of those of changes, in pixels.
 WIDTH, HIGHEST, CONTROLS, CHANGES = 640.0, 448.0, 190.0, 72.0
 PLAYER_STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}.sketch{max-height:448px}"
 PANEL_KEY, PANEL_TITLE = "dimensions", "Dimensions"
@@ -47,7 +47,7 @@ PANEL_HINT = (
     "Change a number, and the mechanism follows. Arrow keys step it, with Shift ten times as far; "
     "a field that is focused says in which range the mechanism assembles."
 )
-# What can be taken along: its key, the words of its button, what they say at length.
+# Exports: key, label of the button, explanation.
 SHARE_BUTTONS = (
     ("toml", "Copy as TOML", "Copy the mechanism with these dimensions as a mechanism file"),
     ("link", "Copy link", "Copy the address of this page with these dimensions"),
@@ -58,7 +58,7 @@ SHARE_BUTTONS = (
 
 @dataclass(frozen=True)
 class Viewer:
-    """The parts of a page that show a motion. `html` the moving sketch, `plots` the place of the plots, `data`."""
+    """The parts of a page that show a motion: `html` of the moving sketch, `plots` the place of the plots, `data`."""
 
     html: str
     plots: str
@@ -72,7 +72,7 @@ class Viewer:
 
 
 def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer | None:
-    """Return `viewer` with the outputs that a report has where none are named. None where nothing can move."""
+    """Return `viewer` with the outputs of a report where none are named; None where nothing can move."""
     try:
         chosen = chosen_outputs(motion, outputs)
         return viewer(motion, design, tuple(name for name in chosen if not motion_figure(name)[1]))
@@ -81,7 +81,7 @@ def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> V
 
 
 def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer:
-    """Return the viewer of one design of a motion. It has plots of some of its quantities.
+    """Return the viewer of one design of a motion, with plots of some of its quantities.
 
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
     """
@@ -114,7 +114,7 @@ def _unseen_caption(text: str) -> str:
 
 
 def _sketch_html(moving: MotionData) -> str:
-    """The sketch at the pose shown first; every part is an element with its own place."""
+    """Return the sketch at the initial pose; every part is an element with its own place."""
     sketch = moving.sketch
     title = f"Moving kinematic sketch of {moving.motion.mechanism.title}"
     size = f"0 0 {svg_number(sketch.window.width)} {svg_number(sketch.window.height)}"
@@ -138,13 +138,13 @@ def _parts_html(sketch: MovingSketch) -> Iterator[str]:
 
 
 def _part_attributes(part: MovingPart) -> str:
-    """What else is to be known of a part: the letter of its point; that it is a name."""
+    """Return the letter of a part's point, and whether the part is a label."""
     letter = f' data-letter="{safe(part.letter)}"' if part.letter else ""
     return letter + (' class="name"' if part.is_label else "")
 
 
 def _legend(moving: MotionData) -> str:
-    """The numbers of the links, each in a place of its own that lights up with its link."""
+    """Return the numbers of the links, each an element that lights up with its link."""
     scene = moving.sketch.scene
     # by keyboard many names would be a long way; tables have them too, as one stop
     stop = "0" if len(scene.legend) <= MOST_STOPS else None
@@ -174,7 +174,7 @@ def _transport(moving: MotionData) -> str:
 
 
 def _switches(moving: MotionData, data: dict[str, Any]) -> str:
-    """What may be shown or not; only what the motion has."""
+    """Return the switches of what the motion has."""
     has = {kind: kind in data["vectors"] for kind in (VELOCITY, ACCELERATION)}
     has |= {"forces": "forces" in data, "centres": bool(data["centres"]), "names": True}
     boxes = [_checkbox(key, word, told, key == "names") for key, word, told in SWITCHES if has[key]]
@@ -194,7 +194,7 @@ def _checkbox(key: str, word: str, told: str, on: bool) -> str:
 
 
 def _notes(moving: MotionData, data: dict[str, Any]) -> Iterator[str]:
-    """Where what is seen is not all there is, or not as quick; why dimensions cannot be changed."""
+    """Yield notes on missing poses, on the speed of playing, and on why dimensions cannot be changed."""
     why = (data["live"] or {}).get("why")
     if why:
         yield element("p", safe(why), class_="note")
@@ -208,7 +208,7 @@ def _notes(moving: MotionData, data: dict[str, Any]) -> Iterator[str]:
 
 
 def _plots_html(moving: MotionData) -> str:
-    """The place of the plots, and what else may be plotted."""
+    """Return the place of the plots, and the choice of other quantities."""
     mechanism, order = moving.motion.mechanism, moving.motion.order
     of_points = OF_POINTS[: min(order, MOST_ORDER) + 1]
     of_links = OF_LINKS[: min(order, MOST_ORDER) + 1]
@@ -223,11 +223,10 @@ def _plots_html(moving: MotionData) -> str:
 
 
 def player(motion: Motion, design: int = 0) -> str:
-    """Return a document that shows one design under a slider and a button.
+    """Return a document that shows one design of a motion under a slider and a button that plays it.
 
-    The button plays the motion; the document asks for nothing else.
-
-    Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
+    It needs no other file. Raises NotAssembled where no pose is assembled, InvalidInput where links change their
+    dimensions along the motion.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -269,7 +268,7 @@ def framed_player(motion: Motion) -> str:
 
 
 def panel_section() -> str:
-    """Return the section of dimensions, without any yet.
+    """Return the section of dimensions, which scripts fill.
 
     >>> panel_section().splitlines()[0]
     '<section id="dimensions" aria-labelledby="dimensions-title">'

@@ -14,13 +14,13 @@ from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column,
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted
 
-# Lists of more links are made where they are asked for: eleven take some seconds, twelve half a minute.
+# The longest lists: eleven links take some seconds, twelve half a minute.
 MOST_MADE = 12
 # A group has one link less than its truss; those with more links are not listed.
 MOST_IN_GROUP = 8
 _FEWEST = 3
 _MOST_MOBILITY = 3
-# Of more ways to the same end a reader needs the first only.
+# At most so many alternatives are listed.
 LISTED = 4
 _NO_FREEDOM = "By count it has no freedom, so that there is nothing to drive."
 
@@ -28,10 +28,10 @@ _NO_FREEDOM = "By count it has no freedom, so that there is nothing to drive."
 def atlas_report(
     links: int, mobility: int = 1, with_inversions: bool = False, with_trusses: bool = False, with_groups: bool = False
 ) -> Report:
-    """Report the chains with so many links and that mobility. Their inversions, trusses and groups follow.
+    """Report the chains with a number of links and a mobility, with inversions, trusses and groups.
 
-    With `with_trusses` or `with_groups` these are listed instead of chains, unless inversions are asked for too.
-    Raises InvalidInput for numbers of links that no list can have.
+    With `with_trusses` or `with_groups` these are listed instead of chains, unless inversions are requested too. Raises
+    InvalidInput for numbers of links without a list.
 
     >>> report = atlas_report(6)
     >>> [section.key for section in report.sections], len(report.sections[0].blocks[1].rows)
@@ -126,7 +126,7 @@ def _group_row(k: int, group: AssurGroup) -> tuple[Cell, ...]:
 
 
 def _group_pairs(truss: Chain, removed: int) -> str:
-    """The pairs of a group, its links numbered from 0 in the order in which `Composer.attach` names them."""
+    """Return the pairs of a group, its links numbered from 0 in the order in which `Composer.attach` names them."""
     number = {link: k for k, link in enumerate(link for link in range(truss.links) if link != removed)}
     inner = [f"{number[a]}-{number[b]}" for a, b in truss.pairs if removed not in (a, b)]
     outer = [str(number[link]) for link in truss.neighbours[removed]]
@@ -167,7 +167,7 @@ def _alternative_blocks(
 
 
 def _sentences(found: Sequence[Alternative]) -> Iterator[str]:
-    """What to drive or to fix instead where the present choice is not dyadic."""
+    """Yield which driver or frame would make the mechanism dyadic."""
     present = next((choice for choice in found if choice.present), None)
     if present is not None and present.dyadic:
         yield "The mechanism is dyadic as it is."

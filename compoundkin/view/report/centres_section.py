@@ -22,7 +22,7 @@ from compoundkin.view.report.wording import counted, listed, number_text
 
 # A direction this close to 0 or 180 degrees is rounding.
 NEARLY = 1e-9
-# Of so many centres, pose by pose, each is looked at within a second.
+# So many centres, pose by pose, are examined within a second.
 MOST_CENTRES = 1_000_000
 
 
@@ -35,7 +35,7 @@ class CentresSample:
 
     @cached_property
     def centres(self) -> Centres:
-        """The centres of the motion: those given, if they are known already."""
+        """The centres of the motion."""
         return self.given or instant_centres(self.sample.motion)
 
     @cached_property
@@ -58,7 +58,7 @@ class CentresSample:
 
     @cached_property
     def kinds(self) -> Mapping[str, str]:
-        """The kind of every step by its text. It is what a centre says of how it is derived."""
+        """The kind of every step by its text, which a centre has as its derivation."""
         return {step.text: step.kind for step in self.centres.derivation()}
 
     @cached_property
@@ -73,7 +73,7 @@ class CentresSample:
 
 
 def centres_sections(sample: Sample) -> tuple[Section, ...]:
-    """Return the sections on the instant centres of a motion's first pose. Primary, secondary, angular velocities.
+    """Return the sections on primary and secondary centres and angular velocities at the first pose of a motion.
 
     Raises NotDetermined where nothing moves, InvalidInput for a motion of order 0.
     """
@@ -93,7 +93,7 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
 
 
 def centre_blocks(found: Centres) -> tuple[Block, ...]:
-    """Return centres at the first pose, the primary ones first. Many at many poses are told by their derivation."""
+    """Return the centres at the first pose, the primary ones first; of very many only their derivation."""
     sample = Sample(found.motion)
     if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
         return derivation_section(found.motion.structure).blocks
@@ -141,7 +141,7 @@ def _count_blocks(shown: CentresSample) -> Iterator[Block]:
 
 
 def _centres_table(shown: CentresSample, found: Sequence[Centre], how: str) -> TableBlock:
-    """A row for each centre; directions and conditioning only where there is something to say."""
+    """Return a row for each centre; directions and conditioning only where one has them."""
     unit = unit_of(shown.sample.motion.mechanism.unit, "length")
     floor = ROUNDING * shown.sample.motion.size
     columns = [Column("centre"), Column("x", unit, "each", floor), Column("y", unit, "each", floor, follows=True)]
@@ -165,7 +165,7 @@ def _coordinates(shown: CentresSample, found: Sequence[Centre]) -> Iterator[list
 
 
 def _direction(shown: CentresSample, centre: Centre) -> float | None:
-    """The direction of a centre at infinity, from 0 to below 180 degrees: either way along it is the same."""
+    """Return the direction of a centre at infinity, from 0 to below 180 degrees."""
     if not shown.of(centre.at_infinity):
         return None
     angle = float(degrees(np.angle(shown.of(centre.direction)))) % 180.0
@@ -178,12 +178,12 @@ def _low_conditioning(shown: CentresSample, centre: Centre) -> float | None:
 
 
 def _at_pose(how: str) -> str:
-    """How a centre was found, in short: a trial's details are for the derivation."""
+    """Return how a centre was derived, without the details of trial positions."""
     return _two_lines(how.partition(";")[0])
 
 
 def _two_lines(text: str) -> str:
-    """The two lines one under the other, where a column can have them so."""
+    """Return two lines of a derivation below each other, to fit a column."""
     return text.removeprefix("line ").replace(" x line ", "\nx ")
 
 
@@ -208,7 +208,7 @@ def _velocities(shown: CentresSample) -> Section:
 
 
 def _reference(shown: CentresSample) -> tuple[str, str, float]:
-    """What angular velocities are told in: the speed of the only driver, if it turns, else rad/s."""
+    """Return the reference of angular velocities: the speed of the only driver, if it turns, else rad/s."""
     drivers = list(shown.sample.motion.drives.items())
     speeds = [float(shown.of(drive.rate)) for _, drive in drivers]
     if len(drivers) == 1 and drivers[0][1].is_angle and speeds[0]:

@@ -74,11 +74,9 @@ def circuits_report(found: Circuits) -> Report:
 
 
 def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
-    """Tell what one design's report says of configurations, circuits and limits.
+    """Return the sections on circuits and limits of one design, where they are computed quickly.
 
-    It does so where that takes little time.
-
-    With several drivers the first one is moved, the others stay at their first values.
+    With several drivers the first one moves, the others keep their first values.
     """
     structure, drives = motion.structure, motion.mechanism.drives
     modes = prod(solver.modes or _estimated_modes(solver.group) for solver in motion.solving_order.solvers)
@@ -95,7 +93,7 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
 
 
 def _start_on_circuits(found: Circuits, motion: Motion, design: int) -> CircuitPlace | None:
-    """Where on the circuits the motion begins, in whatever modes it was solved."""
+    """Return where on the circuits the motion begins, in the modes in which it was solved."""
     first = first_configuration(motion, design)
     try:
         return None if first is None else found.at(first)
@@ -104,7 +102,7 @@ def _start_on_circuits(found: Circuits, motion: Motion, design: int) -> CircuitP
 
 
 def _estimated_modes(group: Group) -> int:
-    """The modes of a group without signs, for an estimate of the work: six of a triad of pins, many of any other."""
+    """Return the number of modes of a group without signs, to estimate the work: six of a triad of pins, else many."""
     pins = all(pair.is_simple and pair.free_is_angle for pair in (*group.inner, *group.outer))
     return TRIAD_MODES if pins and len(group.bodies) <= TRIAD_BODIES else MOST_MODES + 1
 

@@ -28,7 +28,7 @@ LOOP_NOTATION = (
     "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; "
     "the frame's angle is zero. AB' starts or ends where a guide is, from which its displacement counts."
 )
-IMPLICIT_FUNCTIONS = "Of {pairs} no more is known than functions F of the angles and displacements in brackets."
+IMPLICIT_FUNCTIONS = "The equations of {pairs} are functions F of the angles and displacements in brackets."
 _MEANING = {
     "angle": "angle of the link",
     "displacement": "displacement along the guide",
@@ -40,14 +40,14 @@ _MEANING = {
 }
 # A matrix in brackets is no wider (characters); a wider one is written entry by entry.
 WIDEST = 76
-# A matrix of more columns is not set as mathematics: nobody could read it.
+# A matrix of more columns is not typeset: nobody could read it.
 MOST_COLUMNS = 24
 RATE_NOTATION = (
     "A prime, in formulas a dot, is a derivative by time: crank' is the angular velocity of the link crank, s''(slot) "
     "the second rate of the displacement s(slot)."
 )
 FUNCTION_RATES = (
-    "The derivatives dF/d( ) of a function F of which no more is known are found by series; F'' is its second rate "
+    "The derivatives dF/d( ) of a function F are computed by series; F'' is its second rate "
     "while its arguments have constant rates."
 )
 ONE_MATRIX = "A is the matrix of both velocities and accelerations, its columns those of x = ({})."
@@ -68,7 +68,7 @@ ROUNDING = 1e-12
 
 
 def equations_section(found: LoopEquations) -> Section:
-    """Return the loop equations, the auxiliary ones and those of the drivers. What is unknown, what is known."""
+    """Return the loop equations, the auxiliary ones and those of the drivers, with unknown and known quantities."""
     return Section("equations", "Vector-loop equations", tuple(_equation_blocks(found)))
 
 
@@ -121,7 +121,7 @@ def constants_section(found: LoopEquations) -> Section | None:
 
 
 def rates_section(found: LoopEquations) -> Section:
-    """Return the equations of velocities in symbols. Those of accelerations follow where asked for."""
+    """Return the equations of velocities, and of accelerations if requested, in symbols."""
     title = "Velocity and acceleration equations" if len(found.rates) > 1 else "Velocity equations"
     return Section("rates", title, tuple(_rate_blocks(found)))
 
@@ -177,7 +177,7 @@ class PoseNumbers:
 
     @cached_property
     def solutions(self) -> tuple[RateSolution, ...]:
-        """The solutions of all orders asked for."""
+        """The solutions of velocities, and of accelerations if requested."""
         return tuple(rates.at(self.motion) for rates in self.found.rates)
 
     def at(self, values: Any, axes: int = 0) -> Any:
@@ -230,7 +230,7 @@ def _verdict(first: RateSolution, pose: PoseNumbers) -> Iterator[Block]:
 
 
 def _values_table(pose: PoseNumbers) -> TableBlock:
-    """All unknowns and what is given, with their values and rates."""
+    """Return all unknowns and drivers with their values and rates."""
     system, unit = pose.found.system, pose.found.structure.mechanism.unit
     values = pose_values(pose.motion)
     for order in range(len(pose.solutions) + 1):
@@ -251,7 +251,7 @@ def _values_table(pose: PoseNumbers) -> TableBlock:
 
 
 def coordinate_unit(own: Unknown, unit: str, order: int) -> str:
-    """Return the unit in which a coordinate is shown, or a rate of it."""
+    """Return the display unit of a coordinate or of its rate."""
     if own.kind == "parameter":
         return ""
     if own.is_length:
@@ -260,7 +260,7 @@ def coordinate_unit(own: Unknown, unit: str, order: int) -> str:
 
 
 def newton_section(found: NewtonIterations, unit: str, size: float, solved: Mapping[str, float] | None) -> Section:
-    """Return Newton's iterations as a table. `solved` has the unknowns of the pose that the groups gave, if any."""
+    """Return Newton's iterations as a table; `solved` has the unknowns of the pose that the groups gave, if any."""
     blocks: list[Block] = [Paragraph(NEWTON_METHOD), _steps_table(found, unit)]
     if found.failure:
         last = ", ".join(f"{own.key} = {_value_text(own, found.values[own.key])}" for own in found.unknowns)

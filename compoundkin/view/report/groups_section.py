@@ -39,7 +39,7 @@ DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
-    """Report each driver with its range and rates. Angles and lengths in tables of their own."""
+    """Report each driver with its range and rates, angles and lengths in separate tables."""
     steps = structure.driven
     kinds: dict[bool, list[tuple[Cell, ...]]] = {}
     led = _prescribed_coordinates(structure)
@@ -53,7 +53,7 @@ def drivers_section(structure: Structure, sample: Sample | None) -> Section:
 
 
 def _prescribed_coordinates(structure: Structure) -> dict[str, str]:
-    """What drivers prescribe of points and links: by their names "x of G"."""
+    """Return what drivers prescribe of points and links, "x of G", by their names."""
     leads = structure.mechanism.prescribed_motions.values()
     return {
         name: f"{word} of {item.point or item.link}{f' on {item.on}' if item.on != FRAME else ''}"
@@ -63,7 +63,7 @@ def _prescribed_coordinates(structure: Structure) -> dict[str, str]:
 
 
 def _law_paragraphs(structure: Structure) -> Iterator[Paragraph]:
-    """How each driver with a law moves."""
+    """Yield how each driver with a law moves."""
     steps, unit = structure.driven, unit_of(structure.mechanism.unit, "length")
     for lead in structure.mechanism.prescribed_motions.values():
         if lead.along is not None:
@@ -83,7 +83,7 @@ def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, .
 
 
 def _driver_range(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[Cell, ...]:
-    """From, to, poses, speed, acceleration."""
+    """Return first and last value, number of poses, speed and acceleration."""
     values, speed, acceleration = _driver_values(drive, sample)
     if sample is None and drive.law is not None:
         return None, None, None, None, None
@@ -95,7 +95,7 @@ def _driver_range(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[
 
 
 def _driver_values(drive: Drive, sample: Sample | None) -> tuple[Any, Cell, Cell]:
-    """The values of a driver, its speed and its acceleration (at the first pose); as written, before solving."""
+    """Return a driver's values, speed and acceleration at the first pose; before solving those of the mechanism."""
     if sample is None:
         values = None if drive.values is None else np.atleast_1d(drive.values)
         return values, float(np.ravel(drive.speed)[0]), float(np.ravel(drive.acceleration)[0])
@@ -123,7 +123,7 @@ def solving_section(structure: Structure, motion: Motion | None, design: int = 0
 
 
 def _redundant_paragraphs(structure: Structure) -> Iterator[Paragraph]:
-    """What is redundant, and what stands in its place."""
+    """Yield the redundant pairs, and the pairs that replace them."""
     for part in structure.relaxation.dropped if structure.relaxation else ():
         instead = f", with {part.kept.name} in its place" if part.kept else ""
         yield Paragraph(f"Left out is {part}{instead}: other pairs hold it, which is checked along the motion.")
@@ -179,7 +179,7 @@ def _group_facts(structure: Structure, group: Group, new: list[str]) -> Iterator
 
 
 def _attachment_points(structure: Structure, group: Group) -> Iterator[str]:
-    """The points of known links by which the group is attached."""
+    """Yield the points of known links to which a group is attached."""
     own = set(group.links)
     for pair in group.outer:
         for link in pair.members:
@@ -199,7 +199,7 @@ def _yield_text(links: Iterable[str], letters: Iterable[str]) -> str:
 
 
 def _mode_facts(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
-    """Which assembly mode it is in, what that means, and what chose it."""
+    """Yield the assembly mode of a group, its meaning, and what chose it."""
     why = CHOSEN_BY.get(motion.chosen_by.get(k, ""), "")
     solver = motion.solving_order.solvers[k]
     if solver.is_numbered:
@@ -235,7 +235,7 @@ class LawText:
 
     @singledispatchmethod
     def law(self, law: Law) -> str:
-        """Tell what a law does, after "it moves"."""
+        """Return a law as the end of a sentence that begins with "it moves"."""
         raise NotImplementedError
 
     @law.register
@@ -278,13 +278,13 @@ class LawText:
         return f"{segment.law} {way} by {self._value(abs(segment.rise))} {over}{self._limits(segment)}"
 
     def _limits(self, segment: ProgramSegment) -> str:
-        """The limits that it keeps, if any."""
+        """Return the limits of a segment, if any."""
         given = [(getattr(segment, name), order) for order, name in enumerate(LIMITS, 1)]
         told = [self._rate(value, order) for value, order in given if value is not None]
         return f" within {listed(told)}" if told else ""
 
     def _jumps(self, law: Program) -> Iterator[str]:
-        """A sentence for velocity, one for acceleration, where they jump."""
+        """Yield a sentence on jumps of the velocity, and one on jumps of the acceleration."""
         found = law.discontinuities(law.repeat)
         for order in (1, 2):
             places = [number_text(one.place) for one in found if one.order == order]
@@ -317,7 +317,7 @@ class PathText:
 
     @singledispatchmethod
     def path(self, path: Path) -> str:
-        """Tell where a path goes, after "it is led"."""
+        """Return a path as the end of a sentence that begins with "it is guided"."""
         raise NotImplementedError
 
     @path.register

@@ -57,7 +57,7 @@ def characteristics_report(
     dwell: float | None = None,
     straight: float | None = None,
 ) -> Report:
-    """Report the figures of a motion, and where it is not assembled."""
+    """Report the figures of a motion, and where it cannot be assembled."""
     outputs = tuple(outputs)
     check_design(design, motion.inputs.designs)
     motion = motion_of_design(motion, design)
@@ -280,7 +280,7 @@ def optional_value(one: Quantity | None) -> float | None:
 
 
 def display_unit(one: Quantity) -> str:
-    """Return the unit in which a quantity is shown."""
+    """Return the display unit of a quantity."""
     return DEGREES if one.unit == RADIANS else one.unit
 
 

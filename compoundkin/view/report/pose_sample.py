@@ -21,11 +21,11 @@ from compoundkin.view.report.wording import listed, number_text
 ROWS = 25
 
 
-# Numbers below this part of what is natural for the mechanism are rounding, and shown as zero.
+# Numbers below this part of the mechanism's natural scale are rounding, and shown as zero.
 ROUNDING = 1e-12
 
 
-# So many poses are named one by one.
+# At most so many poses are listed.
 MOST_LISTED = 10
 
 

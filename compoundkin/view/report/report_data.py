@@ -15,13 +15,13 @@ Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 #   fixed   numbers, all with the same decimals: six digits for the largest
 #   each    numbers, each with six significant digits
 #   brief   numbers of which only the magnitude matters: 2.1e-14
-#   passed  True, False, or None where it cannot be said
+#   passed  True, False, or None where it is unknown
 Style: TypeAlias = Literal["text", "fixed", "each", "brief", "passed"]
 
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A sentence or several. `badged` are the last ones where a page has badges that say the same."""
+    """One or several sentences. `badged` are the last ones if badges of a page repeat them."""
 
     text: str
     badged: str = ""
@@ -56,10 +56,10 @@ class Column:
 
 @dataclass(frozen=True)
 class TableBlock:
-    """Rows of cells. The first `keys` columns are repeated where a table is split for its width.
+    """Rows of cells. The first `keys` columns are repeated where a wide table is split.
 
-    `shown` are the indices of the rows that a reader needs, where those are not all: the JSON report has all.
-    `figures` tell for each row which figure of the motion it has, where that is known: a live page tells it anew.
+    `shown` are the indices of the rows that a text or page shows, where not all; the JSON report has all. `figures` are
+    keys of figures of the motion in each row, by which a live page computes the row again.
     """
 
     columns: tuple[Column, ...]
@@ -72,7 +72,7 @@ class TableBlock:
     def selected_rows(self) -> tuple[tuple[Cell, ...], ...]:
         """The rows that a reader needs.
 
-        >>> TableBlock((Column("a"),), (("x",), ("y",)), shown=(1,)).shown_rows
+        >>> TableBlock((Column("a"),), (("x",), ("y",)), shown=(1,)).selected_rows
         (('y',),)
         """
         return self.rows if self.shown is None else tuple(self.rows[k] for k in self.shown)
@@ -80,7 +80,7 @@ class TableBlock:
 
 @dataclass(frozen=True)
 class StepBlock:
-    """One step of several. A title, and what is to be said of it by keyword."""
+    """One step of several: a title, and facts by keyword."""
 
     title: str
     facts: tuple[tuple[str, str], ...]
@@ -94,7 +94,7 @@ class Alert:
     remedy: str = ""
 
 
-# Of more rows of a table or parts of a section than these, so many are shown where a report is read.
+# Of more than MANY rows of a table or parts of a section, a text shows the first ones.
 MANY, SHOWN = 300, 100
 # No text of a cell or fact is longer (characters) there.
 LONGEST = 2000
@@ -153,10 +153,10 @@ def _cell(cell: Cell) -> Cell:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a report comes to, for those who only ask that. `passed` covers checks and published numbers.
+    """The outcome of a report in numbers. `passed` covers checks, published numbers and interference.
 
-    `verified` is whether `verify` passed, None where nothing was to be verified, and `verdict` its words.
-    `touching` is how many pairs of links touch, None where no outlines were compared, and `compared` that in words.
+    `verified` is whether `verify` passed, None where nothing was verified, and `verdict` its text. `touching` is how
+    many pairs of links touch, None where no outlines were compared, and `compared` its text.
     """
 
     solvable: bool
@@ -177,5 +177,5 @@ class Outcome:
         return self.verified is not False and self.published == self.published_passed and not self.touching
 
 
-# What a report comes to that solves nothing.
+# The outcome of a report that solves nothing.
 NOT_SOLVED = Outcome(True)

@@ -154,7 +154,7 @@ def _heading(column: Column) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text in which nothing is taken for markup."""
+    """Return text without markup."""
     return " ".join(typeset(text).translate(_ESCAPED).split())
 
 

@@ -35,15 +35,15 @@ from compoundkin.view.report.wording import counted, joined_links, kind_of_link,
 # A coordinate below this part of the mechanism's size is the rounding of a zero.
 ROUNDING = 1e-12
 PLACED = ", in the link's own frame"
-# So many links are named in a sentence.
+# At most so many links are listed in a sentence.
 MOST_NAMED = 12
-# A report names so many pairs.
+# At most so many pairs are listed.
 MOST_PAIRS = 12
-# More classes of links or more names than these are counted instead of written out.
+# More classes of links or names are counted instead of listed.
 MANY = 8
 _DYAD = 2
 _LOWER = 2
-# Beyond these a report lists only the first: a reader has seen enough.
+# At most so many loops are listed.
 MOST_LOOPS = 20
 
 

@@ -38,23 +38,22 @@ from compoundkin.view.report.verification_sections import findings_table, outcom
 from compoundkin.view.report.wording import brief, counted, listed, number_text, objective_quantity, objective_text
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
-# Of more reasons and circuits only so many are told, the most frequent ones.
+# At most so many reasons and circuits are listed, the most frequent first.
 MOST_STATES = 12
 # Before where in the motion it is that a design does not assemble.
 _PLACE = re.compile(" (at|between) ")
-# Errors and shares say something with so many digits.
+# Significant digits of errors and shares.
 DIGITS = 4
-# So many designs at which searches ended are listed, the best first.
+# At most so many designs at which searches ended are listed, the best first.
 MOST_MINIMA = 8
 # Speeds that differ by no more than this part are the same: some programs have rpm of three decimals.
 _SAME_SPEED = 1e-3
 
 
 def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequence[str] = (), best: int = 1) -> Report:
-    """Report what a study found.
+    """Report a study, with the `best` designs of least and of greatest values of figures.
 
-    The designs with the least and the greatest values of some figures are listed, so many of each.
-    Raises UnknownName and InvalidInput for what are no figures of it.
+    Raises UnknownName and InvalidInput for names that are no figures of the study.
     """
     closed = int(np.count_nonzero(found.assembled))
     asked = [*((name, False) for name in least), *((name, True) for name in greatest)]
@@ -149,7 +148,7 @@ def _figure_columns(found: StudyResult) -> list[StudyColumn]:
 
 
 def _display_unit(column: StudyColumn) -> tuple[float, str]:
-    """Return the factor to the unit that people are shown, and that unit."""
+    """Return the factor to the display unit, and that unit."""
     return (float(degrees(1.0)), DEGREES) if column.unit == RADIANS else (1.0, column.unit)
 
 
@@ -219,7 +218,7 @@ def _error_blocks(found: ToleranceAnalysis, chosen: Sequence[OutputTolerance]) -
 
 
 def _value_at(one: OutputTolerance, values: Number, pose: int | None) -> float:
-    """Return a value of an output at a pose as it is shown."""
+    """Return a value of an output at a pose in its display unit."""
     return float(output_quantity(one, values if pose is None else values[pose]).values)
 
 
@@ -315,7 +314,7 @@ def _constraints_table(found: Optimum) -> TableBlock:
 
 
 def _unknowns_table(found: Optimum) -> TableBlock:
-    """Return what goals found beside the dimensions, as they have it."""
+    """Return the numbers that goals determined beside the dimensions."""
     return TableBlock((Column("number"), Column("value", style="each")), tuple(found.unknowns.items()), keys=1)
 
 

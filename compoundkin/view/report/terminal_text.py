@@ -96,7 +96,7 @@ def _(block: TableBlock, width: int) -> Iterator[RenderableType]:
 
 
 def _panels(block: TableBlock, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
-    """Which columns go side by side: a table of numbers too wide is split, its first columns repeated."""
+    """Return the columns of each panel: a table of numbers too wide is split, its first columns repeated."""
     keys = list(range(block.keys))
     wide = [_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)]
     panels: list[list[int]] = [[*keys]]
@@ -108,7 +108,7 @@ def _panels(block: TableBlock, heads: Sequence[str], cells: Sequence[Sequence[st
 
 
 def _inseparable(block: TableBlock) -> list[list[int]]:
-    """The columns after the first ones, those that follow one another together."""
+    """Return the columns after the first ones, with those that follow one another together."""
     parts: list[list[int]] = []
     for k, column in enumerate(block.columns[block.keys :], block.keys):
         if column.follows and parts:
@@ -123,7 +123,7 @@ def _width(texts: Iterable[str]) -> int:
 
 
 def _is_plain(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> bool:
-    """Whether nothing of a table is to be wrapped or coloured, so that it need not be measured cell by cell."""
+    """Return whether no cell is to be wrapped or coloured, so that cells need not be measured one by one."""
     wide = sum(_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)) - GAP
     texts = [cell for column in cells for cell in column]
     plain = all(cell.isascii() and "\n" not in cell and cell not in STYLES for cell in texts)

@@ -31,7 +31,7 @@ from compoundkin.view.report.wording import brief, counted, listed, number_text
 
 # A report lists this many gaps; a sweep may have thousands.
 MOST_GAPS = 10
-# Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
+# At most so many published numbers are all listed; of more, each quantity's nearest to its tolerance.
 MOST_LISTED = 12
 
 
@@ -85,7 +85,7 @@ def finding_sentence(sample: Sample, finding: Finding) -> str:
 
 
 def _group_of(structure: Structure, name: str) -> str:
-    """The group that solves a pair or a link, in words; "" for one of the frame and its driven links."""
+    """Return the group that solves a pair or a link as a phrase; "" for one of the frame and its driven links."""
     for group in structure.groups:
         if name in group.links or name in [pair.name for pair in (*group.inner, *group.outer)]:
             return f"in the {group.name} group of {' and '.join(group.links)}"
@@ -161,7 +161,7 @@ def gaps_of(sample: Sample) -> tuple[Gap, ...]:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published number and the one found, an angle in the same turn. NaN where it cannot be assembled."""
+    """A published number and the computed one, an angle in the same turn; NaN where no pose is assembled."""
 
     expectation: Expectation
     found: complex
@@ -182,7 +182,7 @@ class Comparison:
 
     @property
     def closeness(self) -> float:
-        """The difference in tolerances, to a hundredth. Which of two roundings is greater means nothing."""
+        """The difference in tolerances, to a hundredth, below which rounding decides."""
         if not isfinite(self.difference):
             return float("inf")
         tolerance = self.expectation.tolerance
@@ -190,10 +190,10 @@ class Comparison:
 
 
 def comparisons(structure: Structure) -> tuple[Comparison, ...]:
-    """Return every published number, solved at its driver values. The assembly modes are those that the mechanism says.
+    """Return every published number, solved at its driver values in the mechanism's assembly modes.
 
-    Raises UnknownName for a published quantity that the mechanism does not have, InvalidInput for one that means
-    nothing there, such as an advantage while the driver rests.
+    Raises UnknownName for a published quantity that the mechanism does not have, InvalidInput for one that is not
+    defined there, such as an advantage while the driver rests.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, expect, link
@@ -213,7 +213,7 @@ def comparisons(structure: Structure) -> tuple[Comparison, ...]:
 
 
 def _pose_at_values(structure: Structure, at: Mapping[str, float]) -> Motion | None:
-    """The single pose at given driver values and rates; what is not given is the driver's own, the first of several."""
+    """Return the single pose at driver values and rates; missing ones are the driver's own, the first of several."""
     if TIME in at and TIME not in [drive.name for drive in structure.mechanism.drives]:
         return _pose_at_time(structure, at)
     values: dict[str, float] = {}
@@ -226,7 +226,7 @@ def _pose_at_values(structure: Structure, at: Mapping[str, float]) -> Motion | N
 
 
 def _whole_motion(structure: Structure, at: Mapping[str, float]) -> Motion | None:
-    """The motion over the drivers' own range; those that are given stand still, and rates are as given."""
+    """Return the motion over the drivers' own ranges; drivers with a value in `at` stand still."""
     names = [drive.name for drive in structure.mechanism.drives]
     values = {name: at[name] for name in names if name in at} or None
     rates = {rate: {name: at[f"{name}.{rate}"] for name in names if f"{name}.{rate}" in at} for rate in RATES}
@@ -234,7 +234,7 @@ def _whole_motion(structure: Structure, at: Mapping[str, float]) -> Motion | Non
 
 
 def _pose_at_time(structure: Structure, at: Mapping[str, float]) -> Motion | None:
-    """The single pose at a time; what else is given goes before the driver's own."""
+    """Return the single pose at a time; values in `at` replace the driver's own."""
     values = {drive.name: at[drive.name] for drive in structure.mechanism.drives if drive.name in at}
     named = {rate: [d.name for d in structure.mechanism.drives if f"{d.name}.{rate}" in at] for rate in RATES}
     rates = {rate: {name: at[f"{name}.{rate}"] for name in names} for rate, names in named.items()}
@@ -242,7 +242,7 @@ def _pose_at_time(structure: Structure, at: Mapping[str, float]) -> Motion | Non
 
 
 def _solve_without_warnings(structure: Structure, values: Mapping[str, float] | None, **how: Any) -> Motion | None:
-    """What is solved, a single pose or a motion; None where it cannot be assembled."""
+    """Return a pose or a motion; None where it cannot be assembled."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
@@ -266,7 +266,7 @@ def _comparison(expectation: Expectation, motion: Motion | None, where: str) -> 
 
 
 def published_section(structure: Structure, found: tuple[Comparison, ...]) -> Section:
-    """Compare published numbers with the ones found."""
+    """Compare published numbers with computed ones."""
     keys = tuple(dict.fromkeys(key for one in found for key, _ in one.expectation.at))
     columns = (Column("quantity"), Column(f"at {', '.join(keys)}" if keys else "at", style="each"),
                Column("found", style="each"), Column("published", style="each"), Column("off by", style="brief"),
@@ -289,7 +289,7 @@ def _row(structure: Structure, keys: tuple[str, ...], one: Comparison) -> tuple[
 
 
 def _driver_cells(structure: Structure, keys: tuple[str, ...], expectation: Expectation) -> tuple[float, ...]:
-    """The driver values and rates of a published number, angles in degrees; NaN where it gives none."""
+    """Return the driver values and rates of a published number, angles in degrees; NaN where it has none."""
     pairs, given = structure.driven, dict(expectation.at)
     is_angle = [key in pairs and pairs[key].pair.free_is_angle for key in keys]
     values = [given.get(key, float("nan")) for key in keys]
@@ -305,7 +305,7 @@ def _number_cell(value: complex, one: Comparison) -> Cell:
 
 
 def _listed_rows(found: tuple[Comparison, ...]) -> tuple[int, ...] | None:
-    """Which comparisons a reader needs: all of a few; else all that fail, and the worst of each quantity."""
+    """Return the rows shown: all of a few; else all that fail, and the worst of each quantity."""
     if len(found) <= MOST_LISTED:
         return None
     worst: dict[str, int] = {}

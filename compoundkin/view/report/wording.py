@@ -150,7 +150,7 @@ def counted(number: int, word: str) -> str:
 
 
 def kind_of_link(pairs: int) -> str:
-    """Tell what a link with so many pairs is called.
+    """Return the name of a link with a number of pairs.
 
     >>> kind_of_link(3), kind_of_link(9)
     ('ternary', 'with 9 pairs')
@@ -178,9 +178,9 @@ def joined_links(links: Sequence[str]) -> str:
 
 
 def objective_quantity(found: Optimum, values: Number | float) -> Quantity:
-    """Return objectives as they are shown.
+    """Return objectives as a quantity in display units.
 
-    That of a single figure has its unit, a sum of squares or of several goals none.
+    The objective of a single figure has its unit, a sum of squares or of several goals none.
     """
     return Quantity("objective", _objective_unit(found), np.asarray(values, dtype=float)).shown
 

@@ -23,7 +23,7 @@ TWO_BYTES = 2**15
 
 
 def compact(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the data of a motion for a script. Those of one that is not live are all there.
+    """Return the data of a motion for a script, without what a live page's program computes.
 
     >>> compact({"live": None, "links": []})
     {'live': None, 'links': []}
@@ -43,7 +43,7 @@ def compact(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _stepped(value: Any, poses: int) -> Any:
-    """Return data with numbers that go on by equal steps written as the first and the step."""
+    """Return data in which numbers with equal steps are the first one and the step."""
     if isinstance(value, Mapping):
         return {key: _stepped(one, poses) for key, one in value.items()}
     if isinstance(value, list):
@@ -77,7 +77,7 @@ def _centre(data: Mapping[str, Any], centre: Mapping[str, Any]) -> dict[str, Any
 
 
 def _rate(link: Mapping[str, Any], poses: int) -> Number:
-    """The velocity of what is at the origin, and the rate of turning."""
+    """Return the velocity at the origin and the angular velocity."""
     x, y = (unpacked(link[key], poses) for key in ("x", "y"))
     vx, vy, w = (unpacked(part, poses) for part in link["v"])
     return np.stack([vx + w * y, vy - w * x, w])

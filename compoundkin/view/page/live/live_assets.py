@@ -17,7 +17,7 @@ PLAYER_SCRIPTS = (
     "view_box.js",
 )
 PLAYER_STYLE = "player.css"
-# Before the player, which asks the path for what a live page does not hold.
+# Before the player, which takes from the path what a live page does not hold.
 PATH_SCRIPTS = ("live/machine.js", "live/states.js", "live/path.js")
 # In this order: each uses those before it.
 SCRIPTS = (
@@ -47,7 +47,7 @@ PANEL_STYLES = ("live/panel.css",)
 
 
 def is_live(data: Mapping[str, Any]) -> bool:
-    """Tell whether the data of a motion hold its program.
+    """Return whether the data of a motion include its program.
 
     >>> is_live({"live": None}), is_live({"live": {"why": "profiles"}}), is_live({"live": {"dimensions": []}})
     (False, False, True)
@@ -76,7 +76,7 @@ def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def without_panel(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the data of a motion that is shown without a panel of dimensions.
+    """Return the data of a motion for a player without the panel of dimensions.
 
     >>> without_panel({"live": {"dimensions": [], "panel": {}, "toml": []}})
     {'live': {'dimensions': []}}

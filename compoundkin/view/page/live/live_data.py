@@ -43,10 +43,7 @@ AGREES = 1e-9
 
 
 def live_data(sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str]) -> dict[str, Any] | None:
-    """Return what a page needs to be live, or why it cannot be.
-
-    It is of some poses of a sample. None is that of a single pose, or of a mechanism without drivers.
-    """
+    """Return what a page needs to be live, or why it cannot be; None for a single pose or without drivers."""
     if len(chosen) < 2 or not sample.motion.mechanism.drives:
         return None
     try:
@@ -179,7 +176,7 @@ class LiveData:
 
 @dataclass(frozen=True, eq=False)
 class ReproducedValues:
-    """The values that a program finds at the poses of a page."""
+    """The values that a program computes at the poses of a page for the mechanism's own dimensions."""
 
     program: PageProgram
     chosen: Number
@@ -197,7 +194,7 @@ class ReproducedValues:
         return bool(np.array_equal(np.logical_and.reduce([np.ones(self.failed.shape, bool), *every]), ~self.failed))
 
     def has_link(self, name: str) -> bool:
-        """Tell whether it finds a link, its velocities and accelerations."""
+        """Return whether it reproduces a link's pose, velocities and accelerations."""
         link, order = self.program.motion.links[name], self.program.order
         wrapped = self.program.mechanism.block.world[name].theta is None
         nodes = [node for moved in self.program.links[name] for node in moved]
@@ -213,7 +210,7 @@ class ReproducedValues:
         )
 
     def has_output(self, output: ProgramOutput, nodes: Sequence[int]) -> bool:
-        """Tell whether it finds an output."""
+        """Return whether it reproduces an output."""
         values = np.broadcast_to(quantity(self.program.motion, output.name).values, self.program.motion.shape)
         parts = (values,) if len(nodes) == 1 else (values.real, values.imag)
         found = self.program.own(nodes, self.chosen) if self.closes else []
@@ -236,10 +233,10 @@ class ReproducedValues:
 
 
 def followed_quantities(motion: Motion_of_kinematics, outputs: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the names of the quantities behind the figures of a report.
+    """Return the names of the quantities from which a page computes the figures of a report.
 
-    They are those of its outputs, the rates of these, transmission indices and Coriolis accelerations, as far as a
-    program can tell them. Of a vector it is the whole vector.
+    They are its outputs, their rates, transmission indices and Coriolis accelerations, as far as a program computes
+    them; of a vector the whole vector.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -260,7 +257,7 @@ def _quantity_names(motion: Motion_of_kinematics, outputs: Sequence[str]) -> Ite
 
 
 def _is_recorded(motion: Motion_of_kinematics, name: str) -> bool:
-    """Tell whether it is arithmetic of one pose."""
+    """Return whether a quantity is arithmetic of one pose."""
     try:
         output_of(motion, name)
     except CompoundkinError:

@@ -45,11 +45,11 @@ from compoundkin.view.sketch.shapes import (
 )
 from compoundkin.view.sketch.traced_numbers import LEAST, Traced, traced, untraced
 
-# What a shape is drawn anew as; the numbers that it takes follow in the order of `_kind`.
+# How a page draws a shape; its numbers follow in the order of `_kind`.
 LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"
 # Points of a link that are less than this off a line, in parts of its length, are a bar.
 FLAT = 0.02
-# What the pose of a link is told by: the place of its origin, the unit vector of its angle.
+# The inputs of a link's pose: the place of its origin, the unit vector of its angle.
 POSE = "pose"
 PLACE, TURN = ("x", "y"), ("cos", "sin")
 
@@ -57,7 +57,7 @@ PLACE, TURN = ("x", "y"), ("cos", "sin")
 def live_sketch(
     sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str], sketch: MovingSketch
 ) -> dict[str, Any] | None:
-    """Return the data of a live sketch. They say why where it cannot be live; None is that of a single pose."""
+    """Return the data of a live sketch, or why it cannot be live; None for a single pose."""
     live = live_data(sample, chosen, links, outputs)
     if live is None or "why" in live:
         return live
@@ -66,7 +66,7 @@ def live_sketch(
 
 
 def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
-    """Return what draws the parts of a sketch anew. `names` are those of the dimensions that change."""
+    """Return what a page needs to draw a sketch for other dimensions; `names` are those that change."""
     motion = motion_of_design(sketch.motion, sketch.design)
     known = StatedDimensions(motion.mechanism, motion.inputs.ends).known
     free = tuple(known[name] for name in names)
@@ -78,14 +78,14 @@ def redrawn_parts(sketch: MovingSketch, names: Sequence[str]) -> dict[str, Any]:
 
 
 def _label_part(painter: Painter, part: MovingPart) -> MovingPart:
-    """A label at the point that it is seen from; a number keeps its place on its bar or plate."""
+    """Return a label at its point; a number keeps its place on its bar or plate."""
     own = painter.scene.points[part.link]
     at = own[part.letter] if part.letter else _place_by_points([*own.values()], part.at) if own else part.at
     return MovingPart(part.link, at, (), False)
 
 
 def _place_by_points(points: Sequence[Any], at: complex) -> Any:
-    """A place by the points of its link: by three of a plate, else along and beside the line of two."""
+    """Return a place by the points of its link: by three of a plate, else along and beside the line of two."""
     one, other = max(((p, q) for p in points for q in points), key=lambda ends: abs(untraced(ends[1] - ends[0])))
     line, off = untraced(other - one), at - untraced(one)
     if not abs(line) > 0:
@@ -128,7 +128,7 @@ class RedrawnParts:
 
     @cached_property
     def wanted(self) -> tuple[int, ...]:
-        """All nodes that are asked for."""
+        """All nodes that the page evaluates."""
         shapes = [node for _, found in self.drawn for *_, lines in found for line in lines for node in line]
         return (*dict.fromkeys([*(node for at, _ in self.drawn for node in at), *shapes]),)
 
@@ -164,7 +164,7 @@ class RedrawnParts:
 
 
 def _kind(shape: Shape) -> tuple[str, Sequence[Sequence[Number]]]:
-    """What a shape is drawn anew as, and its numbers line by line."""
+    """Return how a page draws a shape, and its numbers line by line."""
     if isinstance(shape, CircleShape):
         return ROUND, [[shape.centre, shape.radius]]
     if isinstance(shape, ArcShape):
@@ -181,9 +181,9 @@ def _kind(shape: Shape) -> tuple[str, Sequence[Sequence[Number]]]:
 
 
 def traced_scene(scene: Scene, motion: Motion, free: Sequence[FreeDimension]) -> tuple[Scene, OperationGraph]:
-    """Return a scene in numbers with notes, and the graph of these.
+    """Return a scene with traced numbers, and the graph of their operations.
 
-    Inputs are the dimensions that are free, and the poses of the links along the motion, which is of one design.
+    Inputs are the free dimensions, and the poses of the links along the motion, which is of one design.
     """
     graph = OperationGraph()
     geometry = recorded_geometry(graph, motion.mechanism.geometry, free)
@@ -199,7 +199,7 @@ def traced_scene(scene: Scene, motion: Motion, free: Sequence[FreeDimension]) ->
 
 
 def _traced(graph: OperationGraph, value: Number, recorded: Any) -> Any:
-    """A number with its note; the mechanism's own number where it cannot change."""
+    """Return a traced number; the mechanism's own number where it cannot change."""
     if value is None or np.ndim(value):
         return value
     note = recorded.c[0] if isinstance(recorded, Series) else recorded
@@ -214,7 +214,7 @@ def _traced_ends(graph: OperationGraph, own: Ends, recorded: Ends) -> Ends:
 
 
 def _traced_poses(graph: OperationGraph, link: str, pose: Pose) -> Pose:
-    """The poses of a link along the motion. Those of the frame are no inputs, nor are counted turns."""
+    """Return the poses of a link along the motion as inputs; those of the frame are constant."""
     if link == FRAME:
         return FIXED
     z, u = (
@@ -225,11 +225,10 @@ def _traced_poses(graph: OperationGraph, link: str, pose: Pose) -> Pose:
 
 
 def handle_data(scene: Scene, numbers: Mapping[str, int]) -> dict[str, Any]:
-    """Return the points and drivers that a pointer can drag. `numbers` are the indices of links on the page.
+    """Return the points and drivers that a pointer can drag; `numbers` are the indices of links on the page.
 
-    Of a point its name and `links`, those that carry another point too: its coordinates change on these, the others
-    follow it. `on` is the link along whose guide it stays. Of a driver its name, its two links, its point, whether it
-    turns.
+    A point has a name and `links`, those with another point too: its coordinates change on these, the others follow it.
+    `on` is the link along whose guide it stays. A driver has a name, two links, a point, and whether it turns.
     """
     points = [found for letter in scene.letters if (found := _point(scene, numbers, letter)) is not None]
     drivers = [
@@ -247,7 +246,7 @@ def handle_data(scene: Scene, numbers: Mapping[str, int]) -> dict[str, Any]:
 
 
 def _point(scene: Scene, numbers: Mapping[str, int], letter: str) -> dict[str, Any] | None:
-    """A point that can be dragged. None where everything holds it: a driver that shifts or leads it, two guides."""
+    """Return a point that can be dragged; None where a driver or two guides hold it."""
     carriers = scene.mechanism.carriers[letter]
     guides = list(_guides(scene, letter))
     led = any(letter == lead.point for lead in scene.mechanism.prescribed_motions.values())
@@ -260,7 +259,7 @@ def _point(scene: Scene, numbers: Mapping[str, int], letter: str) -> dict[str, A
 
 
 def _guides(scene: Scene, letter: str) -> Iterator[tuple[str, str]]:
-    """The links along whose guides a point stays: guides that are there before the links that slide on them."""
+    """Yield the links along whose guides a point stays: those solved before the links that slide on them."""
     driven = {step.pair.name: step.link for step in scene.driven}
     for pair in scene.structure.pairs:
         on, link = pair.members[0], pair.members[1]

@@ -28,7 +28,7 @@ LINKS, POINTS = "links", "points"
 _HEAD = ("format", *(key.name for key in HEAD), GRAVITY.name)
 _IN_DEGREES = ("angle", "turn", "sweep")
 _ENDS = ("from", "to")
-# Tables that choose the configuration: where a mechanism is changed they say which one it is in.
+# The table of assembly modes: a changed mechanism keeps the configuration of the page.
 _MODES = "modes"
 # A text in pieces: texts, indices of dimensions, and lists: of one index where degrees are written, of a letter and
 # 0 or 1 where x or y of a point is.
@@ -53,10 +53,10 @@ def mechanism_template(
 ) -> list[Any]:
     r"""Return a mechanism's file in pieces, for other values of these dimensions.
 
-    A piece is text, or what the file says of one link or pair: `own` unless one of the dimensions `of` it has changed,
-    any of all where `of` is null; then `changed`, whose numbers are indices of dimensions, and whose lists of one
-    number those that are written in degrees. Together they describe what `mechanism_with` makes, in these `modes`;
-    `drawn` as it stands on the page, where modes have no signs.
+    A piece is text, or the text of one link or pair: `own` unless one of its dimensions `of` has changed, any of all
+    where `of` is null; else `changed`, in which numbers are indices of dimensions, and lists of one number those in
+    degrees. Together they describe what `mechanism_with` makes, in these `modes`; `drawn` as it stands on the page,
+    where modes have no signs.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -84,7 +84,7 @@ def _drawing(letters: Sequence[str]) -> Pieces:
 
 
 def _owners(stated: StatedDimensions, found: Sequence[FreeDimension]) -> dict[Owner, list[int] | None]:
-    """The dimensions of each owner. None for what reads numbers off the drawing, which any change states."""
+    """Return the dimensions of each owner; None for numbers from the drawing, which any change replaces."""
     owners: dict[Owner, list[int] | None] = {}
     for index, one in enumerate(found):
         owners[_owner(one)] = [*(owners.get(_owner(one)) or ()), index]
@@ -112,14 +112,14 @@ class _DocumentWithHoles:
         return {name: (table, k) for table, names in tables.items() for k, name in enumerate(names)}
 
     def hold_point(self, one: FreeDimension, index: int) -> None:
-        """Put a hole in the place of a coordinate; the point may be written in another form."""
+        """Put a hole in the place of a coordinate, in whatever form the point is written."""
         points = self.document[LINKS][one.owner][POINTS]
         at, held = complex(self.mechanism.geometry.points[one.owner][one.word]), points[one.word]
         x, y = held if isinstance(held, list) else (plain(at.real), plain(at.imag))
         points[one.word] = [Hole(index), y] if one.part == AXES[0] else [x, Hole(index)]
 
     def hold_number(self, one: FreeDimension, index: int) -> None:
-        """Put a hole in the place of a pair's number, which may be left out where it is the default."""
+        """Put a hole in the place of a pair's number, which is missing where it is the default."""
         table, place = self.places[one.owner]
         entry, item = self.document[table][place], self.items[one.owner]
         key = next(key for key in item.keys if key.name == one.word)
@@ -158,7 +158,7 @@ def _pieces(
 
 
 def _text(table: str, value: Any) -> str:
-    """Return a table as text, nothing of an empty one."""
+    """Return a table as text, "" for an empty one."""
     return toml_text.dumps({table: value}) if value else ""
 
 
@@ -192,7 +192,7 @@ def _merged(pieces: Iterator[Any]) -> list[Any]:
 
 
 def configuration_modes(motion: Motion) -> tuple[list[Mode], bool]:
-    """Return the modes of groups with signs, and whether others need a drawing. The motion has one design.
+    """Return the modes of groups with signs, and whether other groups need a drawing; the motion has one design.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve

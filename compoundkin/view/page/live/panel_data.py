@@ -18,19 +18,19 @@ from compoundkin.view.page.live.mechanism_template import configuration_modes, m
 
 # Of so many pivots of the frame every distance is a row; of more those from the first.
 FEW_PIVOTS = 3
-# Numbers of pairs that are lengths, whatever their keys say, and what the two of them are called.
+# Numbers of pairs that are lengths, and their titles.
 LENGTHS = {"radii": ("radius of {}", "radius of {}"), "stroke": ("least length", "greatest length")}
 ENDS = {"reach": ("from", "to")}
-# Those that cannot be negative or nothing.
+# Positive numbers.
 SIZES = ("radii", "stroke", "radius")
 
 
 def panel_data(stated: StatedDimensions, names: Sequence[str]) -> dict[str, Any]:
     """Return the rows of a panel by links and pairs.
 
-    A row of a link is its kind, the letters that it is about, and whether it is shown only once it has changed:
-    "length" from a point to another one, which is moved; "angle" at the first from the second to the third; "turn" of
-    the line through both in the link's own frame; "x" and "y". `fixed` are points that cannot be changed, by link.
+    A row of a link is its kind, its letters, and whether it appears only after a change: "length" from a point to
+    another one, which moves; "angle" at the first from the second to the third; "turn" of the line through both in the
+    link's own frame; "x" and "y". `fixed` are points that cannot change, by link.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -45,7 +45,7 @@ def panel_data(stated: StatedDimensions, names: Sequence[str]) -> dict[str, Any]
 def template_data(stated: StatedDimensions, names: Sequence[str], motion: Motion) -> list[Any] | dict[str, str]:
     """Return the mechanism's file in pieces, or why it cannot be written.
 
-    Changed, it is to move in the configuration of the motion, which other dimensions alone might not choose.
+    It fixes the configuration of the motion, as changed dimensions alone might choose another.
     """
     try:
         return mechanism_template(stated, names, *configuration_modes(motion))
@@ -154,7 +154,7 @@ class DimensionRows:
 
 
 def _number_title(one: FreeDimension, item: Any) -> str:
-    """What a number is called."""
+    """Return the title of a number."""
     words = {**LENGTHS, **ENDS}.get(one.word)
     if one.part and words:
         return words[int(one.part)].format(item.members[int(one.part)])
@@ -162,6 +162,6 @@ def _number_title(one: FreeDimension, item: Any) -> str:
 
 
 def _unit_and_size(one: FreeDimension, stated: StatedDimensions) -> dict[str, Any]:
-    """The unit of a number, and whether it is a size, greater than nothing."""
+    """Return the unit of a number, and whether it must be positive."""
     unit = unit_of(stated.mechanism.unit, "length") if one.word in LENGTHS else stated.unit(one)
     return {"unit": unit, "size": one.word in SIZES and stated.own(one) > 0}
