@@ -454,11 +454,11 @@ def extent(scene: Scene) -> Iterator[Number]:
         mark = seen.mark
         if isinstance(mark, Wheel):
             rim = mark.radius * np.array([1, 1j, -1, -1j])
-            yield scene.at(seen.members[mark.member], mark.at) + rim
+            yield scene.at(seen.link, mark.at) + rim
         elif isinstance(mark, Groove | Strap | Outline):
-            yield scene.here[seen.members[mark.member]].at(mark.line).c[0]
+            yield scene.here[seen.link].at(mark.line).c[0]
         elif isinstance(mark, Track):
-            yield scene.here[seen.members[mark.member]].at(mark.at + mark.along * np.array([mark.low, mark.high])).c[0]
+            yield scene.here[seen.link].at(mark.at + mark.along * np.array([mark.low, mark.high])).c[0]
         elif isinstance(mark, Sliding):
             way = np.array([mark.low, mark.high])
             if guides.is_rod(seen):

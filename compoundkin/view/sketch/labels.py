@@ -118,7 +118,7 @@ def _number(painter: Painter, name: str) -> Label:
     if not corners:
         return label_around(key, painter.middle, half, 0.0)
     if len(corners) == 1:
-        inside = [s for s in painter.scene.pair_marks if isinstance(s.mark, Wheel) and s.members[s.mark.member] == name]
+        inside = [s for s in painter.scene.pair_marks if isinstance(s.mark, Wheel) and s.link == name]
         if not inside:
             return label_around(key, corners[0], half, 10.0, -1 + 1j)
         radius = max(float(s.mark.radius) for s in inside if isinstance(s.mark, Wheel)) * painter.window.scale

@@ -77,6 +77,10 @@ class Painter:
         """Return where a point of a link is on the picture."""
         return as_place(self.window.at(self.scene.at(link, p)))
 
+    def places(self, link: str) -> list[complex]:
+        """Return where the points of a link are on the picture."""
+        return [self.place(link, p) for p in self.scene.points[link].values()]
+
     def pin(self, link: str, letter: str) -> complex:
         """Return where a letter is on the picture. A link that carries it says so, else any that does."""
         own = self.scene.points[link]
@@ -131,8 +135,7 @@ class Painter:
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
         """Draw a bar from a place to its link's nearest point. It is drawn where the place is none of them."""
-        own = [self.place(link, p) for p in self.scene.points[link].values()]
-        nearest = min(own, key=lambda p: abs(p - foot), default=foot)
+        nearest = min(self.places(link), key=lambda p: abs(p - foot), default=foot)
         if link != FRAME and abs(nearest - foot) > PIN:
             yield Laid(Layer.BAR, Polyline((nearest, foot), self.style("bar", link)), link)
 

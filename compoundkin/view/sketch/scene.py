@@ -182,6 +182,11 @@ class PairMark:
     mark: Mark
     members: tuple[str, ...]
 
+    @property
+    def link(self) -> str:
+        """The link that carries the mark; of a slide that with the guide."""
+        return self.members[0 if isinstance(self.mark, Sliding) else self.mark.member]
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -381,9 +386,9 @@ def _inside(scene: Scene, link: str, own: Number) -> Iterator[Number]:
     """For each disc of a link, which of its points are within it."""
     for seen in scene.pair_marks:
         mark = seen.mark
-        if isinstance(mark, Wheel) and seen.members[mark.member] == link and not mark.is_ring:
+        if isinstance(mark, Wheel) and seen.link == link and not mark.is_ring:
             yield np.abs(own - complex(mark.at)) <= float(mark.radius) * (1.0 + ON_RIM)
-        elif isinstance(mark, Outline) and seen.members[mark.member] == link and mark.closed and not mark.is_hollow:
+        elif isinstance(mark, Outline) and seen.link == link and mark.closed and not mark.is_hollow:
             # a closed line goes once around a point within it
             line = np.append(mark.line, mark.line[:1])[:, None] - own
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -405,7 +410,7 @@ def smallest_wheel(scene: Scene, letter: str) -> float:
             float(seen.mark.radius)
             for seen in scene.pair_marks
             if isinstance(seen.mark, Wheel)
-            and (link := seen.members[seen.mark.member]) in links
+            and (link := seen.link) in links
             and abs(complex(seen.mark.at) - complex(scene.points[link][letter])) <= ON_RIM * float(seen.mark.radius)
         ),
         default=np.inf,

@@ -57,7 +57,7 @@ def link_dimensions(painter: Painter) -> list[Dimension]:
         if isinstance(seen.mark, Sliding) and seen.members[0] in shown:
             found += _of_guide(painter, seen, seen.mark)
         elif isinstance(seen.mark, Wheel):
-            link, radius = seen.members[seen.mark.member], float(seen.mark.radius)
+            link, radius = seen.link, float(seen.mark.radius)
             wheel = link, complex(seen.mark.at), radius
             if all(link != o[0] or abs(wheel[1] - o[1]) + abs(radius - o[2]) > _nothing(painter) for o in wheels):
                 wheels.append(wheel)

@@ -18,6 +18,7 @@ from compoundkin.view.sketch.painter import Laid, Layer, Painter, guide_line, sl
 from compoundkin.view.sketch.scene import PairMark
 from compoundkin.view.sketch.shapes import (
     HATCH,
+    HEAD,
     ArcShape,
     CircleShape,
     Polygon,
@@ -30,7 +31,6 @@ from compoundkin.view.sketch.shapes import (
     rectangle_corners,
     unit_direction,
 )
-from compoundkin.view.sketch.shapes import HEAD as HEAD_of_shapes
 from compoundkin.view.sketch.sketch_style import BLOCK, PIN, STUD, style_of
 from compoundkin.view.sketch.traced_numbers import as_place
 from compoundkin.view.sketch.wheel_shapes import (
@@ -47,20 +47,20 @@ from compoundkin.view.sketch.wheel_shapes import (
 
 # A groove ends so far beyond the middle of a pin at its end.
 GROOVE_END = 7.0
-# Wheels that differ by less than this, in picture units, are one.
-SAME_WHEEL = 1.0
+# Wheels, bores and points that differ by less than this, in picture units, are one.
+SAME = 1.0
 
 
 def pair_marks(painter: Painter) -> Iterator[Laid]:
     """Return all marks that are shown, a wheel that several pairs share once."""
     drawn: list[tuple[str, complex, float]] = []
     for seen in painter.scene.pair_marks:
-        if not isinstance(seen.mark, Sliding) and not painter.shows(seen.members[seen.mark.member]):
+        if not isinstance(seen.mark, Sliding) and not painter.shows(seen.link):
             continue
         if isinstance(seen.mark, Wheel):
-            link = seen.members[seen.mark.member]
+            link = seen.link
             middle, radius = painter.place(link, seen.mark.at), float(seen.mark.radius * painter.window.scale)
-            if any(link == o[0] and abs(middle - o[1]) < SAME_WHEEL and abs(radius - o[2]) < SAME_WHEEL for o in drawn):
+            if any(link == o[0] and abs(middle - o[1]) < SAME and abs(radius - o[2]) < SAME for o in drawn):
                 continue
             drawn.append((link, middle, radius))
         painted = PAINTED.get(type(seen.mark))
@@ -82,7 +82,7 @@ def _slide(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Laid]:
 
 
 def _groove(painter: Painter, seen: PairMark, mark: Groove) -> Iterator[Laid]:
-    link = seen.members[mark.member]
+    link = seen.link
     found = geneva_of(painter.scene, seen) if painter.only is None else None
     if found is not None:
         yield from geneva_wheel(painter, found)
@@ -100,13 +100,13 @@ def _groove(painter: Painter, seen: PairMark, mark: Groove) -> Iterator[Laid]:
         for place, inner in ((line[0], line[1]), (line[-1], line[-2]))
     ]
     yield from stops(painter, link, (ends[0], line[0], line[-1], ends[1]), mark.stops, layer)
-    own = [painter.place(link, p) for p in painter.scene.points[link].values()]
+    own = painter.places(link)
     if link != FRAME and not plate and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
 
 
 def _stud(painter: Painter, seen: PairMark, mark: Stud) -> Iterator[Laid]:
-    link = seen.members[mark.member]
+    link = seen.link
     if is_edge(painter, seen):
         yield from knife_edge(painter, seen, mark)
     else:
@@ -114,7 +114,7 @@ def _stud(painter: Painter, seen: PairMark, mark: Stud) -> Iterator[Laid]:
 
 
 def _strap(painter: Painter, seen: PairMark, mark: Strap) -> Iterator[Laid]:
-    link = seen.members[mark.member]
+    link = seen.link
     yield Laid(Layer.BAR, Polyline(painter.line(link, mark.line), "strap"), link)
 
 
@@ -131,11 +131,9 @@ PLAY = 2.0
 # How much of it, in parts of its length, is out of its bore at its nearest place.
 SKIRT = 0.4
 # The head of a bore is so far beyond the piston's crown at its last place.
-HEAD = 6.0
+CROWN = 6.0
 # Two rings are so far below the crown.
 RINGS = 4.0, 7.5
-# Bores that differ by less than this, in picture units, are one.
-SAME_BORE = 1.0
 # A rod that stands more across the bore than this, in parts of its length, is pinned to a stem outside.
 ACROSS = 0.5
 
@@ -182,7 +180,7 @@ def piston(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Laid]:
     off = stroke + long if is_stem else 0.0 * stroke
     ends = (mark.low, mark.high) if sense > 0 else (mark.high, mark.low)
     near, far = (painter.place(FRAME, mark.at + mark.along * s) for s in ends)
-    mouth, head = near + e * (off - long * (0.5 - SKIRT)), far + e * (off + (long / 2.0 + HEAD))
+    mouth, head = near + e * (off - long * (0.5 - SKIRT)), far + e * (off + (long / 2.0 + CROWN))
     across = e * (wide / 2.0 + PLAY) * 1j
     corners = mouth + across, head + across, head - across, mouth - across
     if _has_bore(painter, seen, mark):
@@ -204,7 +202,7 @@ def _has_bore(painter: Painter, seen: PairMark, mark: Sliding) -> bool:
     seen_before = painter.scene.pair_marks[: painter.scene.pair_marks.index(seen)]
     others = [_ends(painter, one.mark) for one in seen_before if isinstance(one.mark, Sliding) and is_piston(one)]
     own = _ends(painter, mark)
-    return not any(abs(own[0] - low) < SAME_BORE and abs(own[1] - high) < SAME_BORE for low, high in others)
+    return not any(abs(own[0] - low) < SAME and abs(own[1] - high) < SAME for low, high in others)
 
 
 def _ends(painter: Painter, mark: Sliding) -> list[complex]:
@@ -238,7 +236,7 @@ AROUND = 16.0
 def plate_around(painter: Painter, link: str, line: Sequence[complex]) -> tuple[complex, ...]:
     """Return the corners of a plate around a groove. There are none where the link has points outside it."""
     e = painter.along(link, 1 + 0j)
-    own, groove = (np.array([np.conjugate(e) * p for p in ps], complex) for ps in (_places(painter, link), line))
+    own, groove = (np.array([np.conjugate(e) * p for p in ps], complex) for ps in (painter.places(link), line))
     low = complex(groove.real.min(), groove.imag.min()) - AROUND * (1 + 1j)
     high = complex(groove.real.max(), groove.imag.max()) + AROUND * (1 + 1j)
     beside = np.abs((own - low).real + (own - high).real) > (high - low).real
@@ -247,10 +245,6 @@ def plate_around(painter: Painter, link: str, line: Sequence[complex]) -> tuple[
         return ()
     corners = (low, complex(high.real, low.imag), high, complex(low.real, high.imag))
     return tuple(complex(e * corner) for corner in corners)
-
-
-def _places(painter: Painter, link: str) -> list[complex]:
-    return [painter.place(link, p) for p in painter.scene.points[link].values()]
 
 
 PAINTED: dict[type[Mark], Callable[[Painter, PairMark, Any], Iterator[Laid]]] = {
@@ -273,8 +267,6 @@ def side_clearance(painter: Painter, seen: PairMark) -> float:
 
 # A guide that leaves a point at less than this angle from a bar, radians, makes a wedge of both; and at more than this.
 SHARP, FLAT = 0.8, 0.1
-# Points that are nearer to each other than this are one.
-SAME_POINT = 1.0
 
 
 def wedge_ends(painter: Painter, link: str) -> tuple[complex, ...]:
@@ -282,10 +274,10 @@ def wedge_ends(painter: Painter, link: str) -> tuple[complex, ...]:
     found: list[complex] = []
     for seen in painter.scene.pair_marks:
         if isinstance(seen.mark, Sliding) and seen.members[0] == link != FRAME and not painter.is_rod(seen):
-            own = _places(painter, link)
+            own = painter.places(link)
             foot, ends = painter.place(link, seen.mark.at), guide_line(painter, link, seen.mark)
             far = max(ends, key=lambda end: abs(end - foot))
-            others = [p - foot for p in own if abs(p - foot) > SAME_POINT]
+            others = [p - foot for p in own if abs(p - foot) > SAME]
             angles = [abs(np.angle((far - foot) / way)) for way in others]
             if len(others) == 1 and len(own) == 2 and FLAT < angles[0] < SHARP:
                 found += ends
@@ -331,7 +323,7 @@ def _slide_direction(painter: Painter, seen: PairMark, link: str) -> complex:
 
 
 def prescribed_point_arrow(painter: Painter, lead: PrescribedMotion) -> Iterator[Laid]:
-    """Draw an arrow beside a led point, or around a turned link's."""
+    """Draw an arrow beside a prescribed point, or around a turned link's."""
     scene = painter.scene
     speeds = {word: scene.driver_value(name, 1) for word, name in lead.drivers.items()}
     link, letter = lead.link, lead.point
@@ -358,7 +350,7 @@ def turning_arrow(painter: Painter, step: DrivenPair, at: complex, sense: float,
     start = toward * np.exp(1j * way * 0.45)
     stop = start * np.exp(1j * way * TURN)
     tip = at + stop * TURN_RADIUS
-    back = HEAD_of_shapes / TURN_RADIUS
+    back = HEAD / TURN_RADIUS
     end = at + stop * np.exp(-1j * way * back * 0.8) * TURN_RADIUS
     heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
     arc = ArcShape(at + start * TURN_RADIUS, as_place(end), TURN_RADIUS, way > 0, "drive")

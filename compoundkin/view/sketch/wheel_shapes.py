@@ -46,7 +46,7 @@ def wheel_shapes(painter: Painter, seen: PairMark, mark: Wheel) -> Iterator[Laid
     if mark.is_ring:
         yield from _ring(painter, seen, mark)
         return
-    link = seen.members[mark.member]
+    link = seen.link
     middle, radius = painter.place(link, mark.at), as_length(mark.radius * painter.window.scale)
     has_teeth = bool(mark.teeth) and radius > TINY
     # the body of a gear ends at the roots of its teeth
@@ -54,8 +54,11 @@ def wheel_shapes(painter: Painter, seen: PairMark, mark: Wheel) -> Iterator[Laid
     yield Laid(Layer.WHEEL, CircleShape(middle, face, painter.style("plate", link)), link)
     if has_teeth:
         yield from _teeth(painter, link, mark)
-    if is_roller(painter, seen):
-        yield from _axle(painter, seen, middle)
+    # of a roller on a profile it is of no interest how it is turned; its pin is drawn where no other link has one
+    if any(one.pair is seen.pair and isinstance(one.mark, Outline) for one in painter.scene.pair_marks):
+        letter = seen.pair.letters[0]
+        if len(painter.scene.mechanism.carriers[letter]) == 1:
+            yield Laid(Layer.PIN, CircleShape(middle, PIN, "pin ink"), seen.members[1], letter)
         return
     if radius > WITH_HUB * HUB:
         yield Laid(Layer.WHEEL, CircleShape(middle, HUB, painter.style("line", link)), link)
@@ -65,21 +68,9 @@ def wheel_shapes(painter: Painter, seen: PairMark, mark: Wheel) -> Iterator[Laid
         yield Laid(Layer.WHEEL, Polyline((middle + inner, middle + e * face), painter.style("line", link)), link)
 
 
-def is_roller(painter: Painter, seen: PairMark) -> bool:
-    """Return whether a wheel rolls on a profile. How it is turned is then of no interest."""
-    return any(one.pair is seen.pair and isinstance(one.mark, Outline) for one in painter.scene.pair_marks)
-
-
-def _axle(painter: Painter, seen: PairMark, middle: complex) -> Iterator[Laid]:
-    """Draw the pin of a roller that no other link is pinned to."""
-    link, letter = seen.members[1], seen.pair.letters[0]
-    if len(painter.scene.mechanism.carriers[letter]) == 1:
-        yield Laid(Layer.PIN, CircleShape(middle, PIN, "pin ink"), link, letter)
-
-
 def _ring(painter: Painter, seen: PairMark, mark: Wheel) -> Iterator[Laid]:
     """Draw a wheel from inside: its pitch circle and teeth, and the rim behind them."""
-    link = seen.members[mark.member]
+    link = seen.link
     middle, radius = painter.place(link, mark.at), as_length(mark.radius * painter.window.scale)
     root = radius + TOOTH if mark.teeth else radius
     yield Laid(Layer.WHEEL, CircleShape(middle, root, painter.style("line", link)), link)
@@ -108,7 +99,7 @@ def _teeth(painter: Painter, link: str, mark: Wheel) -> Iterator[Laid]:
 
 def track_shapes(painter: Painter, seen: PairMark, mark: Track) -> Iterator[Laid]:
     """Draw a road, a flat face, or a rack. A rack is behind the wheel that rolls on it."""
-    link = seen.members[mark.member]
+    link = seen.link
     e = painter.along(link, mark.along)
     low, high = (mark.low, mark.high) if link == FRAME else (np.minimum(mark.low, 0.0), np.maximum(mark.high, 0.0))
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in (low, high))
@@ -151,7 +142,7 @@ OUT = 10.0
 
 def profile_shapes(painter: Painter, seen: PairMark, mark: Outline) -> Iterator[Laid]:
     """Draw a profile. A disc with its hub, a ring around it, or an open line."""
-    link = seen.members[mark.member]
+    link = seen.link
     line = painter.line(link, mark.line)
     if mark.is_hollow:
         middle = complex(np.mean(line))
@@ -166,7 +157,7 @@ def profile_shapes(painter: Painter, seen: PairMark, mark: Outline) -> Iterator[
                 yield Laid(Layer.WHEEL, CircleShape(shaft, HUB, painter.style("line", link)), link)
     else:
         yield Laid(Layer.WHEEL, Polyline(line, painter.style("line", link)), link)
-    own = [painter.place(link, p) for p in painter.scene.points[link].values()]
+    own = painter.places(link)
     if not mark.closed and own:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
 
@@ -180,9 +171,8 @@ def guiding_profile(scene: Scene, slide: PairMark) -> PairMark | None:
     if guide != FRAME:
         return None
     for one in scene.pair_marks:
-        is_profile = isinstance(one.mark, Outline) or (isinstance(one.mark, Groove) and len(one.mark.line) > 2)
-        if is_profile:
-            touching = next(link for k, link in enumerate(one.members[:2]) if k != one.mark.member)  # type: ignore[union-attr]
+        if isinstance(one.mark, Outline) or (isinstance(one.mark, Groove) and len(one.mark.line) > 2):
+            touching = next(link for k, link in enumerate(one.members[:2]) if k != one.mark.member)
             shared = slide.pair.letters[0] == one.pair.letters[0]
             if touching == block or (shared and block in scene.mechanism.carriers[one.pair.letters[0]]):
                 return one
@@ -208,7 +198,7 @@ def follower_stem(painter: Painter, slide: PairMark, mark: Sliding, cam: PairMar
 
 def knife_edge(painter: Painter, seen: PairMark, mark: Stud) -> Iterator[Laid]:
     """Draw the edge of a follower on a disc. Its flanks go away from the cam."""
-    link = seen.members[mark.member]
+    link = seen.link
     tip = painter.place(link, mark.at)
     own = [painter.place(link, p) - tip for p in painter.scene.points[link].values()]
     slide = next((s for s in painter.scene.pair_marks if isinstance(s.mark, Sliding) and s.members[1] == link), None)
@@ -234,13 +224,12 @@ def _profile_of(painter: Painter, seen: PairMark) -> PairMark:
 
 def _shaft(painter: Painter, cam: PairMark) -> complex:
     """Where the cam's own first point is."""
-    link = cam.members[cam.mark.member]  # type: ignore[union-attr]
+    link = cam.link
     own = painter.scene.points[link]
-    return painter.place(link, next(iter(own.values()))) if own else complex(np.mean(_line(painter, cam)))
-
-
-def _line(painter: Painter, cam: PairMark) -> Number:
-    return painter.line(cam.members[cam.mark.member], cam.mark.line)  # type: ignore[union-attr]
+    if own:
+        return painter.place(link, next(iter(own.values())))
+    assert isinstance(cam.mark, Outline | Groove)
+    return complex(np.mean(np.array(painter.line(link, cam.mark.line))))
 
 
 def _radii(painter: Painter, cam: PairMark) -> list[float]:
@@ -256,7 +245,6 @@ FEWEST = 3
 HALF, WALL = 5.5, 6.0
 # Neither is more than this part of the crank's length, where the wheel is small or has many slots.
 PART = 0.2
-GENEVA_HUB = 9.0
 # The locking disc in parts of the crank's length, where there is room for it.
 LOCKING = 0.7
 
@@ -287,7 +275,7 @@ def geneva_of(scene: Scene, seen: PairMark) -> Geneva | None:
     stud = next((s for s in scene.pair_marks if s.pair is seen.pair and isinstance(s.mark, Stud)), None)
     if stud is None:
         return None
-    wheel, crank = seen.members[seen.mark.member], stud.members[stud.mark.member]  # type: ignore[union-attr]
+    wheel, crank = seen.link, stud.link
     axes = [_pivot(scene, link) for link in (wheel, crank)]
     if None in axes:
         return None
@@ -331,7 +319,7 @@ def geneva_wheel(painter: Painter, found: Geneva) -> Iterator[Laid]:
         (found.crank, disc_line(found, float(painter.window.scale)), found.pivot),
     ):
         yield Laid(Layer.WHEEL, Polygon(painter.line(link, line), painter.style("plate", link)), link)
-        yield Laid(Layer.WHEEL, CircleShape(painter.place(link, hub), GENEVA_HUB, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, CircleShape(painter.place(link, hub), HUB, painter.style("line", link)), link)
 
 
 def wheel_line(found: Geneva, scale: float) -> Number:

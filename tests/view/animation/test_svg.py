@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files import load, shipped_mechanisms
+from compoundkin.files import load
 from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.centre_pictures import TOGETHER
 from compoundkin.view.sketch.shapes import ArcShape, Band, CircleShape, Polygon, Polyline, Shape, Strokes
@@ -251,8 +251,7 @@ def test_a_long_motion_makes_no_larger_file_than_a_short_one() -> None:
     assert len(long) == 100
 
 
-# every other one: each takes a fifth of a second, and neighbours in the alphabet are often of one kind
-@pytest.mark.parametrize("name", shipped_mechanisms.shipped()[::2])
+@pytest.mark.parametrize("name", catalog.CHOSEN)
 def test_every_mechanism_moves(name: str) -> None:
     animation = ck.animate(catalog.motion(name))
     root = ET.fromstring(animation.svg)

@@ -106,6 +106,7 @@ def test_mistakes_are_explained(run: Run, args: tuple[str, ...], told: str) -> N
     assert not list(Path().iterdir())
 
 
+@pytest.mark.full
 def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     code = "\n".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
@@ -116,6 +117,7 @@ def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.Monkey
         assert Path(name).read_bytes().startswith(BEGINS[Path(name).suffix])
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("line", re.findall(r"^    compoundkin plot (.*)$", PAGE, re.MULTILINE))
 def test_the_commands_of_the_page_run(run: Run, line: str) -> None:
     found = run(*shlex.split(line.partition(" > ")[0]))

@@ -13,16 +13,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.files import load, shipped_mechanisms
+from compoundkin.files import load
 from compoundkin.model.elements import Link
 from compoundkin.view.notebook import MOST_LINKS
 from compoundkin.view.sketch.labels import ROOM, text_half
 from compoundkin.view.sketch.picture import NARROW
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, SMALL
+from tests import catalog
 
 GOLDEN = Path(__file__).parent / "golden"
-every_mechanism = pytest.mark.parametrize("name", shipped_mechanisms.shipped())
 SIZES = {"letter": LETTER, "number": SMALL, "centre-name": SMALL, "code": SMALL}
 
 
@@ -179,28 +179,23 @@ def test_one_design_of_several_is_shown() -> None:
 # --- the source ------------------------------------------------------------------------------------------
 
 
-@every_mechanism
-def test_the_source_is_small_well_formed_and_the_same_every_time(name: str) -> None:
-    source = drawn(name).svg
+@pytest.mark.parametrize("name", catalog.CHOSEN)
+def test_the_sketch_is_small_well_formed_on_its_paper_and_the_same_every_time(name: str) -> None:
+    picture = drawn(name)
+    source = picture.svg
     root = ET.fromstring(source)
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
     assert root.find("{http://www.w3.org/2000/svg}title") is not None
     assert "nan" not in source.lower()
     assert "inf" not in source.replace("at infinity", "").lower()
     assert len(source) < 20_000
-    # drawn anew of every fourth: a fifth of a second each
-    if name in shipped_mechanisms.shipped()[::4]:
-        assert ck.draw(load(name)).svg == source
-
-
-@every_mechanism
-def test_everything_is_on_the_paper(name: str) -> None:
-    picture = drawn(name)
+    assert ck.draw(load(name)).svg == source
     points = np.array([point for shape in picture.shapes for point in _points(shape)])
     assert points.real.min() >= -1e-6
     assert points.real.max() <= picture.width + 1e-6
     assert points.imag.min() >= -1e-6
     assert points.imag.max() <= picture.height + 1e-6
+    assert not overlaps(picture)
 
 
 def _points(shape: object) -> list[complex]:
@@ -211,11 +206,6 @@ def _points(shape: object) -> list[complex]:
     if isinstance(shape, Text):
         return [shape.at]
     return list(getattr(shape, "points", ()))
-
-
-@every_mechanism
-def test_labels_do_not_overlap(name: str) -> None:
-    assert not overlaps(drawn(name))
 
 
 @given(st.floats(0.0, 6.28))
