@@ -186,8 +186,6 @@ def _place(motion: Motion, about: Any) -> complex:
 
 # The moments of floating links change with their masses: they are settled when they change by less than this part.
 CONVERGED, ROUNDS = 1e-13, 200
-
-
 # A moment of mass below this part of mass times size is none.
 NO_MOMENT = 1e-12
 

@@ -16,16 +16,10 @@ from compoundkin.kinematics.motion import Motion
 
 # Values (functions, n) at places (n,) of designs (n,).
 Integrand: TypeAlias = Callable[[Number, Number], Number]
-
-
 # Gauss's points on a piece: exact for polynomials of degree 15.
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
-
-
 # A piece is halved where both halves together differ from it by more than this part of the sum of all pieces' sizes.
 TRUSTED = 1e-13
-
-
 # So often at most: next to a limit position integrands grow without limit.
 HALVINGS = 12
 

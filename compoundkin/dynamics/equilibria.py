@@ -31,8 +31,6 @@ from compoundkin.model.mechanism import Mechanism
 
 # An effort that is below this part of what a single load asks is none: rounding of sums of some loads.
 ROUNDING = 1e-11
-
-
 # So many values of each of several drivers make the grid where none are given, of so many places at most.
 FEW, MANY = 9, 300
 
@@ -202,12 +200,8 @@ def _ahead(motion: Motion, places: Number, driver: str) -> Number:
 
 
 STABLE, UNSTABLE, SADDLE, INDIFFERENT = "stable", "unstable", "saddle", "indifferent"
-
-
 # To one side it returns, to the other it goes on.
 HALF_STABLE = "half-stable"
-
-
 # A stiffness below this part of what a load asks over a radian, or the mechanism's size, is none: what differences
 # leave of one.
 NO_STIFFNESS = 1e-8
@@ -232,12 +226,8 @@ def equilibrium_kind(stiffness: Number, scales: Number, sense: float = 0.0, stay
 
 # So many steps lead from a place of the grid to a critical point, or to none; a step is at most so many spacings.
 NEWTON_STEPS, LONGEST = 40, 2.0
-
-
 # Points nearer than this (radians, parts of the size) are one.
 SAME_POINT = 1e-6
-
-
 # Newton's last step leaves so many times the rounding of the efforts: slopes are differences.
 RESIDUAL_ROUNDING = 1e3
 
@@ -343,8 +333,6 @@ def _distinct(
 # Slopes are differences of fourth order over steps of so much (radians, parts of the size): what they leave out and
 # what rounding leaves in them are both some 1e-12 of the slope.
 STEP = 1e-3
-
-
 STENCIL = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 
 

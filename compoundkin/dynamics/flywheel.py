@@ -18,8 +18,6 @@ from compoundkin.kinematics.extremes import Places, between, zeros
 
 # Where the driver goes no further over a cycle than this part of its values' range, it only goes to and fro.
 NO_TRAVEL = 1e-9
-
-
 # Places of a motion, counted in poses, are one within this.
 ROUNDING = 1e-12
 
@@ -117,8 +115,6 @@ def _energies(course: DriverCourse, mean: Number, crossings: Places) -> tuple[Pl
 
 # Energies are known at so many places a pose; between them parabolas find the extremes.
 PARTS = 8
-
-
 # Halvings of the bracket in which the mean speed is found.
 HALVINGS = 60
 

@@ -19,12 +19,8 @@ from compoundkin.model.attributes import SHAKING_FORCE
 from compoundkin.model.geometry import FRAME
 
 SHAKING = f"{FRAME}.{SHAKING_FORCE}"
-
-
 # A driver whose way differs from a full turn by so many radians makes one: sums of steps round.
 FULL_TURN_ERROR = 1e-9
-
-
 # A cycle is sampled at twice as many places until no coefficient changes by more than this part of the largest.
 CONVERGED, FEWEST, MOST = 1e-12, 64, 4096
 

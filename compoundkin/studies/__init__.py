@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 __all__ = ["load_study", "study_schema"]
-
 # Where each word is, loaded when it is asked for: whoever needs a part of this room needs not all of it.
 _LATE = {"load_study": "study", "study_schema": "study_document"}
 

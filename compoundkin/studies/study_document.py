@@ -244,24 +244,14 @@ def _drives(study: DescribesStudy, angles: Mapping[str, bool]) -> dict[str, dict
 
 
 VALUES, *RATES = ("values", *OF_DRIVERS[1:])
-
-
 _WRITE: dict[str, Any] = {
     VALUES: exact_numbers.values,
     **dict.fromkeys(RATES, lambda value, _: exact_numbers.plain(value)),
     RATES[0]: exact_numbers.rate,
 }
-
-
 _NUMBER: dict[str, Any] = {"type": "number"}
-
-
 _PLACE = {"anyOf": [FRAGMENTS["angle"], FRAGMENTS["point"]]}
-
-
 _NUMBERS = {"type": "array", "items": _NUMBER}
-
-
 _WHOLE = {"type": "object", "additionalProperties": {"type": "integer"}, "minProperties": 1}
 
 
@@ -325,25 +315,15 @@ def _variation(needed: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
 
 
 FORMATS = (1,)
-
-
 FORMAT_DOC = f"The version of this file format; known: {', '.join(map(str, FORMATS))}."
-
-
 FORMAT, MECHANISM, DIMENSIONS, DRIVES, MODES = "format", "mechanism", "dimensions", "drives", "modes"
-
-
 OUTPUTS, SAMPLE, COUNT, SEED, TIME = "outputs", "sample", "count", "seed", "time"
-
-
 HEAD = (
     Key(OUTPUTS, "names", 'What is found of each design, such as "ram.stroke" or "G.position".', required=True),
     Key(COUNT, "whole", "How many designs."),
     Key(SEED, "whole", "Makes random samples repeatable.", default=0),
     Key(TIME, "times", "The times in seconds at which drivers with laws are solved."),
 )
-
-
 # What is read by rules of its own.
 OTHERS = {
     MECHANISM: "The path of its file, seen from this one; the name of a shipped mechanism; or its whole document.",
@@ -353,16 +333,10 @@ OTHERS = {
     MODES: "The assembly modes by links, 1 or -1; or the name of a configuration.",
     SAMPLE: f"Which designs: {', '.join(SAMPLES)}; or the number of levels of each dimension.",
 }
-
-
 # What drivers do, as mechanism files say it.
 DRIVEN = tuple(key for key in Drive.keys if key.name in (VALUES, *RATES))
-
-
 # What a variation says that has the unit of its dimension, degrees of an angle; all else has none.
 WITH_UNIT = ("low", "high", "centre", "within", "values", "loc", "scale")
-
-
 _HOW = "write { low = 40, high = 60 }, { centre = 50, within = 0.1 } or { values = [40, 50, 60] }"
 
 

@@ -82,11 +82,7 @@ def _unreadable(data: Any, where: str) -> Iterator[str]:
 
 
 FORMAT = 1
-
-
 HEAD = f"study{suffix_for('mechanism', 'json')}"
-
-
 _MORE = 3
 
 
@@ -244,11 +240,7 @@ class FolderStore(RunStore):
 
 
 _SUFFIX = suffix_for("table", "parquet")
-
-
 _PART = re.compile(rf"rows-(\d+)-(\d+){re.escape(_SUFFIX)}")
-
-
 # What a writer leaves that was killed; another may still be writing what is younger, in seconds.
 _LEFT, _YOUNG = ".*.tmp", 3600
 
@@ -363,8 +355,6 @@ class RowsInFolder(StudyRows):
 
 # What every part says of the study that it belongs to.
 STUDY = b"study"
-
-
 # So many rows are read at once where one is asked for.
 ROWS_TOGETHER = 8192
 

@@ -34,8 +34,6 @@ from compoundkin.studies.samples.variations import check_kinds
 from compoundkin.studies.study_program import ROW, StudyColumn, StudyProgram
 
 Outputs: TypeAlias = tuple[str, ...] | Mapping[str, Callable[..., Any] | None]
-
-
 # What a study is told besides its dimensions and outputs: how drivers move, and what functions read.
 PLAN_ARGUMENTS = ("values", *RATES, TIME, "modes", "given")
 
@@ -166,8 +164,6 @@ class StudyPlan:
 
 # What stands in the data for things that cannot be written: what they are called and what tells them from others.
 CALLED, CONTENT = "called", "content"
-
-
 # Samples give their columns to the dimensions in order, which tables of JSON do not keep for certain.
 ORDER = "order of dimensions"
 

@@ -29,11 +29,7 @@ from compoundkin.studies.samples.variation import Variation
 # Rows are computed in blocks that begin at a multiple of this many: whatever chunk asks, the arithmetic is the same to
 # the last bit.
 BLOCK = 4096
-
-
 ROW = "row"
-
-
 ColumnKind: TypeAlias = Literal["dimension", "output", "state"]
 
 
@@ -135,11 +131,7 @@ def _columns(name: str, values: Number) -> dict[str, Number]:
 
 
 STATES = (ASSEMBLED, "branch", "circuit", "order_defect", "reason")
-
-
 _, BRANCH, CIRCUIT, ORDER_DEFECT, REASON = STATES
-
-
 # What the sign of a group becomes whose limit position lies within the motion: there both its modes meet.
 BOTH = "+-"
 

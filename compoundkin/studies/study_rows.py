@@ -123,8 +123,6 @@ class MemoryStore(RunStore):
 
 # So many studies a worker keeps compiled.
 PROGRAMS_KEPT = 4
-
-
 _LOCK = Lock()
 
 
@@ -158,12 +156,8 @@ def _programs(plan: StudyPlan) -> StudyPlan:
 
 # So many rows are a piece at most, and so many bytes: what each worker has in memory at a time, a few times over.
 MOST_ROWS, MOST_BYTES = 65_536, 2**23
-
-
 # So many pieces for each worker, so that all are at work until near the end.
 PIECES_EACH = 4
-
-
 _BYTES = 8
 
 

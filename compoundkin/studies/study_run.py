@@ -27,12 +27,8 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, Stu
 from compoundkin.studies.study_rows import RunStore, StudyRows, piece_size, pieces_of
 
 Progress: TypeAlias = Callable[[int, int], Any]
-
-
 # What ends a run and is nobody's mistake in the program: workers that die, disks that are full, connections lost.
 _ENDS = (CompoundkinError, BrokenExecutor, CancelledError, OSError, PicklingError, MemoryError)
-
-
 # Errors of libraries that carry tasks to workers, by the library: none of them is imported here.
 _CARRIERS = {"distributed", "tornado"}
 
@@ -90,8 +86,6 @@ def _stopped(store: RunStore, error: Exception) -> StudyStopped:
 
 
 Piece = TypeVar("Piece")
-
-
 Answer = TypeVar("Answer")
 
 
@@ -129,8 +123,6 @@ def _submitted(executor: Executor, work: Callable[[Piece], Answer], piece: Piece
 
 # So many pieces are under way for each worker: one that it computes, and one that waits for it.
 AT_A_TIME = 2
-
-
 # How many workers a foreign executor is thought to have: it does not say; and a cluster at least: it may be just
 # starting, and one that adapts itself grows with the work that waits.
 UNKNOWN_WORKERS = 16

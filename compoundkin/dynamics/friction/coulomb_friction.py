@@ -29,25 +29,15 @@ from compoundkin.model.pairs.contract import as_transmitting_pair
 
 # Steps for all poses; a friction that presses its own pair with 0.9 of itself takes ten.
 NEWTON_STEPS = 60
-
-
 # Sums differ from their image by so many parts of the terms that cancel in them: rounding.
 SUM_ROUNDING = 2e-15
-
-
 # Two solutions are one where they differ by this part.
 SAME_SOLUTION = 1e-7
-
-
 # So many presses have all directions tried; of more, so many patterns of them.
 ALL_DIRECTIONS, PATTERNS = 6, 96
-
-
 # So many turns of the forces in pins are tried as well. Of random systems of two or three pins that feed on each other
 # strongly one of two solutions is then missed in one to four of a thousand; of one pin, or of contacts, in none.
 TURNS = 16
-
-
 ONE, NONE, SEVERAL, UNKNOWN = range(4)
 
 

@@ -21,8 +21,6 @@ from compoundkin.model.pairs.contract import Ends, Poses
 
 # What rubs slower than this part of the fastest link rests in its pair: rounding of a rate that is zero.
 AT_REST = 1e-12
-
-
 # So much of a unit of time, the size by the fastest speed, is a moment before; a pair that rested there too is slower.
 STEP, STEP_AT_REST = 1e-6, 1e-10
 

@@ -34,8 +34,6 @@ from compoundkin.structure.parts import LINK_FREEDOMS
 # What is left of forces is relative to the greatest one at the same pose, moments to it times the mechanism's size.
 # Rounding (1e-16) grows over the groups in both directions.
 TOLERANCE = 1e-9
-
-
 # Poses at which the greatest force is less than so much of that of the whole motion are held against this.
 LEAST = 1e-6
 

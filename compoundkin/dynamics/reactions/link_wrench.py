@@ -17,8 +17,6 @@ from compoundkin.model.geometry import vector
 
 # What may act on a link beside loads, which have kinds of their own.
 PAIR, DRIVER, WEIGHT, INERTIA, FRICTION = "pair", "driver", "weight", "inertia", "friction"
-
-
 UNKNOWN_VECTOR = complex(np.nan, np.nan)
 
 

@@ -111,8 +111,6 @@ def _cut_at_drivers(body: Body, on: dict[str, Wrench], found: dict[str, Wrench])
 # A force is determined where no state has more than this part of its own greatest force there: dimensions that make a
 # mechanism move though it is overconstrained are given to some five digits.
 NEGLIGIBLE_PART = 1e-4
-
-
 # Forces of several states are along one line where their squares say so to this.
 ALIGNED = 1e-6
 
@@ -302,8 +300,6 @@ def _pairs_between(pins: list[Pair], first: str, second: str) -> Iterator[tuple[
 
 
 Key = TypeVar("Key", bound=Hashable)
-
-
 # What the mechanism does to its frame, among the wrenches by pairs.
 ON_FRAME = ""
 

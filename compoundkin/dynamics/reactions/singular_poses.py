@@ -26,7 +26,6 @@ NEAR_STEP = 0.9
 AGREEMENT = 1e-6
 FINITE, LEFT_OPEN, INFINITE = "finite", "undetermined", "infinite"
 CHANGE_POINT, LIMIT_POSITION = "change point", "limit position"
-
 WrenchesOf = Callable[[Motion], Mapping[str, Wrench]]
 
 

@@ -39,12 +39,8 @@ from compoundkin.model.mechanism import Mechanism
 
 # A driver that feels less than this part of the heaviest link, some rounding squared as speeds are, moves no mass.
 NO_MASS = 1e-20
-
-
 # From one pose of the result to the next drivers go so far at most (radians, or parts of the size), in so many poses.
 APART, FEWEST, MOST = np.deg2rad(5.0), 100, 20000
-
-
 # Energies that are so far from adding up, or so many times the tolerance, are told of.
 ENERGY_TOLERANCE, WORSE = 1e-5, 1e4
 
@@ -280,16 +276,10 @@ def _written_value(mechanism: Mechanism) -> dict[str, float]:
 
 # Accelerations are what forces take.
 ORDER = 2
-
-
 # So many coordinates are tried, the last ones first.
 TRIES = 3
-
-
 # Poses that two drivers tell agree within this part of the size.
 SAME = 1e-6
-
-
 # Value, speed and acceleration of a coordinate at times.
 SolvedCourse = tuple[Number, Number, Number]
 

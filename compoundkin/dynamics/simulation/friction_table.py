@@ -21,12 +21,8 @@ from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 
 # Iterations for the acceleration: secant steps, each from two efforts that are nearly affine in it.
 STEPS = 30
-
-
 # It is found where a step changes it by this part.
 STEP_TOLERANCE = 1e-13
-
-
 # A driver that is held is looked at in so many places of the time left; its release is found to this part of the time.
 RELEASE_SAMPLES, RELEASED = 200, 1e-12
 

@@ -30,28 +30,16 @@ from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 
 # No step takes a driver farther than this (radians, or parts of the size): configurations are followed, angles counted.
 LONGEST_MOVE = 1.0
-
-
 # Where a pair moves so many times as fast as a driver and cannot take its place, the motion ends.
 LIMIT = 1e4
-
-
 # A step that is this part of the longest leads nowhere: the configuration cannot be followed any farther.
 STALLED = 1e-7
-
-
 # What is said where friction holds a mechanism.
 STICKS = "sticks"
-
-
 # Errors in speeds are measured against this part of the fastest driver's at least.
 SLOWEST = 1e-3
-
-
 # What is told of progress: so many parts of the whole.
 PARTS = 1000
-
-
 Progress = Callable[[int, int], None]
 
 

@@ -23,14 +23,12 @@ from compoundkin.model.pairs.travel_limits import as_travel_limited
 EVENT_SAMPLES = 4
 # What begins below zero is looked at these parts of a step as well: a bounce may be far shorter than the step.
 EARLY = 2.0 ** np.arange(-44.0, -2.0)
-
 # An impact slower than this part of the fastest, or of the drivers' speeds, each by its scale, is the last one.
 SLOW = 1e-6
 # What coming to an end of a guide is called.
 END = "end"
 # What a driver that comes to rest is called, where friction changes its direction.
 REST = "rest"
-
 Function = Callable[[SimulatedState], Any]
 
 

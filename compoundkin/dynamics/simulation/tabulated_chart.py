@@ -38,12 +38,8 @@ from compoundkin.model.pairs import Pair
 # A pair that moves so many times as fast as a driver (each by its scale) is better to go on with: squares of this enter
 # the equation of motion, and twice as many of its digits are lost.
 FASTER = 30.0
-
-
 # Poses a whole turn apart are the same within this part of the size.
 SAME = 1e-9
-
-
 # A table reaches so far to both sides: half a turn, or this part of the size.
 REACH = 0.5
 
@@ -175,16 +171,10 @@ class _Columns(dict[str, Pose]):
 
 # Pieces of a table to begin with, and how often they are halved.
 PIECES, HALVED = 16, 7
-
-
 # Polynomials hold where their last coefficients are this part of the largest: some hundred units of rounding.
 HOLDS, LAST = 3e-14, 3
-
-
 # Next to a change point accelerations have some ten digits; a corner of a load is still far above this.
 HOLDS_NEAR = 1e-8
-
-
 # Poses of the motion by which the configuration is kept.
 POSES = 145
 
@@ -306,14 +296,8 @@ def _ratios(motion: Motion, pairs: Sequence[Pair]) -> Number:
 
 # Points of a piece.
 POINTS = 24
-
-
 _ANGLES = (np.arange(POINTS) + 0.5) * np.pi / POINTS
-
-
 NODES = np.cos(_ANGLES)
-
-
 TO_COEFFICIENTS = np.cos(np.outer(np.arange(POINTS), _ANGLES)) * (2.0 / POINTS)
 
 
@@ -369,12 +353,8 @@ class TablePiece:
 
 # A bridge rests on so many widths of the gap to both sides, and its polynomial is of this degree.
 BESIDE, DEGREE = 1.9, 12
-
-
 # No gap is bridged that is more than this part of the table; what is less than this part of a piece is rounding.
 WIDEST, NO_GAP = 1.0 / 200.0, 1e-9
-
-
 # The polynomial goes through what it continues within this part of the largest value.
 FITS = 1e-9
 

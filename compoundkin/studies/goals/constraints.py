@@ -216,8 +216,6 @@ def distance(one: str, other: str, *, at_least: float | None = None, at_most: fl
 
 # Where a whole turn is looked at: every five degrees, and between these places as far as figures do.
 TURNED = np.linspace(0.0, TURN, 73)
-
-
 # A sine of some degrees from the limit: what is nearer jams, and slopes grow beyond all bounds at the limit itself.
 MARGIN = 0.05
 

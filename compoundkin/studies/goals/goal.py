@@ -117,8 +117,6 @@ class Summand(ABC):
 
 
 ADDED = 'add goals: ck.goals.least("...") + 2 * ck.goals.path("...", points)'
-
-
 WEIGHED = "2 * goal; what shall be as great as can be is goals.greatest(...)"
 
 

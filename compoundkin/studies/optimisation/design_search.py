@@ -32,20 +32,12 @@ from compoundkin.studies.samples.sobol import SobolSample
 
 # Of the ends of searches led on at once so many different ones are refined, the best.
 REFINED = 8
-
-
 # So many where slopes are differences, which take long.
 BY_DIFFERENCES = 2
-
-
 # Before that, violations of constraints below this part of their size do not matter: refinement ends them.
 NEARLY = 1e-2
-
-
 # Ends that violate constraints by more than this part of their size do not come to hold them.
 FAR = 0.2
-
-
 # Progress is told in so many parts; so many of them are told when the starts are known, and when they were led on.
 PARTS, STARTED, LED = 100, 10, 50
 
@@ -130,12 +122,8 @@ class DesignSearch(ShortRepr):
 
 # So many designs are looked at for each start, at least and at most so many in all.
 SAMPLED_FOR_EACH, LEAST_SAMPLED, MOST_SAMPLED = 16, 1 << 10, 1 << 16
-
-
 # So many at once: their curves stay in the cache of a processor, or near it.
 AT_ONCE = 1 << 10
-
-
 # A start is worth a search where it is better than so many of its neighbours.
 NEIGHBOURS = 8
 

@@ -21,20 +21,12 @@ from compoundkin.studies.optimisation.design_problem import DesignProblem, Searc
 
 # A search ends where a step changes the objective or the design by less than this part.
 ENOUGH = 1e-12
-
-
 # Where the objective is measured anew a coarser end will do.
 FINE = 1e-9
-
-
 # Objectives become much less than they were: so often they are measured anew, and the search begun again there.
 ROUNDS = 4
-
-
 # It is begun again while a round makes it less by this part.
 WORTH = 1e-2
-
-
 STEPS = 100
 
 
@@ -166,8 +158,6 @@ class SingleDesign(ShortRepr):
 
 
 METHODS = {"least_squares": by_least_squares, "SLSQP": by_slsqp, "trust-constr": by_trust_region}
-
-
 EVOLUTION = "differential_evolution"
 
 
@@ -189,8 +179,6 @@ def method_of(problem: DesignProblem, word: str | None, has_slopes: bool) -> str
 
 
 GENERATIONS = 300
-
-
 # A population has at least so many designs: fewer have no differences to speak of.
 FEWEST = 16
 
@@ -327,8 +315,6 @@ def refine_together(
 
 # Margins violated by less than this part of their size hold: SciPy's methods end so near.
 HOLDS_WITHIN = 1e-7
-
-
 # What a design that cannot be assembled is worse by, in sizes of the objective: a line search takes a shorter step.
 WORSE = 10.0
 

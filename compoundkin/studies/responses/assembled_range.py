@@ -15,13 +15,9 @@ from compoundkin.studies.responses.designs import Designs, design_blocks
 
 # Margins are looked at so many times as densely as `solve` looks for change points.
 FINER = 5
-
-
 # Where the least margin may be below that of a sample, between its neighbours, so many samples follow, so often: to
 # 1e-6 of a sample's spacing.
 PARTS, ROUNDS = 33, 5
-
-
 # Margins (squared sines) below this are rounding.
 ROUNDING = 1e-12
 

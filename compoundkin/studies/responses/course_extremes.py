@@ -17,17 +17,11 @@ from compoundkin.studies.responses.designs import Designs
 
 # A window is narrowed so often at most: at a kink to 1e-10 of it.
 NARROWINGS = 20
-
-
 # At a kink a course is farther from the polynomial through its samples than these tell: by so many times the sum of
 # so many of the last coefficients.
 SURE, LAST = 8.0, 3
-
-
 # Between the places at which a polynomial is looked at it rises by less than this part of its range.
 MISSED = 0.01
-
-
 AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
 
 

@@ -19,8 +19,6 @@ from compoundkin.studies.responses.response import Response
 
 # A length that is found by its square is known to this part of the greatest: the square root of rounding.
 ZERO = 1e-8
-
-
 # By how much each figure counts the greatest and the least value.
 PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0), (-1.0, -1.0))}
 
@@ -79,25 +77,13 @@ class FigureResponse(Response):
 
 # Slopes beside an extreme are told by samples so far apart, in parts of the cycle: 2.4 degrees of a crank.
 SPACING = 1.0 / 150.0
-
-
 # Weights of samples at 1 to 4 spacings, for the first derivative (odd) and the second (even, with that in the middle):
 # right to the eighth power of the spacing. Source: B. Fornberg, Mathematics of Computation 51 (1988), table 1.
 FIRST = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
-
-
 SECOND, MIDDLE = np.array([8 / 5, -1 / 5, 8 / 315, -1 / 560]), -205 / 72
-
-
 STEPS = np.arange(1, len(FIRST) + 1)
-
-
 BESIDE = np.concatenate([-STEPS[::-1], [0], STEPS])
-
-
 ODD, EVEN = np.concatenate([-FIRST[::-1], [0.0], FIRST]), np.concatenate([SECOND[::-1], [MIDDLE], SECOND])
-
-
 # The signs of the greatest and the least value.
 ENDS = (1.0, -1.0)
 

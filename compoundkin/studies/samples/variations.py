@@ -15,8 +15,6 @@ from compoundkin.studies.samples.value_ranges import AroundCentre, Levels, Value
 from compoundkin.studies.samples.variation import Variation
 
 VARIATIONS: tuple[type[Variation], ...] = (ValueRange, Distribution, AroundCentre, Levels)
-
-
 _REMEDY = "give a range (40, 60), a distribution scipy.stats.norm(40, 0.1), compoundkin.around(40, 0.1), or a list"
 
 
