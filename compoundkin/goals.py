@@ -2,7 +2,7 @@
 
 >>> import compoundkin as ck
 >>> both = ck.goals.path("P", [(1, 2), (3, 4)]) + 0.1 * ck.goals.least("crank.effort.greatest")
->>> [goal.told for _, goal in both.parts]
+>>> [goal.description for _, goal in both.parts]
 ['P through 2 points with timing', 'crank.effort.greatest as small as can be']
 """
 

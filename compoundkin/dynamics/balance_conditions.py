@@ -25,19 +25,19 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.cycles import find
 
-# What is left of the mass centre's way is nothing below this part of what the masses do.
+# The mass centre rests where its remaining travel is below this part of the masses' travel.
 BALANCED = 1e-9
 
 
 class BalanceConditions:
-    """The conditions of full force balance of one design. `scale` is what they are measured by."""
+    """The conditions of full force balance of one design; residuals are relative to `scale`."""
 
     def __init__(self, ways: PinDirections, closed: bool) -> None:
         self.ways = ways
         self.masses = {name: complex(first_entry(mass.mass)) for name, mass in ways.motion.mechanism.masses.items()}
-        # a motion that is no whole cycle may show too many, as near to dependent as its vectors move little
+        # a motion shorter than a cycle may seem to have more dependent rows, as its vectors move little
         rows = [dependent_rows(ways)] if closed else []
-        # what is left of a row when loops have taken from it all that they can; zeros stand for no row at all
+        # the null space of loops and dependent rows; a row of zeros where there are none
         rows += [ways.loops / ways.motion.size, np.zeros((1, ways.count))]
         _, sizes, right = np.linalg.svd(np.vstack(rows), full_matrices=True)
         rank = int(np.count_nonzero(sizes > BALANCED * max(sizes, default=0.0)))
@@ -47,11 +47,11 @@ class BalanceConditions:
 
     @property
     def unreached(self) -> tuple[str, ...]:
-        """The links with mass that no way through pins leads to."""
+        """The links with mass that no chain of pins joins to the frame."""
         return tuple(name for name, mass in self.masses.items() if name not in self.ways.origins and mass != 0)
 
     def _total(self) -> Number:
-        """Return the row of all masses that are reached."""
+        """Return the row of the mass centre of all links that pins join to the frame."""
         motion, found = self.ways.motion, np.zeros(self.ways.count, dtype=complex)
         for name, mass in motion.mechanism.masses.items():
             if name in self.ways.origins:
@@ -60,17 +60,17 @@ class BalanceConditions:
         return found
 
     def pivot_row(self, link: str) -> Number:
-        """Return the row of the pin through which a link is reached. It is nothing for one pinned to the frame."""
+        """Return the row of the pin through which a link is reached. Zero for a link pinned to the frame."""
         return self.ways.row(link, self.ways.reached[link].pivot)
 
     def left(self, row: Number) -> Number:
-        """Return what loops leave of a row."""
+        """Return a row projected to the null space of the loops."""
         return np.conj(self._left) @ row
 
     def moments(self, links: Sequence[str], added: Mapping[str, float]) -> tuple[Number, float]:
         """Return the moments of mass about their pivots that counterweights on links must have.
 
-        `added` are their masses. Return also what is left unbalanced, in parts of the scale.
+        `added` are the masses of the counterweights. Also returns the unbalanced rest, relative to the scale.
         """
         total = self.total + sum((added[name] * self.pivot_row(name) for name in links), 0j)
         columns = self._columns(links)
@@ -80,7 +80,7 @@ class BalanceConditions:
         return found, rest / self.scale if self.scale else 0.0
 
     def chosen(self) -> tuple[str, ...]:
-        """Return links whose counterweights balance. Those pinned to the frame come first, then the nearest to it."""
+        """Return links whose counterweights balance, those nearest to the frame first."""
         order = sorted(self.ways.reached, key=lambda name: self.ways.reached[name].depth)
         links: list[str] = []
         for name in (name for name in order if name != FRAME and name in self.ways.turning):
@@ -107,10 +107,7 @@ DEPENDENT = 1e-9
 
 @dataclass(frozen=True)
 class ReachedLink:
-    """How a link is reached.
-
-    From its parent, through the pin at the place `pivot` of its own, `depth` pins from the frame.
-    """
+    """The chain of pins from the frame to a link: its parent, the place `pivot` of the pin on it, the number of pins."""
 
     parent: str
     pivot: complex
@@ -119,10 +116,10 @@ class ReachedLink:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PinDirections(ShortRepr):
-    """The ways through pins of one design of a motion.
+    """Places on links as sums of unit vectors along chains of pins, of one design of a motion.
 
-    Rows are over `turning`, classes of links that turn alike: a row times their unit vectors is a place, but for
-    constants. `origins` has the row of every link that is reached from the frame.
+    Rows are over `turning`, classes of links that turn alike: a row times their unit vectors is a place, except for
+    constants. `origins` has the row of every link that pins join to the frame.
     """
 
     motion: Motion
@@ -137,11 +134,11 @@ class PinDirections(ShortRepr):
         return len(set(self.turning.values()))
 
     def row(self, link: str, place: complex) -> Number:
-        """Return the row of a place on a link that is reached."""
+        """Return the row of a place on a link."""
         return self.origins[link] + self.unit(link) * place
 
     def unit(self, link: str) -> Number:
-        """Return the row of a link's unit vector. It is nothing for a link that does not turn."""
+        """Return the row of a link's unit vector. Zero for a link that does not turn."""
         found = np.zeros(self.count, dtype=complex)
         if link in self.turning:
             found[self.turning[link]] = self.factors[link]
@@ -164,7 +161,7 @@ class PinDirections(ShortRepr):
 
 
 def pin_directions(motion: Motion) -> PinDirections:
-    """Return the ways through pins of a motion of one design."""
+    """Return the chains of pins of a motion of one design."""
     classes, factors = _classes(motion)
     ways = PinDirections(motion, classes, factors, {}, {FRAME: np.zeros(len(set(classes.values())), dtype=complex)})
     pins, depth = list(_pins(motion)), 0
@@ -214,12 +211,12 @@ def _classes(motion: Motion) -> tuple[dict[str, int], dict[str, complex]]:
 
 
 def turns_alike(pair: Pair) -> bool:
-    """Tell whether a pair holds its two links at one angle."""
+    """Return whether a pair keeps the angle between its two links constant."""
     return pair.is_simple and not pair.free_is_angle
 
 
 def dependent_rows(ways: PinDirections) -> Number:
-    """Return the rows that poses show to be constant, (rows, classes)."""
+    """Return the rows that are constant over the poses, (rows, classes)."""
     vectors = np.vstack([np.ones(ways.vectors.shape[1]), ways.vectors])
     _, sizes, right = np.linalg.svd(vectors.T, full_matrices=False)
     return np.conj(right[sizes <= DEPENDENT * sizes[0]])[:, 1:]

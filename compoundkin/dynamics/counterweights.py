@@ -31,11 +31,11 @@ from compoundkin.model.mechanism import Mechanism
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ForceBalance(ShortRepr):
-    """A mechanism with counterweights, and what they change.
+    """A mechanism with counterweights, and figures before and after balancing.
 
-    `is_full` tells whether its shaking force is zero at every pose. Where that cannot be, `unreached` are the links
-    with mass that no way of pins joins to the frame. `before` and `after` are of masses alone, without weights and
-    loads; the shaking moment is about the place `about`.
+    `is_full` says whether its shaking force is zero at every pose. Where that is impossible, `unreached` are the links
+    with mass that no chain of pins joins to the frame. `before` and `after` are of inertia forces alone, without
+    weights and loads; the shaking moment is about the place `about`.
     """
 
     mechanism: Mechanism
@@ -47,7 +47,7 @@ class ForceBalance(ShortRepr):
     after: tuple[BalanceFigure, ...]
 
     def text(self) -> str:
-        """Return it as text: the counterweights, and a table of before and after."""
+        """Return the counterweights and a table of figures before and after as text."""
         return "\n".join((self._headline, *(one.text(self.mechanism) for one in self.counterweights), *self._rows()))
 
     @property
@@ -57,8 +57,8 @@ class ForceBalance(ShortRepr):
         if not self.unreached:
             return f"Partial force balance by {count_phrase(len(self.counterweights), 'counterweight')}."
         links = ", ".join(self.unreached)
-        why = f"no way of pins alone leads from {links} to the frame"
-        best = "The best there is:" if self.counterweights else "No link that turns is pinned to the frame."
+        why = f"no chain of pins alone joins {links} to the frame"
+        best = "Partial balance:" if self.counterweights else "No link that turns is pinned to the frame."
         return f"Full force balance by counterweights does not exist: {why}. {best}"
 
     def _rows(self) -> tuple[str, ...]:
@@ -90,14 +90,14 @@ def counterweights(
     """Return the mechanism with counterweights that balance its shaking force.
 
     Full force balance by linearly independent vectors: the mass centre of all links rests. `links` take counterweights;
-    without, those pinned to the frame and as many others as it takes. Each has a `mass` or a `radius` from its link's
-    pin (a number for all or a mapping by link), else it is as far away as the link is long; it is a point, or a disc
-    with the radius `disc`. Where full balance does not exist, or other links are named, the squared shaking force over
-    the motion is least; a slider-crank's crank may balance a `fraction` of what goes to and fro instead.
+    by default those pinned to the frame and as many others as needed. Each has a `mass` or a `radius` from its link's
+    pin (one number or a mapping by link); the default radius is the link's length. It is a point, or a disc with the
+    radius `disc`. Where full balance does not exist, or other links are named, the squared shaking force over the
+    motion is minimised; a slider-crank's crank may balance a `fraction` of the reciprocating mass instead.
 
     A mechanism is solved over its own motion, which should be a closed cycle. Figures before and after are of masses
     alone, the shaking moment `about` a letter or a place of the frame: moment and drivers' torque usually rise. Raises
-    InvalidInput for several designs and for masses that are no single numbers, UnknownName for what is no such link.
+    InvalidInput for several designs and for masses that are arrays, UnknownName for an unknown link.
 
     Source: R. S. Berkof and G. G. Lowen, J. Engineering for Industry 91, 1969, 21-26; where it does not exist, F. R.
     Tepper and G. G. Lowen, J. Engineering for Industry 94, 1972, 789-796.
@@ -119,7 +119,7 @@ def counterweights(
     else:
         crank, moment = fraction_moment(ways, fraction)
         sizes = CounterweightSizes(ways, mass, radius, disc)
-        moments = tuple(sizes.made((crank,), [moment]))
+        moments = tuple(sizes.counterweights((crank,), [moment]))
     balanced = with_counterweights(motion, moments)
     after = replace(motion, structure=replace(motion.structure, mechanism=balanced))
     known = BalanceConditions(pin_directions(after), bool(closed_cycles(motion)[0]))
@@ -131,18 +131,18 @@ def counterweights(
 def _moments(
     conditions: BalanceConditions, links: tuple[str, ...], sizes: CounterweightSizes
 ) -> tuple[Counterweight, ...]:
-    """Return the counterweights of full balance, or of the least shaking force where these do not exist."""
+    """Return the counterweights of full balance, or of the least shaking force where full balance does not exist."""
     if not conditions.unreached:
         chosen = links or conditions.chosen()
-        found, rest = sizes.settled(conditions, chosen)
+        found, rest = sizes.solve(conditions, chosen)
         if rest <= BALANCED:
             return found
     chosen = links or conditions.pinned
-    return sizes.settled(ShakingSamples(conditions.ways), chosen)[0]
+    return sizes.solve(ShakingSamples(conditions.ways), chosen)[0]
 
 
 def _check_balanceable(motion: Motion) -> None:
-    """Raise InvalidInput for what has no single numbers, or no accelerations."""
+    """Raise InvalidInput for several designs, poses that are not assembled, and a motion without accelerations."""
     units_of_masses(motion)
     if motion.inputs.designs != 1 or not motion.inputs.is_rigid:
         raise InvalidInput(Problem("motion", "only one design is balanced at a time", "solve that design by itself"))
@@ -151,7 +151,7 @@ def _check_balanceable(motion: Motion) -> None:
             raise InvalidInput(Problem(f"masses.{mass.link}", "it is not a single number", "give each link one mass"))
     if motion.inputs.poses < 2 or np.any(motion.failed):
         remedy = "solve a range throughout which it closes, best a full turn"
-        raise InvalidInput(Problem("motion", "a motion that is assembled throughout is wanted", remedy))
+        raise InvalidInput(Problem("motion", "it must be assembled throughout", remedy))
     if motion.order < 2:
         raise InvalidInput(Problem("motion", f"the motion was solved to order {motion.order}", "solve(..., order=2)"))
 
@@ -164,12 +164,12 @@ def _balanced_links(ways: PinDirections, links: str | Sequence[str]) -> tuple[st
             raise UnknownName(Problem("links", f"there is no moving link {name!r}", suggestion(str(name), known)))
         if name not in known:
             remedy = f"known: {', '.join(known)}"
-            raise InvalidInput(Problem("links", f"no way of pins leads from {name} to the frame", remedy))
+            raise InvalidInput(Problem("links", f"no chain of pins joins {name} to the frame", remedy))
     return tuple(dict.fromkeys(names))
 
 
 def _place(motion: Motion, about: Any) -> complex:
-    """Return the place of the world about which moments are taken: without one, the first driver's on the frame."""
+    """Return the reference point of moments; by default the first driver's on the frame."""
     fixed = motion.mechanism.geometry.points[FRAME]
     if about is None:
         first = next(iter(motion.structure.driven.values())).pair
@@ -184,9 +184,9 @@ def _place(motion: Motion, about: Any) -> complex:
     return complex(found[0])
 
 
-# The moments of floating links change with their masses: they are settled when they change by less than this part.
+# The moments of floating links change with their masses: iterations end when they change by less than this part.
 CONVERGED, ROUNDS = 1e-13, 200
-# A moment of mass below this part of mass times size is none.
+# A moment of mass below this part of mass times size is zero.
 NO_MOMENT = 1e-12
 
 
@@ -194,8 +194,8 @@ NO_MOMENT = 1e-12
 class Counterweight:
     """A mass added to a link, at a place in the link's frame.
 
-    Its inertia is that about its own centre. `moment` is its mass times the way to it from the pin by which the link
-    hangs on the frame.
+    `inertia` is about its own centre. `moment` is its mass times its position from the pin that joins the link to
+    the frame.
     """
 
     link: str
@@ -213,24 +213,24 @@ class Counterweight:
 
 
 class MomentFinder(Protocol):
-    """What finds moments of mass for links whose counterweights have certain masses."""
+    """A solver of moments of mass for links whose counterweights have given masses."""
 
     def moments(self, links: Sequence[str], added: Mapping[str, float]) -> tuple[Number, float]:
-        """Return the moments about the links' pivots, and what is left."""
+        """Return the moments about the links' pivots, and the unbalanced rest."""
 
 
 class CounterweightSizes:
-    """The masses, or the distances from the pivots, that counterweights are given."""
+    """The masses of counterweights, or their distances from the pivots."""
 
     def __init__(self, ways: PinDirections, mass: Any, radius: Any, disc: Any) -> None:
         self.ways = ways
         if mass is not None and radius is not None:
-            raise InvalidInput(Problem("mass", "mass and radius are both given", "give one of them: moments are found"))
+            raise InvalidInput(Problem("mass", "mass and radius are both given", "give one of them"))
         self.masses, self.radii = _by_link(ways, "mass", mass), _by_link(ways, "radius", radius)
         self.discs = _by_link(ways, "disc", disc, least_is_zero=True)
 
-    def settled(self, solver: MomentFinder, links: tuple[str, ...]) -> tuple[tuple[Counterweight, ...], float]:
-        """Return the counterweights of links, and what they leave."""
+    def solve(self, solver: MomentFinder, links: tuple[str, ...]) -> tuple[tuple[Counterweight, ...], float]:
+        """Return the counterweights of links, and the unbalanced rest."""
         added = dict.fromkeys(links, 0.0)
         for _ in range(ROUNDS):
             moments, rest = solver.moments(links, added)
@@ -238,12 +238,12 @@ class CounterweightSizes:
             change = max((abs(new[name] - added[name]) for name in links), default=0.0)
             added = new
             if change <= CONVERGED * max(added.values(), default=0.0):
-                return tuple(self.made(links, moments)), rest
+                return tuple(self.counterweights(links, moments)), rest
         remedy = "give their masses: mass=..."
         raise InvalidInput(Problem("radius", "no masses at these radii balance the mechanism", remedy))
 
     def mass(self, link: str, moment: float) -> float:
-        """Return the mass of a counterweight, by the length of its moment."""
+        """Return the mass of a counterweight with a moment of this length."""
         if moment <= NO_MOMENT * self._heaviest * self.ways.motion.size:
             return 0.0
         return self.masses[link] if link in self.masses else moment / self._radius(link)
@@ -253,15 +253,15 @@ class CounterweightSizes:
         return max(float(first_entry(mass.mass)) for mass in self.ways.motion.mechanism.masses.values())
 
     def _radius(self, link: str) -> float:
-        """Return how far a counterweight is from its pivot: without a number, as far as the link's farthest point."""
+        """Return the distance of a counterweight from its pivot, by default that of the link's farthest point."""
         if link in self.radii:
             return self.radii[link]
         points = self.ways.motion.mechanism.geometry.points[link].values()
         pivot = self.ways.reached[link].pivot
         return max((abs(complex(np.ravel(p)[0]) - pivot) for p in points), default=0.0) or self.ways.motion.size
 
-    def made(self, links: Sequence[str], moments: Sequence[complex] | Number) -> Iterator[Counterweight]:
-        """Yield the counterweights of moments; none where a moment is nothing."""
+    def counterweights(self, links: Sequence[str], moments: Sequence[complex] | Number) -> Iterator[Counterweight]:
+        """Yield the counterweights of moments, none where a moment is zero."""
         for name, moment in zip(links, moments, strict=True):
             mass = self.mass(name, abs(moment))
             if mass:
@@ -296,7 +296,7 @@ def with_counterweights(motion: Motion, counterweights: Sequence[Counterweight])
             centre = complex(np.ravel(mass_centre_place(motion, known))[0])
         both = mass + one.mass
         at = (mass * centre + one.mass * one.at) / both
-        # of one mass alone it is zero, not what rounding leaves
+        # zero for one mass alone, without rounding
         spread = mass * one.mass / both * abs(centre - one.at) ** 2
         changed.append(mass_of(one.link, both, at=at, inertia=inertia + one.inertia + spread))
     return motion.mechanism.replace(*changed)
@@ -332,8 +332,8 @@ class ShakingSamples:
 def fraction_moment(ways: PinDirections, fraction: float) -> tuple[str, complex]:
     """Return the crank of a slider-crank, with its classical counterweight's moment.
 
-    All that turns is balanced, and a fraction of what goes to and fro; the rod is two masses at its pins with its mass
-    centre. Raises InvalidInput for what is no slider-crank.
+    All rotating mass is balanced, and a fraction of the reciprocating mass; the rod is replaced by two masses at its
+    pins with its mass centre. Raises InvalidInput for other mechanisms.
 
     Source: e.g. R. L. Norton, Design of Machinery, 5th ed., McGraw-Hill 2012, section 13.7.
     """
@@ -356,7 +356,7 @@ def _slider_crank(ways: PinDirections) -> tuple[str, str, str]:
     cranks = [name for name, one in ways.reached.items() if one.depth == 1]
     rods = [name for name in ways.motion.links if name not in (FRAME, *pistons, *cranks)]
     if not len(pistons) == len(cranks) == len(rods) == 1 or len(structure.pairs) != 4:
-        remedy = "leave the fraction out: the least shaking force over the motion is then found"
+        remedy = "leave the fraction out: the shaking force over the motion is then minimised"
         raise InvalidInput(Problem("fraction", "only a slider-crank is balanced by a fraction", remedy))
     return cranks[0], rods[0], pistons[0]
 
@@ -383,7 +383,7 @@ class BalanceFigure:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class InertiaForces(ShortRepr):
-    """What masses alone do, without weights and loads. The shaking moment is about a place of the world."""
+    """Inertia forces without weights and loads. The shaking moment is about the place `about`."""
 
     about: complex
     factor: float
@@ -413,7 +413,7 @@ def _shaped(motion: Motion, value: Number) -> Number:
 
 
 def balance_figures(motion: Motion, about: complex) -> tuple[BalanceFigure, ...]:
-    """Return the figures of a motion of one design. Shaking force, shaking moment, and the effort of each driver."""
+    """Return the figures of shaking force, shaking moment and each driver's effort, of a motion of one design."""
     measures = tuple(_measures(motion, about))
     designs, places, weights = nodes(smooth_pieces(motion))
     at = between(motion, designs, places, 2)

@@ -26,10 +26,7 @@ HALVINGS = 12
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Pieces(ShortRepr):
-    """Smooth pieces of a motion, in order along each design.
-
-    They go from `low` to `high` in places; arrays (n,).
-    """
+    """Smooth pieces of a motion, in order along each design, between the places `low` and `high`; arrays (n,)."""
 
     design: Number
     low: Number
@@ -40,7 +37,7 @@ class Pieces(ShortRepr):
 
 
 def smooth_pieces(motion: Motion, cuts: Places | None = None) -> Pieces:
-    """Return the smooth pieces of a motion between its poses. They are cut at further places."""
+    """Return the smooth pieces of a motion between its poses, cut at further places."""
     s = stretches_of(motion)
     pieces = Pieces(s.design, s.low, s.high)
     return pieces if cuts is None else _cut(pieces, cuts.design, cuts.place)
@@ -83,7 +80,7 @@ def _two(one: Number, other: Number) -> Number:
 
 
 def nodes(pieces: Pieces) -> tuple[Number, Number, Number]:
-    """Return designs, places and weights of sums that are integrals."""
+    """Return designs, places and weights of Gauss's rule."""
     half = 0.5 * (pieces.high - pieces.low)[:, None]
     places = 0.5 * (pieces.low + pieces.high)[:, None] + half * POINTS
     return np.repeat(pieces.design, len(POINTS)), places.ravel(), (half * WEIGHTS).ravel()

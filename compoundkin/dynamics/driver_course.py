@@ -36,7 +36,7 @@ from compoundkin.model.units import Units
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DriverCourse(ShortRepr):
-    """A driver's effort along a motion, with its way."""
+    """A driver's effort along a motion, with its travel."""
 
     forces: Forces
     driver: str
@@ -48,7 +48,7 @@ class DriverCourse(ShortRepr):
 
     @property
     def order(self) -> int:
-        """How many derivatives of the motion the effort takes."""
+        """The number of derivatives of the motion that the effort needs."""
         return 2 if self.forces.inertia else 1
 
     @property
@@ -71,7 +71,7 @@ class DriverCourse(ShortRepr):
         return self.effort(at) * at.drives[self.driver].rate
 
     def above(self, less: Number) -> Measure:
-        """Return the effort less a number for each design, to be searched."""
+        """Return the effort less a number for each design, as a measure."""
         scale, own = self._largest, np.reshape(less, (*self.motion.shape[:-1], 1))
 
         def of(at: Motion) -> Number:
@@ -81,7 +81,7 @@ class DriverCourse(ShortRepr):
 
     @property
     def measures(self) -> tuple[Measure, Measure]:
-        """The effort and the power as what can be searched."""
+        """The effort and the power as measures."""
         effort = f"{self.driver}.{EFFORT}"
         return (
             Measure(effort, self.unit, self.order, self.effort, scale=self._largest),
@@ -98,37 +98,34 @@ class DriverCourse(ShortRepr):
     def _pace(self) -> float:
         return float(np.nanmax(np.abs(self.motion.drives[self.driver].rate), initial=0.0))
 
-    def way_by_place(self, designs: Number, places: Number) -> Number:
-        """Return how fast the driver goes, by the place."""
+    def travel_rate(self, designs: Number, places: Number) -> Number:
+        """Return the derivative of the driver's coordinate by the place."""
         found = inputs_between(self.motion, designs, places, 1, by_place=True).drives[self.driver][1]
         return np.broadcast_to(found, (len(places), 1))[:, 0]
 
     def surplus(self, mean: Number) -> Integrand:
-        """Return what a constant effort gives beyond what is needed, by the place.
-
-        `mean` is the constant effort, one for each design.
-        """
+        """Return the power surplus of a constant effort, by the place; `mean` is that effort for each design."""
         constant = np.broadcast_to(mean, self.motion.inputs.designs)
 
         def of(designs: Number, places: Number) -> Number:
             effort = self.effort(between(self.motion, designs, places, self.order))
-            return ((constant[designs] - effort) * self.way_by_place(designs, places))[None]
+            return ((constant[designs] - effort) * self.travel_rate(designs, places))[None]
 
         return of
 
     def _rows(self, designs: Number, places: Number) -> Number:
-        """Return by the place: way, work; then 1, effort, power and the squares of both, by what means are taken over.
+        """Return integrands by the place: travel, work; then 1, effort, power and their squares, weighted for means.
 
-        Means are over the time of a motion in time, else over the driver's way.
+        Means are over time where the motion has it, else over the driver's travel.
         """
         at = between(self.motion, designs, places, self.order)
-        effort, way, rate = self.effort(at), self.way_by_place(designs, places), at.drives[self.driver].rate
-        over = np.abs(way) if self.motion.time is None else self._time_by_place(designs, places)
+        effort, travel, rate = self.effort(at), self.travel_rate(designs, places), at.drives[self.driver].rate
+        over = np.abs(travel) if self.motion.time is None else self._time_by_place(designs, places)
         power = effort * rate
-        return np.stack([way, effort * way, *(over * f for f in (1.0, effort, power, effort**2, power**2))])
+        return np.stack([travel, effort * travel, *(over * f for f in (1.0, effort, power, effort**2, power**2))])
 
     def _time_by_place(self, designs: Number, places: Number) -> Number:
-        """Return how fast the time goes, by the place."""
+        """Return the derivative of time by the place."""
         before = np.clip(np.floor(places), 0, self.motion.inputs.poses - 2)
         times = (between(self.motion, designs, before + k, 0).time for k in (0.0, 1.0))
         first, second = times
@@ -146,8 +143,8 @@ class DriverCourse(ShortRepr):
         return total
 
     @property
-    def way(self) -> Number:
-        """How far the driver goes, (designs,)."""
+    def travel(self) -> Number:
+        """The driver's travel, (designs,)."""
         return self._sums[0]
 
     @property
@@ -162,15 +159,15 @@ class DriverCourse(ShortRepr):
 
     @property
     def mean_squares(self) -> Number:
-        """The roots of the means of the squares of effort and power, (2, designs)."""
+        """The root mean squares of effort and power, (2, designs)."""
         return np.sqrt(self._sums[5:] / self._sums[2])
 
 
 def driver_course(forces: Forces, driver: str | None, of_cycle: bool = False) -> DriverCourse:
-    """Return the course of a driver, of the only one without a name.
+    """Return the course of a driver, by default of the only one.
 
-    Raises UnknownName for another name, InvalidInput where none is named of several, where it does not move, and for
-    what is no whole closed cycle if that is asked.
+    Raises UnknownName for an unknown driver, InvalidInput for none of several, for a driver that does not move, and with
+    `of_cycle` for a motion that is no closed cycle.
     """
     motion, name = forces.motion, driver_named(forces.motion, driver)
     if motion.inputs.poses < 2:
@@ -183,7 +180,7 @@ def driver_course(forces: Forces, driver: str | None, of_cycle: bool = False) ->
 
 
 def driver_named(motion: Motion, driver: str | None) -> str:
-    """Return a driver, the only one without a name. Raises UnknownName, InvalidInput where none is named of several."""
+    """Return a driver's name, by default of the only one. Raises UnknownName, InvalidInput for none of several."""
     names = tuple(motion.drives)
     if driver is None and len(names) != 1:
         raise InvalidInput(Problem("driver", f"there are {len(names)}: {', '.join(names)}", "name one"))
@@ -196,7 +193,7 @@ def driver_named(motion: Motion, driver: str | None) -> str:
 class DriveFigures(ShortRepr):
     """A driver's effort and power over a motion; arrays of shape (designs,).
 
-    Means and effective values (`rms`) are over the time, of a motion that is not in time over the driver's way.
+    Means and effective values (`rms`) are over time; over the driver's travel where the motion has no time.
     `effort` and `power` have the least and the greatest values with their places.
     """
 
@@ -230,8 +227,9 @@ class DriveFigures(ShortRepr):
 def drive_figures(forces: Forces, driver: str | None = None) -> DriveFigures:
     """Return mean, effective and greatest effort and power of a driver, and its work.
 
-    Of the only driver without a name. All are found between the poses. Poses that are not assembled are left out.
-    Raises UnknownName for what is no driver, InvalidInput for a driver that does not move and a single pose.
+    The default is the only driver. Integrals and extremes include the motion between the poses; poses that are not
+    assembled are left out. Raises UnknownName for an unknown driver, InvalidInput for a driver that does not move and a
+    single pose.
 
     >>> from compoundkin.dynamics.force_analysis import force_analysis
     >>> from compoundkin.kinematics import solve
@@ -254,18 +252,18 @@ def _farthest(found: Extremes) -> Number:
     return np.maximum(np.abs(found.least.value), np.abs(found.greatest.value))
 
 
-# A ratio of forces does not depend on units; a mechanism without any is given these.
+# A ratio of forces does not depend on units; these are for a mechanism without any.
 ANY_UNITS = Units("m", "kg", "N")
 
 
 @checked
 def force_ratio(motion: Motion, output: Port, driver: str | None = None) -> Number:
-    """Return how many times a driver's effort is available at an output.
+    """Return the mechanical advantage with friction at every pose: the load at an output over the driver's effort.
 
-    At every pose, of the only driver without a name. Outputs are those of `mechanical_advantage`: a link, a pair or a
-    driver by name, a `TorquePort` or a `ForcePort`. Only friction acts beside a load there, neither weights nor masses
-    nor other loads; without friction it is the mechanical advantage by rates, with it less. Infinite where the load
-    needs no effort.
+    The default is the only driver. Outputs are those of `mechanical_advantage`: a link, a pair or a driver by name, a
+    `TorquePort` or a `ForcePort`. Besides the load only friction acts, no weights, masses or other loads; without
+    friction the ratio is the mechanical advantage by rates, with friction it is less. Infinite where the load needs no
+    effort.
 
     Raises UnknownName and InvalidInput as `mechanical_advantage`.
 
@@ -291,7 +289,7 @@ def force_ratio(motion: Motion, output: Port, driver: str | None = None) -> Numb
 
 
 def _resisting_loads(motion: Motion, output: Port, load: Number) -> Iterator[Item]:
-    """Yield a load at an output, and its opposite on the link against which it acts."""
+    """Yield a load at an output, and its opposite on the reference link."""
     if isinstance(output, str):
         is_link = output in motion.links and output not in motion.structure.translating_links
         yield torque(output, load) if is_link else effort(output, load)

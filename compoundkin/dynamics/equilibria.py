@@ -29,9 +29,9 @@ from compoundkin.model.attributes import EFFORT
 from compoundkin.model.geometry import real
 from compoundkin.model.mechanism import Mechanism
 
-# An effort that is below this part of what a single load asks is none: rounding of sums of some loads.
+# An effort below this part of that of a single load is zero: rounding of sums of loads.
 ROUNDING = 1e-11
-# So many values of each of several drivers make the grid where none are given, of so many places at most.
+# The default grid of several drivers: values of each, and the greatest number of places.
 FEW, MANY = 9, 300
 
 
@@ -39,8 +39,8 @@ FEW, MANY = 9, 300
 class EquilibriumPosition(ShortRepr):
     """An equilibrium position: the drivers' values and its kind.
 
-    It is "stable", "unstable", of several drivers a "saddle", "indifferent" where it stays beside as well, or
-    "half-stable". `stiffness` (free drivers, free drivers) are the derivatives of the holding efforts by the values.
+    It is "stable", "unstable", "saddle" for several drivers, "indifferent" where neighbouring positions are in
+    equilibrium as well, or "half-stable". `stiffness` (free drivers, free drivers) are the derivatives of the holding efforts by the values.
     """
 
     values: Mapping[str, float]
@@ -57,8 +57,8 @@ class EquilibriumPosition(ShortRepr):
 class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
     """The equilibrium positions of a mechanism in a range, in order.
 
-    `free` are the drivers that were let go. Where it is `indifferent` it stays at every place of the range, as a lamp
-    that springs balance does, and none is listed.
+    `free` are the released drivers. An `indifferent` mechanism is in equilibrium at every place of the range, such as a
+    lamp balanced by springs, and none is listed.
     """
 
     mechanism: Mechanism
@@ -85,7 +85,7 @@ class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
     def text(self) -> str:
         """Return them as text, angles in degrees."""
         if self.indifferent:
-            return f"It stays wherever it is: {', '.join(self.free)} need no effort anywhere in the range."
+            return f"Indifferent equilibrium: {', '.join(self.free)} need no effort anywhere in the range."
         if not self.positions:
             return "No equilibrium position in the range."
         return "\n".join(self._row(one) for one in self.positions)
@@ -102,13 +102,13 @@ class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
 def equilibria(mechanism: Mechanism, values: Any = None) -> EquilibriumPositions:
     """Return the equilibrium positions under weights, springs and loads, with their stability.
 
-    Drivers whose `values` are arrays (radians or lengths, as of `solve`; a full turn of a single driver of a pin
-    without them) are let go, and are at rest where they need no effort; the others are held at their single values.
-    One driver's positions are the zeros of its effort by virtual work between the least and the greatest value, found
-    between the poses; those of several are found by Newton's method from a grid of the values. A position is stable
+    Drivers whose `values` are arrays (radians or lengths, as in `solve`; by default a full turn of the only driver of a
+    pin) are released, and are in equilibrium where they need no effort; the others stay at their single values.
+    One driver's positions are the zeros of its effort by virtual work between the least and the greatest value, between
+    the poses too; those of several are found by Newton's method from a grid of the values. A position is stable
     where the stiffness, the derivative of the efforts by the values, is positive. Friction is left out.
 
-    Raises InvalidInput for a mechanism without units and where no driver is let go.
+    Raises InvalidInput for a mechanism without units and where no driver is released.
 
     Source: virtual work and the second variation of the potential, e.g. C. Lanczos, The Variational Principles of
     Mechanics, 4th ed., Dover 1986.
@@ -134,11 +134,11 @@ def _check_equilibrium(mechanism: Mechanism) -> None:
     _ = mechanism.stated_units
     if not mechanism.loads and not (mechanism.masses and mechanism.gravity != 0):
         remedy = "write gravity(...) and masses, spring(...), force(...)"
-        raise InvalidInput(Problem("loads", "nothing acts on the mechanism: it stays everywhere", remedy))
+        raise InvalidInput(Problem("loads", "nothing acts on the mechanism: every position is in equilibrium", remedy))
 
 
 def _motion(mechanism: Mechanism, values: Any) -> tuple[Motion, tuple[str, ...]]:
-    """Return the motion over the range at rest, and the drivers that are let go. Several make a grid of designs."""
+    """Return the motion at rest over the range, and the released drivers. Several make a grid of designs."""
     rest = dict.fromkeys((drive.name for drive in solving_order_of(mechanism).structure.mechanism.drives), 0.0)
     given = by_name(mechanism, values)
     if not given:
@@ -153,7 +153,7 @@ def _motion(mechanism: Mechanism, values: Any) -> tuple[Motion, tuple[str, ...]]
     given = {name: real(f"values.{name}", value) for name, value in given.items()}
     free = tuple(name for name, value in given.items() if np.size(value) > 1)
     if not free or any(np.ndim(given[name]) != 1 for name in free):
-        told = "no driver is let go" if not free else "a range is not a list of numbers"
+        told = "no driver is released" if not free else "a range is not a list of numbers"
         raise InvalidInput(
             Problem("values", told, 'give each driver that is free a range: {"arm": deg(range(0, 361))}')
         )
@@ -165,11 +165,11 @@ def _motion(mechanism: Mechanism, values: Any) -> tuple[Motion, tuple[str, ...]]
 
 def _of_one(motion: Motion, driver: str) -> EquilibriumPositions:
     """Return the equilibrium positions of one driver: zeros of its effort."""
-    held = HoldingEfforts((driver,))
-    scale = float(held.scales(motion)[0])
+    holding = HoldingEfforts((driver,))
+    scale = float(holding.scales(motion)[0])
 
     def effort(at: Motion) -> Number:
-        return _none_where_rounding(held.at(at)[0], scale).reshape(at.shape)
+        return _zero_where_rounding(holding.at(at)[0], scale).reshape(at.shape)
 
     found = zeros(motion, Measure(f"{driver}.{EFFORT}", "", 1, effort, scale=scale))
     last = motion.inputs.poses - 1
@@ -178,7 +178,7 @@ def _of_one(motion: Motion, driver: str) -> EquilibriumPositions:
     there = between(motion, found.at.design, found.at.place, 1)
     values = {name: np.ravel(np.broadcast_to(v[0], there.failed.shape)) for name, v in there.inputs.drives.items()}
     grows = np.sign(_ahead(motion, found.at.place, driver))
-    slopes = held.slopes(there)[0, 0, 0]
+    slopes = holding.slopes(there)[0, 0, 0]
     positions = []
     for k in np.argsort(values[driver], kind="stable"):
         stays = found.until[k] > found.at.place[k] + SAME_PLACE
@@ -188,29 +188,29 @@ def _of_one(motion: Motion, driver: str) -> EquilibriumPositions:
     return EquilibriumPositions(motion.mechanism, (driver,), tuple(positions), False)
 
 
-def _none_where_rounding(values: Number, scale: float) -> Number:
+def _zero_where_rounding(values: Number, scale: float) -> Number:
     return np.where(np.abs(values) <= ROUNDING * scale, 0.0, values)
 
 
 def _ahead(motion: Motion, places: Number, driver: str) -> Number:
-    """Return the way of a driver from the pose before each place to the one behind it."""
+    """Return the step of a driver from the pose before each place to the next one."""
     rows = np.ravel(np.broadcast_to(motion.drives[driver].value, motion.failed.shape)[0])
     k = np.clip(np.floor(places).astype(int), 0, motion.inputs.poses - 2)
     return rows[k + 1] - rows[k]
 
 
 STABLE, UNSTABLE, SADDLE, INDIFFERENT = "stable", "unstable", "saddle", "indifferent"
-# To one side it returns, to the other it goes on.
+# Displaced to one side it returns, to the other it departs.
 HALF_STABLE = "half-stable"
-# A stiffness below this part of what a load asks over a radian, or the mechanism's size, is none: what differences
-# leave of one.
+# A stiffness below this part of a load's effort over a radian, or over the mechanism's size, is zero: the error of
+# differences.
 NO_STIFFNESS = 1e-8
 
 
 def equilibrium_kind(stiffness: Number, scales: Number, sense: float = 0.0, stays: bool = False) -> str:
     """Return the kind of an equilibrium.
 
-    `scales` are the stiffnesses that rounding is relative to, `sense` tells whether one driver's effort grows.
+    Rounding is relative to the stiffnesses `scales`; `sense` is the sign of the slope of a single driver's effort.
     """
     if stays:
         return INDIFFERENT
@@ -224,41 +224,41 @@ def equilibrium_kind(stiffness: Number, scales: Number, sense: float = 0.0, stay
     return SADDLE if np.any(sizes < -NO_STIFFNESS) and np.any(sizes > NO_STIFFNESS) else INDIFFERENT
 
 
-# So many steps lead from a place of the grid to a critical point, or to none; a step is at most so many spacings.
+# The greatest number of steps from a place of the grid, and the longest step in spacings of the grid.
 NEWTON_STEPS, LONGEST = 40, 2.0
 # Points nearer than this (radians, parts of the size) are one.
 SAME_POINT = 1e-6
-# Newton's last step leaves so many times the rounding of the efforts: slopes are differences.
+# Residuals after Newton's last step, in units of the efforts' rounding: slopes are differences.
 RESIDUAL_ROUNDING = 1e3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CriticalPoints(ShortRepr):
-    """Critical points in a range, or that it is indifferent throughout."""
+    """Critical points in a range, or `indifferent` for a range of them."""
 
     positions: tuple[EquilibriumPosition, ...]
     indifferent: bool
 
 
 def critical_points(motion: Motion, free: tuple[str, ...], rounding: float) -> CriticalPoints:
-    """Return the critical points near places of a grid, a motion's designs.
+    """Return the critical points found from a grid of places, which are a motion's designs.
 
-    Efforts below the part `rounding` of what a load asks are none.
+    Efforts below the part `rounding` of a load's are zero.
     """
-    held = HoldingEfforts(free)
-    scales = held.scales(motion)
+    holding = HoldingEfforts(free)
+    scales = holding.scales(motion)
     places = _places(motion, free)
     low, high = places.min(axis=0), places.max(axis=0)
-    if np.nanmax(np.abs(_efforts(held, motion)) / np.maximum(scales, np.finfo(float).tiny)) <= rounding:
+    if np.nanmax(np.abs(_efforts(holding, motion)) / np.maximum(scales, np.finfo(float).tiny)) <= rounding:
         return CriticalPoints((), True)
     reach = LONGEST * np.array([_spacing(places[:, k]) for k in range(len(free))])
     for _ in range(NEWTON_STEPS):
-        efforts, slopes = _efforts(held, motion), np.moveaxis(held.slopes(motion)[..., 0], -1, 0)
+        efforts, slopes = _efforts(holding, motion), np.moveaxis(holding.slopes(motion)[..., 0], -1, 0)
         with np.errstate(all="ignore"):
             steps = _steps(slopes, efforts)
         steps = steps / np.maximum(np.max(np.abs(steps) / reach, axis=1, keepdims=True), 1.0)
         places = places - steps
-        # what leaves the range leads nowhere; other places of the grid find what is there
+        # iterates that leave the range are dropped; others cover it
         kept = np.all((places >= low - reach) & (places <= high + reach), axis=1)
         again = _solved(motion, free, places[kept]) if np.any(kept) else None
         if again is None:
@@ -266,13 +266,13 @@ def critical_points(motion: Motion, free: tuple[str, ...], rounding: float) -> C
         motion, places = again, places[kept]
         if np.max(np.abs(steps[kept]) / reach) <= rounding:
             break
-    small = np.all(np.abs(_efforts(held, motion)) <= RESIDUAL_ROUNDING * rounding * scales, axis=1)
+    small = np.all(np.abs(_efforts(holding, motion)) <= RESIDUAL_ROUNDING * rounding * scales, axis=1)
     within = np.all((places >= low - SAME_POINT * reach) & (places <= high + SAME_POINT * reach), axis=1)
-    return CriticalPoints(_distinct(motion, held, places, small & within, scales), False)
+    return CriticalPoints(_distinct(motion, holding, places, small & within, scales), False)
 
 
 def _steps(slopes: Number, efforts: Number) -> Number:
-    """Return Newton's steps (places, drivers), NaN where there is none."""
+    """Return Newton's steps (places, drivers), NaN where the matrix is singular."""
     good = np.all(np.isfinite(slopes), axis=(1, 2)) & np.all(np.isfinite(efforts), axis=1)
     good[good] = np.abs(np.linalg.det(slopes[good])) > 0.0
     found = np.full(efforts.shape, np.nan)
@@ -280,8 +280,8 @@ def _steps(slopes: Number, efforts: Number) -> Number:
     return found
 
 
-def _efforts(held: HoldingEfforts, motion: Motion) -> Number:
-    return held.at(motion)[..., 0].T
+def _efforts(holding: HoldingEfforts, motion: Motion) -> Number:
+    return holding.at(motion)[..., 0].T
 
 
 def _places(motion: Motion, free: tuple[str, ...]) -> Number:
@@ -295,7 +295,7 @@ def _spacing(values: Number) -> float:
 
 
 def _solved(motion: Motion, free: tuple[str, ...], places: Number) -> Motion | None:
-    """Return the motion at other places of the grid. None where nothing is assembled."""
+    """Return the motion at other places, None where nothing is assembled."""
     values = {name: v[0] for name, v in motion.inputs.drives.items()}
     values |= {name: places[:, k : k + 1] for k, name in enumerate(free)}
     try:
@@ -306,12 +306,12 @@ def _solved(motion: Motion, free: tuple[str, ...], places: Number) -> Motion | N
 
 
 def _distinct(
-    motion: Motion, held: HoldingEfforts, places: Number, good: Number, scales: Number
+    motion: Motion, holding: HoldingEfforts, places: Number, good: Number, scales: Number
 ) -> tuple[EquilibriumPosition, ...]:
-    """Return every point once, in order of the values. Whole turns make no other point."""
-    angles = np.array([motion.drives[name].is_angle for name in held.free])
-    units = np.array([motion.solving_order.unit(name) for name in held.free])
-    slopes = np.moveaxis(held.slopes(motion)[..., 0], -1, 0)
+    """Return every point once, in order of the values; full turns do not count."""
+    angles = np.array([motion.drives[name].is_angle for name in holding.free])
+    units = np.array([motion.solving_order.unit(name) for name in holding.free])
+    slopes = np.moveaxis(holding.slopes(motion)[..., 0], -1, 0)
     found: list[int] = []
     for k in np.flatnonzero(good):
         away = places[found] - places[k]
@@ -319,10 +319,12 @@ def _distinct(
         if not len(found) or np.max(np.abs(away), axis=1).min() > SAME_POINT:
             found.append(int(k))
     found.sort(key=lambda k: tuple(np.round(places[k] / units, 9)))
-    held_values = {name: float(np.ravel(v[0])[0]) for name, v in motion.inputs.drives.items() if name not in held.free}
+    fixed_values = {
+        name: float(np.ravel(v[0])[0]) for name, v in motion.inputs.drives.items() if name not in holding.free
+    }
     return tuple(
         EquilibriumPosition(
-            {**dict(zip(held.free, places[k].tolist(), strict=True)), **held_values},
+            {**dict(zip(holding.free, places[k].tolist(), strict=True)), **fixed_values},
             equilibrium_kind(slopes[k], scales / units),
             slopes[k],
         )
@@ -330,15 +332,15 @@ def _distinct(
     )
 
 
-# Slopes are differences of fourth order over steps of so much (radians, parts of the size): what they leave out and
-# what rounding leaves in them are both some 1e-12 of the slope.
+# Slopes are differences of fourth order with this step (radians, parts of the size): truncation and rounding errors
+# are both some 1e-12 of the slope.
 STEP = 1e-3
 STENCIL = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HoldingEfforts(ShortRepr):
-    """The efforts that hold some drivers, which are let go. Others stay where they are."""
+    """The efforts that hold the free drivers at rest; the other drivers stay."""
 
     free: tuple[str, ...]
 
@@ -363,7 +365,7 @@ class HoldingEfforts(ShortRepr):
         return moved
 
     def scales(self, motion: Motion) -> Number:
-        """Return the largest that a load asks of each driver, (drivers,)."""
+        """Return the largest effort of a single load at each driver, (drivers,)."""
         found = np.zeros(len(self.free))
         for k, name in enumerate(self.free):
             with np.errstate(all="ignore"):

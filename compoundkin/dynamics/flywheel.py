@@ -16,9 +16,9 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.mass_motion import equivalent_inertia
 from compoundkin.kinematics.extremes import Places, between, zeros
 
-# Where the driver goes no further over a cycle than this part of its values' range, it only goes to and fro.
+# A driver whose net travel over a cycle is below this part of its range oscillates.
 NO_TRAVEL = 1e-9
-# Places of a motion, counted in poses, are one within this.
+# Places of a motion, counted in poses, are equal within this.
 ROUNDING = 1e-12
 
 
@@ -50,9 +50,8 @@ class Flywheel(ShortRepr):
 def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -> Flywheel:
     """Return the flywheel that holds a driver's speed within a coefficient of fluctuation.
 
-    The driver has its mean effort throughout; what it lends over a cycle is found between the poses, from one change of
-    sign of the surplus to the next. The inertia of the parts is in the effort at constant speed, and is not counted
-    once more. `forces` are of a closed cycle at constant speed. Raises InvalidInput where they are not.
+    The driver has its mean effort throughout; its surplus of energy over a cycle is integrated between changes of sign,
+    between the poses too. The inertia of the parts is in the effort at constant speed, and is not counted again. `forces` are of a closed cycle at constant speed. Raises InvalidInput where they are not.
 
     Source: J = dE / (Cs w^2), e.g. R. L. Norton, Design of Machinery, 5th ed., McGraw-Hill 2012, section 11.11.
 
@@ -70,7 +69,7 @@ def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -
     _check_flywheel(fluctuation)
     course = driver_course(forces, driver, of_cycle=True)
     speed = _speed(course)
-    mean = course.work / course.way
+    mean = course.work / course.travel
     crossings = zeros(course.motion, course.above(mean)).crossings().at
     places, energies = _energies(course, mean, crossings)
     lent = np.array([np.ptp(np.append(energies[places.design == k], 0.0)) for k in range(course.motion.inputs.designs)])
@@ -91,12 +90,12 @@ def _speed(course: DriverCourse) -> Number:
     motion = course.motion
     shape = motion.failed.shape
     if np.any(
-        np.abs(course.way) <= NO_TRAVEL * np.ptp(np.broadcast_to(motion.drives[course.driver].value, motion.shape))
+        np.abs(course.travel) <= NO_TRAVEL * np.ptp(np.broadcast_to(motion.drives[course.driver].value, motion.shape))
     ):
-        raise InvalidInput(Problem(course.driver, "it only goes to and fro over the cycle", "name a driver that turns"))
+        raise InvalidInput(Problem(course.driver, "it oscillates over the cycle", "name a driver that turns"))
     if motion.time is not None:
         times = np.broadcast_to(motion.time, motion.shape).reshape(shape)
-        return course.way / (times[:, -1] - times[:, 0])
+        return course.travel / (times[:, -1] - times[:, 0])
     rates = np.broadcast_to(motion.drives[course.driver].rate, motion.shape).reshape(shape)
     if np.any(rates == 0.0) or np.any(np.ptp(rates, axis=1) != 0.0):
         raise InvalidInput(Problem(course.driver, "its speed is not constant above 0", "solve(..., speed=...)"))
@@ -113,7 +112,7 @@ def _energies(course: DriverCourse, mean: Number, crossings: Places) -> tuple[Pl
     return crossings, energies
 
 
-# Energies are known at so many places a pose; between them parabolas find the extremes.
+# Energies are computed at so many places for each pose; parabolas through them have the extremes.
 PARTS = 8
 # Halvings of the bracket in which the mean speed is found.
 HALVINGS = 60
@@ -122,8 +121,8 @@ HALVINGS = 60
 class SpeedFluctuation:
     """The speed of a driver with constant effort, over a cycle of one design.
 
-    Half of the inertia times the squared speed is the energy of the surplus and what the parts have at the mean speed.
-    Loads are taken as they are at the mean speed. Infinite where the machine would stop within the cycle.
+    Half of inertia times squared speed is the energy of the surplus plus that of the parts at the mean speed. Loads are
+    those at the mean speed. The coefficient is infinite where the machine would stop within the cycle.
     """
 
     def __init__(self, course: DriverCourse, design: int, mean: float, speed: float) -> None:
@@ -135,7 +134,7 @@ class SpeedFluctuation:
             found = equivalent_inertia(between(course.motion, np.full(len(pieces), design), pieces.high, 2))
             k = found.drivers.index(course.driver)
             self.inertia = found.matrix[:, k, k]
-        if not course.forces.inertia:  # the surplus has what the parts lend at constant speed too
+        if not course.forces.inertia:  # the surplus includes what the parts give at constant speed
             self.energy -= 0.5 * speed**2 * (self.inertia - self.inertia[-1])
 
     def coefficient(self, flywheel: float) -> float:
@@ -143,7 +142,7 @@ class SpeedFluctuation:
         total = self.inertia + flywheel
         if not np.all(total > 0.0):
             return np.inf
-        # how much the squared speed gains from the energy lent; and from any energy that is there throughout
+        # the change of squared speed by the surplus, and by a constant energy
         lent, more = 2.0 * self.energy / total, float(np.max(total)) / total
         greatest = self.speed**2 + float(np.max(np.abs(lent)))
         least = -greatest
@@ -155,7 +154,7 @@ class SpeedFluctuation:
 
 
 def _speeds(squares: Number) -> tuple[float, float]:
-    """Return the roots of the least and of the greatest of values on a closed cycle, between them too."""
+    """Return the square roots of the least and greatest of values on a closed cycle, between the samples too."""
     found = []
     for sign in (-1.0, 1.0):
         values = sign * squares

@@ -45,12 +45,12 @@ from compoundkin.model.mechanism import Mechanism
 def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -> Forces:
     """Return the forces in all pairs at every pose, and the drivers' efforts.
 
-    With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds in the
-    place of the driver that moves: its effort is `forces.held.effort`, the driver's own is zero.
+    With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds instead of
+    the moving driver: its effort is `forces.held.effort`, the driver's own is zero.
 
     Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, or without
-    velocities where loads ask for them, for a mass centre off the pin of a roller that turns freely, and for what
-    cannot hold; UnknownName for what there is not.
+    velocities where loads need them, for a mass centre off the pin of a roller that turns freely, and for a pair that
+    cannot hold; UnknownName for an unknown pair.
     """
     _check_analysable(motion, inertia)
     refuse_off_pin(motion)
@@ -62,20 +62,20 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
     forces = Forces(told, inertia, found, on_frame, singular=singular, more=more, held=held)
     if motion.mechanism.frictions:
         forces = with_friction(forces)
-    # quantities of forces are read from their motion, which need not find them again
+    # quantities of forces are read from their motion, which need not compute them again
     vars(told)["forces"] = forces
     return forces
 
 
 def _wrenches(motion: Motion, inertia: bool, holding: str) -> dict[str, Wrench]:
-    """Return the wrenches in all pairs by their names, and that on the frame."""
+    """Return the wrenches in all pairs by name, and that on the frame."""
     more = tuple(holding_wrenches(motion, holding_effort(motion, inertia, holding))) if holding else ()
     with np.errstate(all="ignore"):
         return joined_reactions(motion, ((at, _block_reactions(at, inertia, more)) for at in loaded_blocks(motion)))
 
 
 def _block_reactions(at: LoadedBlock, inertia: bool, more: Iterable[LinkWrench]) -> Reactions:
-    """Return the reactions of a block under all that is known to act, and more on links."""
+    """Return the reactions of a block under its loads and further wrenches on links."""
     known = at.known(inertia)
     for one in more:
         known[one.on] = known.get(one.on, Wrench()) + one.whole.part(at.designs, at.poses)
@@ -83,7 +83,7 @@ def _block_reactions(at: LoadedBlock, inertia: bool, more: Iterable[LinkWrench])
 
 
 def _check_analysable(motion: Motion, inertia: bool) -> None:
-    """Raise InvalidInput for a mechanism and a motion of which no forces can be told."""
+    """Raise InvalidInput for a mechanism without units, or a motion without the derivatives that forces need."""
     mechanism = motion.mechanism
     _ = mechanism.stated_units
     if inertia and mechanism.masses and motion.order < 2:
@@ -92,19 +92,19 @@ def _check_analysable(motion: Motion, inertia: bool) -> None:
     asking = [name for name, load in mechanism.loads.items() if load.needs_rates]
     asking += [f"friction of {name}" for name in mechanism.frictions]
     if asking and not motion.order:
-        what = f"the motion was solved to order 0, and its velocities are asked for by {', '.join(asking)}"
+        what = f"the motion was solved to order 0, and its velocities are needed by {', '.join(asking)}"
         raise InvalidInput(Problem("motion", what, "solve(..., order=1), or 2"))
 
 
 def has_loads(mechanism: Mechanism) -> bool:
-    """Tell whether there are forces to be told: units, and masses or loads."""
+    """Return whether a mechanism has units, and masses or loads."""
     return mechanism.units is not None and bool(mechanism.masses or mechanism.loads)
 
 
 def loaded_forces(motion: Motion) -> Forces | None:
     """Return the forces of a motion; None without masses and loads.
 
-    Without accelerations there is no inertia to tell: they are those of statics.
+    Without accelerations they are those of statics.
     """
     if not has_loads(motion.mechanism) or not motion.assembled.any():
         return None
@@ -112,16 +112,18 @@ def loaded_forces(motion: Motion) -> Forces | None:
 
 
 class MotionWithFriction:
-    """Frictions of a motion. Blocks are solved one after another; it is complete when all have been."""
+    """The frictions of a motion, collected block by block."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion = motion
-        self.rubs = friction_contacts_of(motion)
+        self.contacts = friction_contacts_of(motion)
         shape = motion.failed.shape
         self.resting = poses_at_rest(motion)
         self.state, self.worst = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
-        self.sizes = {rub.name: np.zeros(shape) for rub in self.rubs}
-        self.units = {rub.name: Wrench(np.zeros(shape, dtype=complex), np.zeros(shape)) for rub in self.rubs}
+        self.sizes = {contact.name: np.zeros(shape) for contact in self.contacts}
+        self.units = {
+            contact.name: Wrench(np.zeros(shape, dtype=complex), np.zeros(shape)) for contact in self.contacts
+        }
         drivers = tuple(motion.inputs.drives)
         self.backward = {name: np.zeros(shape) for name in drivers}
         self.intervals = {name: (np.full(shape, np.nan), np.full(shape, np.nan)) for name in drivers}
@@ -131,8 +133,8 @@ class MotionWithFriction:
         rest = self.resting.any()
         alone = {name: moved_alone(self.motion, name) for name in self.motion.inputs.drives} if rest else {}
         for at, *units in zip(loaded_blocks(self.motion), *map(loaded_blocks, alone.values()), strict=True):
-            block = block_with_friction(at, self.rubs, at.known(inertia))
-            signs = senses(self.rubs, at)
+            block = block_with_friction(at, self.contacts, at.known(inertia))
+            signs = senses(self.contacts, at)
             found = block.frictions(signs)
             self._take(block, found, _worst(block, signs, found), block.frictions(-signs))
             rests = in_one_row(self.resting[at.designs, at.poses], at)
@@ -141,28 +143,28 @@ class MotionWithFriction:
             yield at, block.with_friction(found.sizes)
 
     def _take(self, block: BlockWithFriction, found: Frictions, worst: Number, back: Frictions) -> None:
-        """Add what was found of a block."""
+        """Add the frictions of a block."""
         at = block.at
         here = at.designs, at.poses
         self.state[here] = found.state.reshape(at.block.shape)
         self.worst[here] = worst.reshape(at.block.shape)
-        for k, (rub, unit) in enumerate(zip(self.rubs, block.units, strict=True)):
-            self.sizes[rub.name][here] = found.sizes[k].reshape(at.block.shape)
-            self.units[rub.name].force[here] = unit.force
-            self.units[rub.name].moment[here] = unit.moment
+        for k, (contact, unit) in enumerate(zip(self.contacts, block.units, strict=True)):
+            self.sizes[contact.name][here] = found.sizes[k].reshape(at.block.shape)
+            self.units[contact.name].force[here] = unit.force
+            self.units[contact.name].moment[here] = unit.moment
         for name, efforts in self.backward.items():
             efforts[here] = block.effort(name, back.sizes).reshape(at.block.shape)
 
     def _hold(self, block: BlockWithFriction, name: str, moved: LoadedBlock, rests: Number) -> None:
-        """Add what holds a driver where it rests."""
+        """Add the interval of efforts that hold a driver at rest."""
         here = block.at.designs, block.at.poses
         for whole, part in zip(self.intervals[name], block.interval(name, moved, rests), strict=True):
             whole[here] = part.reshape(block.at.block.shape)
 
-    def found(self) -> FrictionForces:
+    def result(self) -> FrictionForces:
         """Return the frictions over all blocks."""
         return FrictionForces(
-            self.motion, self.rubs, self.sizes, self.units, self.state, self.worst,
+            self.motion, self.contacts, self.sizes, self.units, self.state, self.worst,
             self.resting, self.backward, self.intervals,
         )  # fmt: skip
 
@@ -170,34 +172,36 @@ class MotionWithFriction:
 def with_friction(dry: Forces) -> Forces:
     """Return the forces of a motion with the frictions that its mechanism has."""
     motion = dry.motion
-    rubbed = MotionWithFriction(motion)
+    solved = MotionWithFriction(motion)
     with np.errstate(all="ignore"):
-        wrenches = joined_reactions(motion, rubbed.blocks(dry.inertia))
-        all_frictions = replace(rubbed.found(), **_left_open(dry, rubbed.rubs))
+        wrenches = joined_reactions(motion, solved.blocks(dry.inertia))
+        all_frictions = replace(solved.result(), **_left_open(dry, solved.contacts))
     for wedged in all_frictions.wedged:
         warn(f"{wedged}; forces are NaN there", WedgedPoses)
     on_frame, more = wrenches.pop(ON_FRAME), (*dry.more, *_acting(all_frictions))
-    return replace(dry, wrenches=wrenches, on_frame=on_frame, more=more, rubbed=all_frictions, dry=dry)
+    return replace(
+        dry, wrenches=wrenches, on_frame=on_frame, more=more, friction_forces=all_frictions, without_friction=dry
+    )
 
 
-def _left_open(dry: Forces, rubs: tuple[LoadedContact, ...]) -> dict[str, Any]:
-    """Return which frictions are open, as equilibrium leaves open what presses there; and at which poses."""
+def _left_open(dry: Forces, contacts: tuple[LoadedContact, ...]) -> dict[str, Any]:
+    """Return the frictions whose normal forces equilibrium does not determine, and the poses."""
     names, poses = list[str](), np.zeros(dry.motion.failed.shape, dtype=bool)
-    for rub in rubs if dry.relaxed else ():
-        place = dry.motion.poses[rub.pair.members[1]].at(dry.motion.inputs.ends[rub.name][1].point).c[0]
-        found = dry.self_stress.open([(rub.name, 1.0)], place)
-        here = found.force | found.moment if rub.friction.length is not None else found.force
-        if np.any(here) and np.any(np.asarray(rub.friction.coefficient) > 0.0):
-            names.append(rub.name)
+    for contact in contacts if dry.relaxed else ():
+        place = dry.motion.poses[contact.pair.members[1]].at(dry.motion.inputs.ends[contact.name][1].point).c[0]
+        found = dry.self_stress.open([(contact.name, 1.0)], place)
+        here = found.force | found.moment if contact.friction.length is not None else found.force
+        if np.any(here) and np.any(np.asarray(contact.friction.coefficient) > 0.0):
+            names.append(contact.name)
             poses = poses | here
     return {"undetermined": tuple(names), "left_open": poses}
 
 
 def _acting(found: FrictionForces) -> Iterator[LinkWrench]:
-    """Yield the frictions as what acts on links."""
+    """Yield the frictions as wrenches on links."""
     motion = found.motion
     for one in found.pairs.values():
-        pair = one.rub.pair
+        pair = one.contact.pair
         poses, ends = tuple(motion.poses[name] for name in pair.members), motion.inputs.ends[one.name]
         attack = pair.acting_place(ends, poses)
         for link, by, wrench in zip(pair.members[1::-1], pair.members[:2], (one.wrench, -one.wrench), strict=True):
@@ -205,7 +209,7 @@ def _acting(found: FrictionForces) -> Iterator[LinkWrench]:
 
 
 def _worst(block: BlockWithFriction, signs: Number, found: Frictions) -> Number:
-    """Return the friction at each pose that is wedged first, where one is."""
+    """Return the index of the friction that wedges first at each pose, 0 where none does."""
     worst = np.zeros(len(found.state), dtype=int)
     stuck = np.flatnonzero(np.isin(found.state, (NONE, SEVERAL)))
     if len(stuck):
@@ -229,5 +233,5 @@ def _problems(motion: Motion) -> Iterator[Problem]:
     for spin in motion.structure.passive:
         mass, middle = mechanism.masses.get(spin.link), mechanism.geometry.points[spin.link][spin.at]
         if mass is not None and np.any(np.abs(mechanism.mass_centre(mass) - middle) > AT_PIN * motion.size):
-            what = f"{spin.link} turns freely about {spin.at}: where a mass centre off it goes is not known"
+            what = f"{spin.link} turns freely about {spin.at}: the position of a mass centre off the pin is unknown"
             yield Problem(f"masses.{spin.link}.at", what, f'put it at the pin: at="{spin.at}"')

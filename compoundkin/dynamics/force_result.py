@@ -31,7 +31,7 @@ class ForceResult(CopiesFields):
     """What an analysis of forces found, with its motion.
 
     `wrenches` are those on the second member of each pair from the first, (designs, poses), about the world's origin;
-    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction; `rubbed` are the
+    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction; `friction_forces` are the
     frictions of a mechanism that has some. Of a mechanism held by too much they are those with what the structure's
     `relaxation` names left free: one of many possible, which is told only where that is `assumed`.
     At poses that are `singular` they are told where they have a limit. `held` is what holds in the place of a driver.
@@ -44,13 +44,17 @@ class ForceResult(CopiesFields):
     more: tuple[LinkWrench, ...] = ()
     assumed: bool = False
     singular: tuple[SingularPose, ...] = ()
-    rubbed: FrictionForces | None = None
+    friction_forces: FrictionForces | None = None
     held: HoldingEffort | None = None
 
     @cached_property
     def friction(self) -> FrictionForces:
         """The frictions in pairs, and where the mechanism is wedged by them."""
-        return no_friction(self.motion) if self.rubbed is None else replace(self.rubbed, assumed=self.assumed)
+        return (
+            no_friction(self.motion)
+            if self.friction_forces is None
+            else replace(self.friction_forces, assumed=self.assumed)
+        )
 
     @property
     def units(self) -> Units:

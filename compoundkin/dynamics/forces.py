@@ -31,12 +31,12 @@ class Forces(DisplaysHtml, ForceResult):
     Arrays have the motion's shape, and are NaN where poses are not assembled.
     """
 
-    dry: Forces | None = None
+    without_friction: Forces | None = None
 
     @property
     def frictionless(self) -> Forces:
         """The forces of the same motion without friction."""
-        return self if self.dry is None else self.dry
+        return self if self.without_friction is None else self.without_friction
 
     @cached_property
     def efficiency(self) -> Efficiency:

@@ -19,7 +19,7 @@ from compoundkin.model.attributes import SHAKING_FORCE
 from compoundkin.model.geometry import FRAME
 
 SHAKING = f"{FRAME}.{SHAKING_FORCE}"
-# A driver whose way differs from a full turn by so many radians makes one: sums of steps round.
+# Travel within so many radians of a full turn is one: rounding of sums of steps.
 FULL_TURN_ERROR = 1e-9
 # A cycle is sampled at twice as many places until no coefficient changes by more than this part of the largest.
 CONVERGED, FEWEST, MOST = 1e-12, 64, 4096
@@ -74,10 +74,10 @@ class Harmonics(ShortRepr):
 def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driver: str | None = None) -> Harmonics:
     """Return the harmonics of a quantity over a closed cycle.
 
-    That is the shaking force without a name. The cycle is sampled at places equally spaced by the time, or by the
-    driver, which are solved again; ever more of them, until nothing changes. Of the only driver without a name. Names
-    are those of `quantity`. Raises InvalidInput for what is no closed cycle and for a driver that does not go on
-    throughout, UnknownName for unknown names.
+    The default quantity is the shaking force, the default driver the only one. The cycle is solved at places equally
+    spaced in time, or by the driver, whose number doubles until the coefficients converge. Names are those of
+    `quantity`. Raises InvalidInput for a motion that is no closed cycle and for a driver that does not move
+    monotonically, UnknownName for unknown names.
 
     Source: e.g. J. P. Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, chapter 5.
 
@@ -123,7 +123,7 @@ class _Cycle:
         steps = np.diff(self.along, axis=1)
         if not (np.all(steps > 0) or np.all(steps < 0)):
             raise InvalidInput(
-                Problem(driver or "time", "it does not go on throughout the cycle", "name a driver that does")
+                Problem(driver or "time", "it is not monotonic over the cycle", "name a driver that does")
             )
         span = self.along[:, -1] - self.along[:, 0]
         is_turn = driver is not None and motion.drives[driver].is_angle
@@ -132,7 +132,7 @@ class _Cycle:
         )
 
     def coefficients(self, name: str, orders: int, count: int) -> tuple[Number, Number]:
-        """Return the coefficients of both senses, (designs, orders + 1)."""
+        """Return the forward and backward coefficients, (designs, orders + 1)."""
         designs, poses = self.along.shape
         part = np.arange(count) / count
         places = np.array([_places(row, part) for row in self.along])
@@ -145,7 +145,7 @@ class _Cycle:
 
 
 def _places(row: Number, part: Number) -> Number:
-    """Return the places where a row of values, which go on, has gone parts of its whole way."""
+    """Return the places at which a monotonic row of values has covered the given parts of its range."""
     gone = (row - row[0]) / (row[-1] - row[0])
     found: Number = np.interp(part, gone, np.arange(len(row)))
     return found

@@ -1,4 +1,4 @@
-"""Some designs x some poses of a solved motion with all that loads ask for, and what acts on each link."""
+"""Some designs x some poses of a solved motion as loads see them, and the wrenches on each link."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from compoundkin.structure.kinematic_structure import Structure
 
 @dataclass(frozen=True)
 class LoadedBlock:
-    """Some designs x some poses of a motion. It answers what loads ask for."""
+    """Some designs x some poses of a motion, with the quantities that loads need."""
 
     motion: Motion
     block: Block
     designs: slice
     poses: slice
-    counted: dict[str, Number] = field(default_factory=dict)  # angles of pairs over the whole motion, once asked for
+    counted: dict[str, Number] = field(default_factory=dict)  # angles of pairs over the whole motion, computed once
 
     @cached_property
     def units(self) -> Units:
@@ -51,7 +51,7 @@ class LoadedBlock:
         return self.block.world[link]
 
     def place(self, link: str, point: str | complex) -> Series:
-        """Return where a point of a link is. By its letter or its place in the link."""
+        """Return the position of a point of a link, given by its letter or its place in the link."""
         own = self.motion.mechanism.geometry.points[link][point] if isinstance(point, str) else point
         return as_series(self.block.world[link].at(self.fitted(own)))
 
@@ -67,7 +67,7 @@ class LoadedBlock:
         return Series((value * sign, *(one * sign for one in found.c[1:])))
 
     def _counted(self, pair: Pair) -> Number:
-        """Return an angle with its turns, which the whole motion tells. It is found once for all blocks."""
+        """Return an angle with its turns over the whole motion, computed once for all blocks."""
         if pair.name not in self.counted:
             self.counted[pair.name] = fit(self.motion.shape)(self._angle(pair))
         return self._cut(self.counted[pair.name])
@@ -107,21 +107,21 @@ class LoadedBlock:
         return tuple(self.block.world[name] for name in pair.members)
 
     def fitted(self, value: Any, where: str = "load") -> Number:
-        """Return what of a value belongs to these poses. `where` names it in errors."""
+        """Return the part of a value at these poses. `where` names it in errors."""
         return self._cut(given_over(self.motion, value, where))
 
     def _cut(self, value: Number) -> Number:
         return rectangle(value, self.designs, self.poses)
 
     def known(self, inertia: bool) -> dict[str, Wrench]:
-        """Return what is known to act on every link. Loads, weights, and inertia where it is asked for."""
+        """Return the known wrench on every link: loads, weights, and inertia if requested."""
         found = self.applied()
         for mass in self.motion.mechanism.masses.values() if inertia else ():
             found[mass.link] = found.get(mass.link, Wrench()) + self.inertia(mass)
         return found
 
     def applied(self) -> dict[str, Wrench]:
-        """Return what loads and weights do to every link."""
+        """Return the wrench of loads and weights on every link."""
         found: dict[str, Wrench] = {}
         for _, link, wrench in self.named_loads():
             found[link] = found.get(link, Wrench()) + wrench
@@ -137,7 +137,7 @@ class LoadedBlock:
             yield mass, mass.link, self.weight(mass)
 
     def freed(self, link: str, wrench: Wrench) -> Wrench:
-        """Return a wrench on a link. What would turn a link that turns freely, such as a roller, is left aside."""
+        """Return a wrench on a link without the moment on a link that turns freely, such as a roller."""
         return without_free_turning(self.motion.structure, self.block, link, wrench)
 
     def weight(self, mass: Mass) -> Wrench:
@@ -161,7 +161,7 @@ class LoadedBlock:
 
 
 def without_free_turning(structure: Structure, block: Block, link: str, wrench: Wrench) -> Wrench:
-    """Return a wrench on a link. What would turn a link that turns freely is left aside."""
+    """Return a wrench on a link; of a link that turns freely only the force at its pin."""
     if not any(spin.link == link for spin in structure.passive):
         return wrench
     spun = (step for body in structure.bodies for step in body.driven if step.is_passive)

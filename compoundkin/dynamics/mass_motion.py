@@ -52,7 +52,7 @@ class MassMotion(ShortRepr):
 
     @property
     def moment(self) -> Number:
-        """The moment about the world's origin that the acceleration takes."""
+        """The moment of the inertia forces about the world's origin, with reversed sign."""
         return cross(self.centre[0], self.force) + self.turning[1] * self.inertia
 
 
@@ -62,7 +62,7 @@ def mass_motions(motion: Motion) -> Iterator[MassMotion]:
     for mass in motion.mechanism.masses.values():
         pose, place = motion.poses[mass.link], mass_centre_place(motion, mass)
         centre = tuple(pose.derivative(place, k) for k in range(motion.order + 1))
-        # a link that may turn freely, such as a roller, is not turned
+        # a link that turns freely, such as a roller, has no rotary inertia
         inertia = 0.0 if mass.link in free else given_over(motion, mass.inertia)
         yield MassMotion(mass.link, given_over(motion, mass.mass), inertia, centre, _turning(motion, pose))
 
@@ -87,7 +87,7 @@ def units_of_masses(motion: Motion) -> Units:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EquivalentInertia(ShortRepr):
-    """The inertia that drivers feel at every pose, and its derivatives by their coordinates.
+    """The equivalent inertia at the drivers for every pose, and its derivatives by their coordinates.
 
     `matrix` is (..., drivers, drivers) and `slopes` (..., drivers, drivers, drivers), the last axis the coordinate that
     it is derived by. In units of mass and length, as masses are written: mass x length^2 for angles, a mass for slides.
@@ -100,7 +100,7 @@ class EquivalentInertia(ShortRepr):
 
     @property
     def inertia(self) -> Number:
-        """The inertia that the only driver feels. Raises InvalidInput where there are several."""
+        """The equivalent inertia at the only driver. Raises InvalidInput where there are several."""
         self._one()
         return self.matrix[..., 0, 0]
 
@@ -112,16 +112,16 @@ class EquivalentInertia(ShortRepr):
 
     def _one(self) -> None:
         if len(self.drivers) != 1:
-            told = f"{len(self.drivers)} drivers feel an inertia: {', '.join(self.drivers)}"
+            told = f"{len(self.drivers)} drivers have an equivalent inertia: {', '.join(self.drivers)}"
             raise InvalidInput(Problem("inertia", told, "take .matrix and .slopes"))
 
 
 @checked
 def equivalent_inertia(motion: Motion) -> EquivalentInertia:
-    """Return the inertia that drivers feel at every pose, with its derivatives.
+    """Return the equivalent inertia at the drivers for every pose, with its derivatives.
 
-    It depends on the poses only: speeds, loads and gravity do not matter. The derivatives come of accelerations at
-    constant unit speeds, without a difference. Raises InvalidInput for a mechanism without masses.
+    It depends on the poses only, not on speeds, loads and gravity. The derivatives follow from accelerations at constant
+    unit speeds, without differences. Raises InvalidInput for a mechanism without masses.
 
     Source: reduced mass and its derivative, e.g. F. Wittenbauer, Graphische Dynamik, Springer 1923.
 
@@ -156,7 +156,7 @@ def _masses(motion: Motion, speeds: Mapping[str, Number]) -> tuple[MassMotion, .
 def _second(
     motion: Motion, drivers: tuple[str, ...], alone: list[tuple[MassMotion, ...]]
 ) -> dict[tuple[int, int], tuple[MassMotion, ...]]:
-    """Return the masses with their second derivatives by two coordinates in the place of accelerations."""
+    """Return the masses with second derivatives by two coordinates instead of accelerations."""
     found = {(k, k): moved for k, moved in enumerate(alone)}
     for i in range(len(drivers)):
         for k in range(i):
@@ -167,7 +167,7 @@ def _second(
 
 
 def _mixed(both: MassMotion, one: MassMotion, other: MassMotion) -> MassMotion:
-    """Return what two coordinates that move together add to the accelerations, by each of the two."""
+    """Return the mixed second derivatives by two coordinates."""
     centre = 0.5 * (both.centre[2] - one.centre[2] - other.centre[2])
     turning = 0.5 * (both.turning[1] - one.turning[1] - other.turning[1])
     return MassMotion(both.link, both.mass, both.inertia, (both.centre[0], 0j, centre), (0.0, turning))
@@ -187,15 +187,11 @@ def _in_motion_shape(motion: Motion, values: Number) -> Number:
     return values.reshape(*motion.shape, *values.shape[2:])
 
 
-# What is said of arrays.
 OF_DESIGNS = "its numbers are arrays, and one design is simulated at a time"
 
 
 class MovingMass(NamedTuple):
-    """The mass of a link that moves, and its centre in the link's frame.
-
-    It is in the units in which forces come out.
-    """
+    """The mass of a moving link and its centre in the link's frame, in units consistent with forces."""
 
     link: str
     centre: complex
@@ -204,9 +200,9 @@ class MovingMass(NamedTuple):
 
 
 def moving_masses(structure: Structure) -> tuple[MovingMass, ...]:
-    """Return the masses of the links. Raises InvalidInput for those that are arrays over designs.
+    """Return the masses of the links. Raises InvalidInput for arrays over designs.
 
-    A link that may turn freely, such as a roller, is not turned: its inertia does nothing.
+    A link that turns freely, such as a roller, has no rotary inertia.
     """
     mechanism, free = structure.mechanism, {spin.link for spin in structure.passive}
     if np.size(mechanism.gravity) > 1:
@@ -224,10 +220,7 @@ def moving_masses(structure: Structure) -> tuple[MovingMass, ...]:
 
 
 class InertiaTerms(NamedTuple):
-    """The mass matrix by the drivers, the bias, and the weights.
-
-    The bias is what inertia takes without accelerations of the drivers.
-    """
+    """The mass matrix by the drivers, the bias (inertia forces without accelerations of the drivers), and the weights."""
 
     matrix: Number
     bias: Number
@@ -239,7 +232,7 @@ def inertia_terms(
 ) -> InertiaTerms:
     """Return the terms of an equation of motion at one pose of `count` drivers.
 
-    Each pose has the rates at unit rate of every driver in a column, and last those of the true motion without
+    Each pose has in its columns the rates at unit rate of every driver, and last those of the true motion without
     accelerations of the drivers.
     """
     rates = np.zeros((2 * len(masses), count + 1), dtype=complex)

@@ -29,7 +29,7 @@ from compoundkin.studies.study_run import run_study
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Study(StudyPlan):
-    """A study that can be run: designs, and what is asked of each. It is saved as a .toml or .json file."""
+    """A study that can be run: designs and their outputs. It is saved as a .toml or .json file."""
 
     saved_as: ClassVar[Kind] = "study"
 
@@ -52,13 +52,13 @@ class Study(StudyPlan):
     ) -> StudyResult:
         """Compute all rows, in memory or into a folder of Parquet files.
 
-        A folder has the study itself and parts that are written whole or not at all: a run that was stopped, however,
-        goes on when it is started again, and the result reads from the folder what it is asked for.
-        They are computed by `threads`, as many as there are cores, or `on` other workers: any executor of
-        `concurrent.futures`, or a Dask client. `chunk` is how many rows a worker computes at a time, in whole blocks.
-        `progress` is called with how many rows are there, and of how many. Numbers depend on none of these.
-        Raises InvalidInput for what cannot be meant, such as the folder of another study, and StudyStopped where
-        workers die or a disk is full.
+        A folder contains the study itself and parts that are written whole or not at all: an interrupted run continues
+        when it is started again, and the result reads columns from the folder when they are needed.
+        Rows are computed by `threads`, by default one for each core, or `on` other workers: any executor of
+        `concurrent.futures`, or a Dask client. `chunk` is the number of rows that a worker computes at a time, in whole
+        blocks. `progress(done, total)` is called with numbers of rows. Results depend on none of these.
+        Raises InvalidInput for invalid arguments, such as the folder of another study, and StudyStopped where workers
+        die or a disk is full.
         """
         for name, value in {"chunk": chunk, "threads": threads}.items():
             if value is not None and value < 1:
@@ -86,12 +86,11 @@ def study(
 ) -> Study:
     """Return a study of many designs of a mechanism, to be run.
 
-    `dimensions` are free dimensions by name and what each may be: a range (40, 60), a frozen distribution of
-    scipy.stats, levels, `around(centre, within)`; or the path of a CSV or Parquet table of one's own designs, with
-    sample="table". `outputs` are quantities and figures by name; or {"error": function, "G.x.stroke": None}, where
-    functions of a pose, as `CompiledPath.objective` takes them, are summed over the motion and read what is `given`.
-    `sample` says which designs, `count` how many. Drivers move as in `solve`, in the same `modes`.
-    Raises InvalidInput and UnknownName for what cannot be computed, before anything is.
+    `dimensions` are variations of free dimensions by name: a range (40, 60), a frozen distribution of scipy.stats,
+    levels, `around(centre, within)`; or the path of a CSV or Parquet table of designs, with sample="table". `outputs` are quantities and figures by name; or {"error": function, "G.x.stroke": None}, where
+    functions of a pose, as `CompiledPath.objective` takes them, are summed over the motion and read the data `given`.
+    `sample` is the kind of sample, `count` the number of designs. Drivers move as in `solve`, in the same `modes`.
+    Raises InvalidInput and UnknownName before anything is computed.
 
     >>> import compoundkin as ck
     >>> press = ck.load("crank-rocker")
@@ -100,8 +99,8 @@ def study(
     >>> len(result), bool(result.assembled.all())
     (64, True)
     """
-    asked = (outputs,) if isinstance(outputs, str) else outputs if isinstance(outputs, Mapping) else tuple(outputs)
-    if not asked:
+    wanted = (outputs,) if isinstance(outputs, str) else outputs if isinstance(outputs, Mapping) else tuple(outputs)
+    if not wanted:
         raise InvalidInput(Problem("outputs", "there is none", 'name some: ["G.position", "bar.angle.stroke"]'))
     if given is not None and not isinstance(outputs, Mapping):
         raise InvalidInput(Problem("given", "no output reads it", "it is for outputs that are functions"))
@@ -109,10 +108,10 @@ def study(
     if not isinstance(dimensions, Mapping) and sample != TableSample.word:
         raise InvalidInput(Problem("sample", "the dimensions are the columns of a table", f"{TableSample.word!r}"))
     drive = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
-    made = Study(mechanism, free, asked, sample_of(sample, count, seed, free), **drive, modes=modes, given=given)
+    found = Study(mechanism, free, wanted, sample_of(sample, count, seed, free), **drive, modes=modes, given=given)
     with suppress_pose_warnings():
-        made.hold()
-    return made
+        found.check()
+    return found
 
 
 @checked
@@ -129,9 +128,9 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 def loads_study(text: str, syntax: Syntax = "toml", *, where: str = "study file", folder: Path = Path()) -> Study:
-    """Return the study that a text in TOML or JSON says.
+    """Return the study of a text in TOML or JSON.
 
-    Its paths are seen from a folder; `where` names the text in errors.
+    Its paths are relative to a folder; `where` names the text in errors.
     """
     try:
         arguments = study_arguments(parsed(text, known_syntax(syntax), where, "study"), folder, where)

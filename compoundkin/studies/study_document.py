@@ -44,12 +44,12 @@ _UNITS = {"rad", "polar"}
 
 
 def study_arguments(document: Mapping[str, Any], folder: Path, where: str = "") -> dict[str, Any]:
-    """Return the arguments of `study` that a document says.
+    """Return the arguments of `study` in a document.
 
-    Paths are seen from a folder. Raises InvalidInput listing all problems.
+    Paths are relative to a folder. Raises InvalidInput listing all problems.
     """
     log = Recovery({})
-    _hold_version(document.get(FORMAT), log)
+    _check_version(document.get(FORMAT), log)
     known = [FORMAT, *(key.name for key in HEAD), *OTHERS]
     given = {name: value for name, (value, _) in log.recognized(document, known, "").items()}
     head = log.table({key.name: given[key.name] for key in HEAD if key.name in given}, HEAD, "")
@@ -68,7 +68,7 @@ def study_arguments(document: Mapping[str, Any], folder: Path, where: str = "") 
     return found
 
 
-def _hold_version(version: Any, log: Recovery) -> None:
+def _check_version(version: Any, log: Recovery) -> None:
     if isinstance(version, bool) or version not in FORMATS:
         what = "it is missing" if version is None else f"{described(version)} is not a known version of the format"
         log.report(bad(FORMAT, what, f"known: {', '.join(f'format = {one}' for one in FORMATS)}"))
@@ -96,7 +96,7 @@ def _mechanism(given: Mapping[str, Any], folder: Path, log: Recovery) -> Mechani
 def _dimensions(
     given: Mapping[str, Any], mechanism: Mechanism | None, angles: Mapping[str, bool], folder: Path, log: Recovery
 ) -> dict[str, Any]:
-    """Return what dimensions may be, by name; those of a table are its columns."""
+    """Return variations by dimension; for a table its columns."""
     found: dict[str, Any] = {}
     if isinstance(path := given.get(DIMENSIONS), str) and path:
         return _columns(folder / path, given, log)
@@ -126,7 +126,7 @@ def _columns(path: Path, given: Mapping[str, Any], log: Recovery) -> dict[str, A
 
 
 def _unquoted(raw: Any) -> str:
-    """Return the rest of a name that tables were made of, for it is not in quotes."""
+    """Return the rest of a dotted name that TOML read as nested tables, as it is not quoted."""
     if not isinstance(raw, dict):
         return ""
     inner = next((key for key, one in raw.items() if isinstance(one, dict) and not _UNITS.issuperset(one)), "")
@@ -148,7 +148,7 @@ def _driven(
 
 
 def _whole(given: Mapping[str, Any], key: str, what: str, log: Recovery) -> dict[str, Any]:
-    """Return what is a text, or whole numbers by names."""
+    """Return a text, or whole numbers by name."""
     said = given.get(key)
     if key not in given or (isinstance(said, str) and said):
         return {key: said} if said else {}
@@ -160,7 +160,7 @@ def _whole(given: Mapping[str, Any], key: str, what: str, log: Recovery) -> dict
 
 
 def _table(given: Mapping[str, Any], name: str, log: Recovery) -> Mapping[str, Any]:
-    """Return a table of the file that may not be empty."""
+    """Return a table of the file that must not be empty."""
     said = given.get(name)
     if isinstance(said, dict) and said:
         return said
@@ -172,7 +172,7 @@ def _table(given: Mapping[str, Any], name: str, log: Recovery) -> Mapping[str, A
 
 
 class DescribesStudy(Protocol):
-    """What a study says: the arguments that it was made with, by their names."""
+    """The arguments of a study by name."""
 
     @property
     def mechanism(self) -> Mechanism:
@@ -180,15 +180,15 @@ class DescribesStudy(Protocol):
 
     @property
     def dimensions(self) -> Mapping[str, Variation]:
-        """What each dimension may be."""
+        """The variation of each dimension."""
 
     @property
     def outputs(self) -> Any:
-        """What is found of each design."""
+        """The outputs of each design."""
 
     @property
     def sample(self) -> DesignSample:
-        """Which designs."""
+        """The sample of designs."""
 
 
 def study_text(study: DescribesStudy, form: str) -> str:
@@ -197,9 +197,9 @@ def study_text(study: DescribesStudy, form: str) -> str:
 
 
 def study_document(study: DescribesStudy) -> dict[str, Any]:
-    """Return the document that says what a study says, the mechanism in it.
+    """Return the document of a study, with its mechanism.
 
-    Raises InvalidInput for what files cannot say: outputs that are Python functions.
+    Raises InvalidInput for outputs that are Python functions.
     """
     if isinstance(study.outputs, Mapping):
         what, remedy = "a Python function cannot be written to a file", "write outputs by their names"
@@ -234,7 +234,7 @@ def _modes(modes: Any) -> Any:
 
 
 def _drives(study: DescribesStudy, angles: Mapping[str, bool]) -> dict[str, dict[str, Any]]:
-    """Return what drivers do, by driver."""
+    """Return values and rates by driver."""
     found: dict[str, dict[str, Any]] = {}
     for word in (VALUES, *RATES):
         given = by_name(study.mechanism, getattr(study, word, None))
@@ -293,7 +293,7 @@ def _by_name(entry: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "additionalProperties": entry, "minProperties": 1}
 
 
-# What a variation says, and what it may say besides.
+# Required and optional keys of each kind of variation.
 _VARIATIONS: tuple[tuple[dict[str, Any], dict[str, Any]], ...] = (
     ({"low": _PLACE, "high": _PLACE}, {}),
     ({"centre": _PLACE, "within": _PLACE}, {"sigmas": _NUMBER}),
@@ -324,7 +324,7 @@ HEAD = (
     Key(SEED, "whole", "Makes random samples repeatable.", default=0),
     Key(TIME, "times", "The times in seconds at which drivers with laws are solved."),
 )
-# What is read by rules of its own.
+# Keys with rules of their own.
 OTHERS = {
     MECHANISM: "The path of its file, seen from this one; the name of a shipped mechanism; or its whole document.",
     DIMENSIONS: 'What each dimension may be, by its name in quotes: "crank.B" = { low = 40, high = 60 }; '
@@ -333,9 +333,9 @@ OTHERS = {
     MODES: "The assembly modes by links, 1 or -1; or the name of a configuration.",
     SAMPLE: f"Which designs: {', '.join(SAMPLES)}; or the number of levels of each dimension.",
 }
-# What drivers do, as mechanism files say it.
+# Values and rates of drivers, as in mechanism files.
 DRIVEN = tuple(key for key in Drive.keys if key.name in (VALUES, *RATES))
-# What a variation says that has the unit of its dimension, degrees of an angle; all else has none.
+# Keys of variations in the unit of the dimension, degrees for an angle.
 WITH_UNIT = ("low", "high", "centre", "within", "values", "loc", "scale")
 _HOW = "write { low = 40, high = 60 }, { centre = 50, within = 0.1 } or { values = [40, 50, 60] }"
 
@@ -343,7 +343,7 @@ _HOW = "write { low = 40, high = 60 }, { centre = 50, within = 0.1 } or { values
 def variation_data(raw: Any, where: str, is_angle: bool | None, log: Recovery) -> dict[str, Any] | None:
     """Return the plain numbers of a variation, radians. None where the entry is broken, which is reported.
 
-    `is_angle` is None where it is not known, for the mechanism is broken.
+    `is_angle` is None where the mechanism is broken.
     """
     if not isinstance(raw, dict):
         log.report(wrong(where, raw, "a table", _HOW))
@@ -359,7 +359,7 @@ def variation_data(raw: Any, where: str, is_angle: bool | None, log: Recovery) -
 
 
 def variation_entry(data: Mapping[str, Any], is_angle: bool) -> dict[str, Any]:
-    """Return what a file says of a variation.
+    """Return the entry of a variation in a file.
 
     >>> variation_entry({"low": 0.0, "high": np.deg2rad(30.0)}, True)
     {'low': 0, 'high': 30}
@@ -390,9 +390,7 @@ _ANGLES = ("angle", "turn", "sweep")
 
 
 def is_angle_dimension(mechanism: Mechanism, driven_angles: Mapping[str, bool], name: str) -> bool:
-    """Tell whether a dimension is an angle.
-
-    Points and names that there are not are none.
+    """Return whether a dimension is an angle; False for points and unknown names.
 
     >>> from compoundkin.files import load
     >>> six_bar = load("six-bar")
@@ -409,7 +407,7 @@ def is_angle_dimension(mechanism: Mechanism, driven_angles: Mapping[str, bool], 
 def _owners(
     mechanism: Mechanism, driven_angles: Mapping[str, bool]
 ) -> Iterator[tuple[str, tuple[Key, ...], tuple[str, ...]]]:
-    """Yield what has dimensions, its keys, and the kinds of them that are angles."""
+    """Yield the owners of dimensions, their keys, and the kinds of keys that are angles."""
     for drive in mechanism.drives:
         angles = ("coordinate",) if driven_angles.get(drive.name) else ()
         for index, _ in enumerate(getattr(drive.law, SEGMENTS, ())):

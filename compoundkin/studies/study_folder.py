@@ -45,7 +45,7 @@ from compoundkin.studies.study_rows import RunStore, StudyRows, cached_program, 
 def open_folder(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:
     """Return the study of a folder and its rows.
 
-    Raises InvalidInput where it is no folder of a study, or where the study has functions of a program.
+    Raises InvalidInput for a folder without a study, or a study with Python functions.
     """
     parquet("folder")
     place = Path(os.path.abspath(path))
@@ -53,18 +53,18 @@ def open_folder(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:
     try:
         plan = plan_from(head.study)
     except (KeyError, TypeError, AttributeError):
-        raise InvalidInput(Problem(str(place / HEAD), "what it says of the study is damaged")) from None
+        raise InvalidInput(Problem(str(place / HEAD), "its study is damaged")) from None
     return plan, RowsInFolder(head.columns, StudyFolder(place, digest(head.study)).parts())
 
 
 def plan_from(data: Mapping[str, Any]) -> StudyPlan:
-    """Return the study of which these are the data.
+    """Return the study of plain data.
 
-    Raises InvalidInput where a part of it is no data: a function, a configuration without signs.
+    Raises InvalidInput for functions and configurations without signs, which data only name.
     """
-    if untold := list(_unreadable(data, "")):
-        remedy = "run the study into this folder: what is there is not computed again"
-        raise InvalidInput(Problem(f"study.{untold[0]}", "it is an object of a program, which no file holds", remedy))
+    if unreadable := list(_unreadable(data, "")):
+        remedy = "run the study into this folder: existing rows are not computed again"
+        raise InvalidInput(Problem(f"study.{unreadable[0]}", "it is a Python object, which no file contains", remedy))
     named = {name: data["dimensions"][name] for name in data[ORDER]}
     dimensions = {name: variation_from(f"dimensions.{name}", one) for name, one in named.items()}
     sample = sample_from(data["sample"])
@@ -73,7 +73,7 @@ def plan_from(data: Mapping[str, Any]) -> StudyPlan:
 
 
 def _unreadable(data: Any, where: str) -> Iterator[str]:
-    """Yield the places of what the data only name."""
+    """Yield the keys of objects that the data only name."""
     if isinstance(data, Mapping):
         if CALLED in data:
             yield where
@@ -87,9 +87,9 @@ _MORE = 3
 
 
 class FolderHead(NamedTuple):
-    """What `study.json` says of a study: its data, its columns, versions.
+    """The content of `study.json`: the study's data, its columns, versions.
 
-    `token` is a word that no other folder has.
+    `token` identifies this folder.
     """
 
     study: Mapping[str, Any]
@@ -99,10 +99,10 @@ class FolderHead(NamedTuple):
 
 
 def prepare_folder(path: str | os.PathLike[str], plan: StudyPlan) -> tuple[StudyFolder, FolderHead]:
-    """Return the folder of a study, which is made where there is none.
+    """Return the folder of a study, created if it does not exist.
 
     Raises InvalidInput for the folder of another study, for one with other files, and where it cannot be written.
-    Warns LikelySlip where other versions have begun it.
+    Warns LikelySlip if other versions began it.
     """
     parquet("folder")
     place = Path(os.path.abspath(path))
@@ -115,7 +115,7 @@ def prepare_folder(path: str | os.PathLike[str], plan: StudyPlan) -> tuple[Study
 
 
 def read_head(place: Path) -> FolderHead:
-    """Return what a folder says of its study. Raises InvalidInput where it is none."""
+    """Return the head of a folder. Raises InvalidInput if it has none or it is damaged."""
     try:
         found = json.loads((place / HEAD).read_bytes())
         known, columns = found["format"], tuple(StudyColumn(**column) for column in found["columns"])
@@ -131,7 +131,7 @@ def read_head(place: Path) -> FolderHead:
 
 
 def _begin(place: Path, head: FolderHead) -> None:
-    """Make a folder, or take an empty one."""
+    """Create a folder, or use an empty one."""
     try:
         place.mkdir(parents=True, exist_ok=True)
         others = [one.name for one in place.iterdir() if not one.name.startswith(".")]
@@ -139,10 +139,10 @@ def _begin(place: Path, head: FolderHead) -> None:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(place), f"it cannot be a folder of a study: {what}")) from None
     if os.path.exists(place / HEAD):
-        # another run has begun it meanwhile
+        # another run began it meanwhile
         return
     if others:
-        what = f"it has files that are no study's, such as {others[0]}"
+        what = f"it has other files, such as {others[0]}"
         raise InvalidInput(Problem(str(place), what, "name a new folder"))
     columns = [column._asdict() for column in head.columns]
     text = json.dumps({"format": FORMAT, **head._asdict(), "columns": columns}, indent=1)
@@ -150,10 +150,10 @@ def _begin(place: Path, head: FolderHead) -> None:
 
 
 def _check_same_study(place: Path, own: FolderHead, there: FolderHead) -> None:
-    """Raise InvalidInput where a folder is that of another study."""
+    """Raise InvalidInput for the folder of another study."""
     if digest(own.study) != digest(there.study):
         where = list(differences(own.study, there.study))
-        # the order says something only where the dimensions are the same
+        # the order matters only where the dimensions are the same
         where = [name for name in where if name != ORDER or where == [ORDER]]
         more = f" and {len(where) - _MORE} more" if len(where) > _MORE else ""
         what = f"it has rows of another study, which differs in {', '.join(where[:_MORE])}{more}"
@@ -172,9 +172,9 @@ class PartTask:
     versions: Mapping[str, str]
 
     def __call__(self, rows: range) -> bytes | None:
-        """Write the part of some rows; return its bytes where the folder is not seen from here.
+        """Write the part of some rows, or return its bytes where the folder cannot be reached.
 
-        Raises InvalidInput where other versions compute here than where the run was started.
+        Raises InvalidInput where versions differ from those of the program that started the run.
         """
         program = cached_program(self.plan)
         if other := version_text(versions(program), self.versions):
@@ -188,10 +188,7 @@ class PartTask:
 
 @lru_cache(16)
 def is_reachable(place: Path, token: str) -> bool:
-    """Return whether a folder is there.
-
-    Another of the same name on another machine is not the same.
-    """
+    """Return whether the folder exists here, not another of the same name on another machine."""
     try:
         return read_head(place).token == token
     except InvalidInput:
@@ -200,22 +197,19 @@ def is_reachable(place: Path, token: str) -> bool:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FolderStore(RunStore):
-    """A folder of parts. What is in it stays, whatever happens to the run."""
+    """A folder of parts, which stay whatever happens to the run."""
 
     folder: StudyFolder
     head: FolderHead
 
     def missing(self) -> Iterator[range]:
-        """Yield the rows that are in no part.
-
-        What killed writers left long ago is removed.
-        """
+        """Yield the rows that are in no part; removes old files of killed writers."""
         self.folder.sweep(is_complete=False)
         yield from self.folder.missing(len(self.plan))
 
     @property
     def task(self) -> Callable[[range], Any]:
-        """What writes a part."""
+        """The task that writes a part."""
         return PartTask(self.plan, self.folder, self.head.token, versions(self.plan.program))
 
     def take(self, rows: range, answer: bytes | None) -> None:
@@ -224,31 +218,31 @@ class FolderStore(RunStore):
             self.folder.write(rows, answer)
 
     def finished(self) -> RowsInFolder:
-        """Return all rows; raises StudyStopped where parts are not to be seen."""
+        """Return all rows; raises StudyStopped where parts are missing."""
         parts = self.folder.parts()
-        if lost := len(self.plan) - sum(len(part.fresh) for part in parts):
+        if missing := len(self.plan) - sum(len(part.fresh) for part in parts):
             raise StudyStopped(
-                Problem(str(self.folder.path), f"{lost} rows were written that are not there", "run again")
+                Problem(str(self.folder.path), f"{missing} rows were written and are missing", "run again")
             )
         self.folder.sweep(is_complete=True)
         return RowsInFolder(self.head.columns, parts)
 
-    def kept(self) -> str:
-        """Return how many rows are there."""
+    def remainder(self) -> str:
+        """Return the number of rows written, as text."""
         there = len(self.plan) - sum(map(len, self.folder.missing(len(self.plan))))
-        return f"{there:,} of {len(self.plan):,} rows are written in {self.folder.path}: run again to go on"
+        return f"{there:,} of {len(self.plan):,} rows are written in {self.folder.path}: run again to continue"
 
 
 _SUFFIX = suffix_for("table", "parquet")
 _PART = re.compile(rf"rows-(\d+)-(\d+){re.escape(_SUFFIX)}")
-# What a writer leaves that was killed; another may still be writing what is younger, in seconds.
+# Temporary files of killed writers; younger ones (seconds) may belong to another run.
 _LEFT, _YOUNG = ".*.tmp", 3600
 
 
 class StudyPart(NamedTuple):
     """A part: its file and its rows.
 
-    The `fresh` ones are those that no part before it has.
+    `fresh` are the rows that no earlier part has.
     """
 
     path: Path
@@ -264,14 +258,14 @@ class StudyFolder:
     fingerprint: str
 
     def part(self, rows: range) -> Path:
-        """Return where the part of some rows is or will be."""
+        """Return the path of the part of some rows."""
         return self.path / f"rows-{rows.start:09d}-{rows.stop:09d}{_SUFFIX}"
 
     def write(self, rows: range, content: bytes) -> None:
         """Write the part of some rows.
 
-        Raises InvalidInput where it cannot be written, and no other run has put these rows there meanwhile: one that
-        completes the folder sweeps what is being written.
+        Raises InvalidInput where it cannot be written, unless another run has written these rows meanwhile: a run that
+        completes the folder removes temporary files.
         """
         try:
             write_atomically(self.part(rows), lambda file: file.write(content))
@@ -280,7 +274,7 @@ class StudyFolder:
                 raise
 
     def parts(self) -> tuple[StudyPart, ...]:
-        """Return the parts that are there, in order.
+        """Return the existing parts, in order.
 
         Warns LikelySlip of files that are damaged or belong to another study: their rows count as missing.
         """
@@ -288,7 +282,7 @@ class StudyFolder:
         named = [(_PART.fullmatch(path.name), path) for path in self.path.iterdir()]
         there = [(range(int(match[1]), int(match[2])), path) for match, path in named if match]
         reached = 0
-        # runs with other chunks leave parts that overlap: the rows are the same, each is taken once
+        # runs with other chunks leave overlapping parts: the rows are the same, each is used once
         for rows, path in sorted(there, key=lambda one: (one[0].start, -one[0].stop)):
             if rows_of_part(path, self.fingerprint) != rows:
                 warn(f"{path}: the part is damaged or of another study: its rows count as missing", LikelySlip)
@@ -302,7 +296,7 @@ class StudyFolder:
         return list(missing_rows((part.fresh for part in self.parts()), count))
 
     def sweep(self, is_complete: bool) -> None:
-        """Remove what killed writers left; where rows are missing, only what is old."""
+        """Remove temporary files; while rows are missing, only old ones."""
         for path in self.path.glob(_LEFT):
             # another run may finish its file meanwhile
             with suppress(FileNotFoundError):
@@ -318,7 +312,7 @@ class RowsInFolder(StudyRows):
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """The number of rows."""
         return sum(len(part.fresh) for part in self.parts)
 
     def column(self, name: str) -> Number:
@@ -333,7 +327,7 @@ class RowsInFolder(StudyRows):
             found[start : start + len(values)] = values
             start += len(values)
         if found is None:
-            raise InvalidInput(Problem(name, "no row is there yet", "run the study"))
+            raise InvalidInput(Problem(name, "there is no row yet", "run the study"))
         return found
 
     def picked(self, places: Number) -> dict[str, Number]:
@@ -353,9 +347,9 @@ class RowsInFolder(StudyRows):
         return {one.name: np.concatenate([rows[one.name] for rows in found])[back] for one in self.columns}
 
 
-# What every part says of the study that it belongs to.
+# The key of a part's metadata that identifies its study.
 STUDY = b"study"
-# So many rows are read at once where one is asked for.
+# Rows in a row group: so many are read at once.
 ROWS_TOGETHER = 8192
 
 
@@ -383,10 +377,7 @@ def _array(arrow: Any, values: Number, width: int | None) -> Any:
 
 
 def rows_of_part(path: Path, fingerprint: str) -> range | None:
-    """Return which rows a part has, by what it says of itself.
-
-    None where it is damaged or belongs to another study.
-    """
+    """Return the rows of a part by its metadata; None if it is damaged or belongs to another study."""
     try:
         found = parquet().read_metadata(path)
     except (OSError, ValueError):
@@ -405,7 +396,7 @@ def part_column(path: Path, column: StudyColumn) -> Number:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    """Yield a part whose pages are checked as they are read; what is wrong with it is told."""
+    """Yield a part whose pages are verified as they are read. Raises InvalidInput for a damaged or missing part."""
     try:
         with parquet().ParquetFile(path, page_checksum_verification=True) as file:
             yield file

@@ -34,13 +34,13 @@ from compoundkin.studies.samples.variations import check_kinds
 from compoundkin.studies.study_program import ROW, StudyColumn, StudyProgram
 
 Outputs: TypeAlias = tuple[str, ...] | Mapping[str, Callable[..., Any] | None]
-# What a study is told besides its dimensions and outputs: how drivers move, and what functions read.
+# Arguments of a study besides its dimensions and outputs: how drivers move, and what functions read.
 PLAN_ARGUMENTS = ("values", *RATES, TIME, "modes", "given")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyPlan:
-    """All that a study is. What computes it is made when it is needed, and stays behind when it is pickled."""
+    """The definition of a study. Its program is compiled when it is needed, and is not pickled."""
 
     mechanism: Mechanism
     dimensions: Mapping[str, Variation]
@@ -53,7 +53,7 @@ class StudyPlan:
     time: Any = None
     modes: Mapping[str, int] | str | Configuration | None = None
     given: Mapping[str, Any] | None = None
-    # copies of one plan that come to a worker, each with a task, are one
+    # identifies copies of one plan that reach a worker with tasks
     key: str = field(default_factory=lambda: secrets.token_hex(8), repr=False)
 
     def __len__(self) -> int:
@@ -61,11 +61,11 @@ class StudyPlan:
 
     @cached_property
     def program(self) -> StudyProgram:
-        """What computes its rows."""
+        """The program that computes its rows."""
         outputs: Any = self.outputs
-        asked: dict[str, Any] = {"given": self.given, "modes": self.modes, **self._rates}
+        arguments: dict[str, Any] = {"given": self.given, "modes": self.modes, **self._rates}
         with name_freeing_argument("dimensions"):
-            path, responses = studied_path(self.mechanism, list(self.dimensions), outputs, self.values, **asked)
+            path, responses = studied_path(self.mechanism, list(self.dimensions), outputs, self.values, **arguments)
         return StudyProgram(self.dimensions, self.sample, path, responses)
 
     @property
@@ -90,7 +90,7 @@ class StudyPlan:
         return found | {name: value for name, value in rest.items() if value is not None}
 
     def _by_driver(self, name: str) -> Any:
-        """Return what drives are given by the name of each, so that what is meant alike is the same."""
+        """Return an argument by driver, so that equal motions have equal data."""
         given = getattr(self, name)
         if given is None or isinstance(given, str):
             return given
@@ -128,10 +128,10 @@ class StudyPlan:
     def _rates(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in (*RATES, TIME)}
 
-    def hold(self) -> None:
-        """Try one design.
+    def check(self) -> None:
+        """Compute one design, so that mistakes are found before a run.
 
-        Raises InvalidInput, UnknownName or what solving raises where the study could not be computed.
+        Raises InvalidInput, UnknownName, and what `solve` raises.
         """
         program = self.program
         check_kinds(self.dimensions, program.path.compiled.programs.dimensions)
@@ -162,16 +162,16 @@ class StudyPlan:
         return hash(self.key)
 
 
-# What stands in the data for things that cannot be written: what they are called and what tells them from others.
+# Keys of objects that cannot be written: their name, and a digest of their content.
 CALLED, CONTENT = "called", "content"
-# Samples give their columns to the dimensions in order, which tables of JSON do not keep for certain.
+# A sample assigns its columns to the dimensions in order, which JSON does not guarantee.
 ORDER = "order of dimensions"
 
 
 def plain_value(value: Any) -> Any:
     """Return a value as plain numbers, texts, lists and tables; points as [x, y].
 
-    Functions, and configurations without a name of signs, are told by a digest.
+    Functions, and configurations without a name of signs, become a name and a digest.
 
     >>> plain_value({"crank": np.array([0.0, 1.5]), "at": 2 + 1j, "n": np.int64(3)})
     {'crank': [0.0, 1.5], 'at': [2.0, 1.0], 'n': 3}
@@ -201,7 +201,7 @@ def plain_numbers(value: Any) -> Any:
 
 
 def _function_data(value: Any) -> Any:
-    """Say of what cannot be written how it is called, and by what it differs from others."""
+    """Return the name and digest of an object that cannot be written."""
     if isinstance(value, Configuration):
         if set(value.modes.values()) <= set(SIGNS.values()):
             return value.name
@@ -211,7 +211,7 @@ def _function_data(value: Any) -> Any:
 
 
 def _content(function: Any, callers: tuple[Any, ...] = ()) -> Any:
-    """Return what a function does, and the values that it holds and reads of its module: lists of plain things."""
+    """Return a function's code, defaults, closure and the globals that it reads, as plain lists."""
     code = getattr(function, "__code__", None)
     if code is None:
         return repr(function)
@@ -224,7 +224,7 @@ def _content(function: Any, callers: tuple[Any, ...] = ()) -> Any:
 
 
 def _read(value: Any, callers: tuple[Any, ...]) -> Any:
-    """Return what tells a value that functions read from others; a library is what it is called."""
+    """Return the content of a value that a function reads; a module is its name."""
     if isinstance(value, ModuleType) or any(value is one for one in callers):
         return value.__name__
     return _content(value, callers) if hasattr(value, "__code__") else plain_value(value)
@@ -245,7 +245,7 @@ def _instructions(code: CodeType) -> Any:
 def _constant(value: Any) -> Any:
     if isinstance(value, CodeType):
         return _instructions(value)
-    # the order of a set is another in every process
+    # the order of a set differs between processes
     return sorted(map(repr, value)) if isinstance(value, frozenset) else repr(value)
 
 
@@ -260,12 +260,12 @@ def mechanism_of_document(document: Any) -> Mechanism:
 
 
 def digest(data: Any) -> str:
-    """Return a text that is the same for equal data only."""
+    """Return a fingerprint of data, the same for equal data only."""
     return sha256(json.dumps(data, sort_keys=True).encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def differences(own: Any, other: Any, where: str = "") -> Iterator[str]:
-    """Yield the places where two sets of data differ.
+    """Yield the keys at which two sets of data differ.
 
     >>> list(differences({"sample": {"seed": 1}, "speed": 3}, {"sample": {"seed": 2}, "speed": 3}))
     ['sample.seed']

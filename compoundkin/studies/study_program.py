@@ -26,8 +26,7 @@ from compoundkin.studies.responses.response import Response
 from compoundkin.studies.samples.design_sample import DesignSample
 from compoundkin.studies.samples.variation import Variation
 
-# Rows are computed in blocks that begin at a multiple of this many: whatever chunk asks, the arithmetic is the same to
-# the last bit.
+# Rows are computed in blocks that begin at multiples of this number, so that results do not depend on chunks.
 BLOCK = 4096
 ROW = "row"
 ColumnKind: TypeAlias = Literal["dimension", "output", "state"]
@@ -36,7 +35,7 @@ ColumnKind: TypeAlias = Literal["dimension", "output", "state"]
 class StudyColumn(NamedTuple):
     """A column of a study.
 
-    `width` is how many numbers a row has in it, where those are the poses of a course.
+    `width` is the number of poses of a course, None for single values.
     """
 
     name: str
@@ -52,7 +51,7 @@ class StudyColumn(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyProgram(ShortRepr):
-    """What a study computes of every row of its sample."""
+    """The computation of every row of a sample."""
 
     variations: Mapping[str, Variation]
     sample: DesignSample
@@ -66,7 +65,7 @@ class StudyProgram(ShortRepr):
 
     @cached_property
     def block(self) -> int:
-        """How many rows are computed at once: a power of two."""
+        """The number of rows computed at once: a power of two."""
         return min(BLOCK, 1 << (designs_at_once(self.path.reference.inputs.poses).bit_length() - 1))
 
     @cached_property
@@ -100,10 +99,10 @@ class StudyProgram(ShortRepr):
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _cut(self, start: int, rows: range) -> dict[str, Number]:
-        """Return what of a whole block is asked for."""
+        """Return the requested rows of a block."""
         whole = range(start, min(start + self.block, self.count))
-        asked = slice(max(rows.start - start, 0), max(min(rows.stop, whole.stop) - start, 0))
-        return {name: values[asked] for name, values in self._computed(whole).items()}
+        wanted = slice(max(rows.start - start, 0), max(min(rows.stop, whole.stop) - start, 0))
+        return {name: values[wanted] for name, values in self._computed(whole).items()}
 
     def _computed(self, rows: range) -> dict[str, Number]:
         """Compute a block."""
@@ -132,14 +131,14 @@ def _columns(name: str, values: Number) -> dict[str, Number]:
 
 STATES = (ASSEMBLED, "branch", "circuit", "order_defect", "reason")
 _, BRANCH, CIRCUIT, ORDER_DEFECT, REASON = STATES
-# What the sign of a group becomes whose limit position lies within the motion: there both its modes meet.
+# The sign of a group whose limit position lies within the motion, where its two modes meet.
 BOTH = "+-"
 
 
 def design_states(designs: Designs) -> dict[str, Number]:
     """Return the states of designs by name.
 
-    They are (designs,) each; texts are objects, None where there is none.
+    Arrays (designs,); texts are objects or None.
     """
     found, modes = assembled_range(designs), designs.path.compiled.modes
     branch = modes if isinstance(modes, str) else modes.name
@@ -159,7 +158,7 @@ def _everywhere(text: str, designs: Designs) -> Number:
 
 
 def _turns_back(designs: Designs) -> Number:
-    """Tell of which designs a driver does not go through the poses in one sense."""
+    """Return the designs in which a driver reverses between poses."""
     found: Number = np.zeros(1, dtype=bool)
     for value, *_ in designs.inputs.drives.values():
         step = np.diff(np.atleast_2d(value), axis=1)
@@ -168,7 +167,7 @@ def _turns_back(designs: Designs) -> Number:
 
 
 def _circuits(designs: Designs, found: AssembledRange, branch: str) -> Number:
-    """Return the branch of each design, with both signs for groups that meet their limit on the way."""
+    """Return the branch of each design, with both signs for groups that reach their limit position."""
     if found.assembled.all():
         return _everywhere(branch, designs)
     groups = 1 + np.arange(len(designs.path.reference.structure.groups))
@@ -189,38 +188,38 @@ def _circuit(designs: Designs, branch: str, groups: Number) -> str:
 def _reasons(designs: Designs, found: AssembledRange) -> Number:
     """Return why designs are not assembled, which group between which values of the driver; else None."""
     reasons = np.full(designs.number, None, dtype=object)
-    lost = np.flatnonzero(~found.assembled)
-    if not len(lost):
+    missing = np.flatnonzero(~found.assembled)
+    if not len(missing):
         return reasons
-    bad = found.failed[lost] != 0
+    bad = found.failed[missing] != 0
     first = np.argmax(bad, axis=1)
     # the first run of poses that are not assembled: to its last one
     after = np.where(bad | (np.arange(designs.poses) < first[:, None]), designs.poses, np.arange(designs.poses))
     last = after.min(axis=1) - 1
     at_poses = bad.any(axis=1)
-    group = np.where(at_poses, found.failed[lost, first], found.between[lost])
-    begin = np.where(at_poses, first, found.after[lost])
+    group = np.where(at_poses, found.failed[missing, first], found.between[missing])
+    begin = np.where(at_poses, first, found.after[missing])
     end = np.where(at_poses, last, -1)
     codes, which = np.unique(np.stack([group, begin, end], axis=1), axis=0, return_inverse=True)
-    reasons[lost] = np.array(list(_texts(designs, codes)), dtype=object)[np.ravel(which)]
+    reasons[missing] = np.array(list(_texts(designs, codes)), dtype=object)[np.ravel(which)]
     return reasons
 
 
 def _texts(designs: Designs, codes: Number) -> Iterator[str]:
-    """Yield what is said of a group that fails from a pose to another; after one pose where that is -1."""
+    """Yield the reason for a group that fails from one pose to another, or after a pose if the last is -1."""
     motion = designs.path.reference
     driver, values, unit = _driver_values(designs)
     for group, begin, end in codes.tolist():
         why = "is beyond an end" if is_travel_limit(motion, group) else "cannot be assembled"
-        told = f"{failed_name(motion, group)} {why}"
+        reason = f"{failed_name(motion, group)} {why}"
         if end < 0:
-            yield f"{told} between {driver} {values[begin]} and {values[begin + 1]}{unit}"
+            yield f"{reason} between {driver} {values[begin]} and {values[begin + 1]}{unit}"
         else:
-            yield f"{told} at {driver} {values[begin]}{f' to {values[end]}' if end > begin else ''}{unit}"
+            yield f"{reason} at {driver} {values[begin]}{f' to {values[end]}' if end > begin else ''}{unit}"
 
 
 def _driver_values(designs: Designs) -> tuple[str, list[str], str]:
-    """Return the only driver that moves, its values and their unit; the numbers of the poses where there is none."""
+    """Return the only moving driver, its values and their unit; numbers of poses if there is none or several."""
     moving = {name: value for name, (value, *_) in designs.inputs.drives.items()
               if np.ndim(value) and len(value) == 1 and np.ptp(value)}  # fmt: skip
     if len(moving) != 1:
@@ -233,7 +232,7 @@ def _driver_values(designs: Designs) -> tuple[str, list[str], str]:
 
 
 def versions(program: StudyProgram) -> dict[str, str]:
-    """Return what computes, with its version, and the back end of compiled programs."""
+    """Return the versions of the libraries that compute, and the back end."""
     import scipy
 
     back_end = program.path.compiled.backend
@@ -241,7 +240,7 @@ def versions(program: StudyProgram) -> dict[str, str]:
 
 
 def version_text(own: Mapping[str, str], other: Mapping[str, str]) -> str:
-    """Return where two sets of versions differ, in words.
+    """Return the differences of two sets of versions as text.
 
     >>> version_text({"numpy": "2.2", "scipy": "1.17"}, {"numpy": "2.1", "scipy": "1.17"})
     'numpy 2.2, not 2.1'

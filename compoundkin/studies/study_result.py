@@ -29,9 +29,9 @@ _X, _Y = (f".{axis}" for axis in AXES)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyResult(DisplaysHtml, ShortRepr):
-    """What a study found: `study` says of what, `rows` are those that are there.
+    """The result of a study: `study` is its definition, `rows` are those computed.
 
-    Angles are radians, vectors complex; what does not assemble is NaN, False in "assembled", and has a "reason".
+    Angles are radians, vectors complex; a design that does not assemble is NaN, False in "assembled", and has a "reason".
 
     >>> import compoundkin as ck
     >>> crank_rocker = ck.load("crank-rocker")
@@ -49,15 +49,15 @@ class StudyResult(DisplaysHtml, ShortRepr):
     @classmethod
     @checked
     def open(cls, folder: str | os.PathLike[str]) -> StudyResult:
-        """Return what a folder has, at the end of a run or before.
+        """Return the result in a folder, at the end of a run or before.
 
-        Raises InvalidInput where it is no folder of a study, or holds objects of a program.
+        Raises InvalidInput for a folder without a study, or a study with Python functions.
         """
         return cls(*open_folder(folder))
 
     @property
     def columns(self) -> tuple[StudyColumn, ...]:
-        """Its columns: name, unit, kind, and how wide a course is."""
+        """Its columns: name, unit, kind, and width of a course."""
         return self.rows.columns
 
     @property
@@ -71,7 +71,7 @@ class StudyResult(DisplaysHtml, ShortRepr):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the columns: the row's number, dimensions, outputs, what became of it."""
+        """The names of the columns: the row's number, dimensions, outputs, states."""
         return tuple(self._named)
 
     @cached_property
@@ -87,14 +87,14 @@ class StudyResult(DisplaysHtml, ShortRepr):
 
     @property
     def is_complete(self) -> bool:
-        """Whether all rows of the study are there."""
+        """Whether all rows of the study are computed."""
         return len(self) == len(self.study)
 
     @checked
     def __getitem__(self, name: str) -> Number:
         """Return a column by its name, (rows,), a course (rows, poses). The name of a vector gives both parts, complex.
 
-        Raises UnknownName with the nearest there is.
+        Raises UnknownName with the nearest name.
         """
         if name in self._named:
             return self.rows.column(name)
@@ -119,26 +119,26 @@ class StudyResult(DisplaysHtml, ShortRepr):
         """Return the rows with the least values of a figure, or the greatest.
 
         The best is first. They are those that assemble, each with all columns by name.
-        Raises InvalidInput for what is no number.
+        Raises InvalidInput for a column that is no number.
         """
         values = self[name]
         if values.ndim != 1 or values.dtype.kind not in "fiu":
-            remedy = "ask for one number of each row, such as its least" if values.ndim == 2 else ""
+            remedy = "take a figure, such as its least value" if values.ndim == 2 else ""
             raise InvalidInput(Problem(name, "it is not one number for each row", remedy))
         if count < 1:
             raise InvalidInput(Problem("count", f"there are no {count} best rows", "at least 1"))
-        meant = np.flatnonzero(self.assembled & np.isfinite(values))
-        order = np.argsort(-values[meant] if greatest else values[meant], kind="stable")
-        return self._rows(meant[order[:count]])
+        valid = np.flatnonzero(self.assembled & np.isfinite(values))
+        order = np.argsort(-values[valid] if greatest else values[valid], kind="stable")
+        return self._rows(valid[order[:count]])
 
     def _rows(self, places: Number) -> tuple[dict[str, Any], ...]:
         found = self.rows.picked(places)
         # a vector stands where its first part does
-        shown = {name.removesuffix(_X) if name.removesuffix(_X) in self._vectors else name: column
+        row = {name.removesuffix(_X) if name.removesuffix(_X) in self._vectors else name: column
                  for name, column in found.items() if name.removesuffix(_Y) not in self._vectors}  # fmt: skip
         for name in self._vectors:
-            shown[name] = found[name + _X] + 1j * found[name + _Y]
-        return tuple({name: _single(column[k]) for name, column in shown.items()} for k in range(len(places)))
+            row[name] = found[name + _X] + 1j * found[name + _Y]
+        return tuple({name: _single(column[k]) for name, column in row.items()} for k in range(len(places)))
 
     @checked
     def mechanism(self, row: int) -> Mechanism:
@@ -196,10 +196,10 @@ def _single(value: Any) -> Any:
 
 
 def pareto_rows(first: Number, second: Number) -> Number:
-    """Find the rows that no other row betters, least values being best.
+    """Return the Pareto-optimal rows of two minimised objectives.
 
-    A row is bettered by one that is less in one objective and not greater in the other; equal rows stay together. The
-    indices come by rising values of the first objective. Rows with NaN are left out. Source: H. T. Kung,
+    A row is dominated by one that is less in one objective and not greater in the other; equal rows stay together. The
+    indices are in the order of the first objective. Rows with NaN are left out. Source: H. T. Kung,
     F. Luccio, F. P. Preparata, On finding the maxima of a set of vectors (1975).
 
     >>> pareto_rows(np.array([1.0, 2.0, 2.0, 3.0, np.nan]), np.array([5.0, 3.0, 4.0, 3.0, 0.0])).tolist()

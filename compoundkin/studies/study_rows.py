@@ -21,17 +21,14 @@ from compoundkin.studies.study_program import StudyColumn, StudyProgram
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyRows(ABC, ShortRepr):
-    """Rows that are there, in the order of their numbers.
-
-    They have gaps where a run is not at its end.
-    """
+    """The rows of a study that exist, in the order of their numbers, with gaps until a run ends."""
 
     columns: tuple[StudyColumn, ...]
 
     @property
     @abstractmethod
     def count(self) -> int:
-        """How many there are."""
+        """The number of rows."""
 
     @abstractmethod
     def column(self, name: str) -> Number:
@@ -39,7 +36,7 @@ class StudyRows(ABC, ShortRepr):
 
     @abstractmethod
     def picked(self, places: Number) -> dict[str, Number]:
-        """Return all columns of some rows, by their places among those that are there."""
+        """Return all columns of some rows, by their places among the existing ones."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,7 +47,7 @@ class RowsInMemory(StudyRows):
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """The number of rows."""
         return len(next(iter(self.arrays.values())))
 
     def column(self, name: str) -> Number:
@@ -64,35 +61,35 @@ class RowsInMemory(StudyRows):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RunStore(ABC, ShortRepr):
-    """Where the rows of a study go. `kept` says to people where those are that a stopped run leaves."""
+    """The destination of the rows of a study."""
 
     plan: StudyPlan
 
     @abstractmethod
     def missing(self) -> Iterator[range]:
-        """Yield the rows that are not there yet."""
+        """Yield the missing rows."""
 
     @property
     @abstractmethod
     def task(self) -> Callable[[range], Any]:
-        """What a worker does with some rows; it can be pickled."""
+        """The task of a worker for some rows; it can be pickled."""
 
     @abstractmethod
     def take(self, rows: range, answer: Any) -> None:
-        """Take what a worker answers."""
+        """Store the answer of a worker."""
 
     @abstractmethod
     def finished(self) -> StudyRows:
-        """Return all rows that are there, when nothing is missing any more."""
+        """Return all rows, when none is missing."""
 
     @abstractmethod
-    def kept(self) -> str:
-        """Return what a stopped run leaves, in words, and what to do."""
+    def remainder(self) -> str:
+        """Return as text what a stopped run leaves, and what to do."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MemoryStore(RunStore):
-    """Rows as arrays of all, filled piece by piece."""
+    """Rows as arrays, filled piece by piece."""
 
     arrays: dict[str, Any] = field(default_factory=dict)
 
@@ -102,11 +99,11 @@ class MemoryStore(RunStore):
 
     @property
     def task(self) -> Callable[[range], Any]:
-        """What answers with the rows themselves."""
+        """The task that returns the rows."""
         return StudyTask(self.plan)
 
     def take(self, rows: range, answer: Any) -> None:
-        """Put columns where they belong."""
+        """Store columns at their rows."""
         for name, values in answer.items():
             if name not in self.arrays:
                 self.arrays[name] = np.empty((len(self.plan), *values.shape[1:]), values.dtype)
@@ -116,12 +113,12 @@ class MemoryStore(RunStore):
         """Return the arrays."""
         return RowsInMemory(self.plan.columns, self.arrays)
 
-    def kept(self) -> str:
-        """Return that nothing is."""
-        return "nothing of it is kept: give run() a folder, and a second run goes on where the first stopped"
+    def remainder(self) -> str:
+        """Return that no row is stored."""
+        return "no rows are stored: give run() a folder, and a second run continues where the first stopped"
 
 
-# So many studies a worker keeps compiled.
+# The number of compiled studies that a worker caches.
 PROGRAMS_KEPT = 4
 _LOCK = Lock()
 
@@ -154,21 +151,18 @@ def _programs(plan: StudyPlan) -> StudyPlan:
     return plan
 
 
-# So many rows are a piece at most, and so many bytes: what each worker has in memory at a time, a few times over.
+# The greatest number of rows and bytes of a piece: each worker has a few pieces in memory.
 MOST_ROWS, MOST_BYTES = 65_536, 2**23
-# So many pieces for each worker, so that all are at work until near the end.
+# Pieces for each worker, so that all are busy until near the end.
 PIECES_EACH = 4
 _BYTES = 8
 
 
-def piece_size(program: StudyProgram, workers: int, asked: int | None) -> int:
-    """Return how many rows a piece has.
-
-    They are whole blocks, of what is asked or by the number of workers and memory.
-    """
+def piece_size(program: StudyProgram, workers: int, chunk: int | None) -> int:
+    """Return the number of rows of a piece in whole blocks, by `chunk` or the number of workers and memory."""
     width = sum(column.width or 1 for column in program.columns)
     fitting = min(MOST_ROWS, MOST_BYTES // (_BYTES * width), ceil(program.sample.count / (PIECES_EACH * workers)))
-    rows = asked or fitting
+    rows = chunk or fitting
     return max(1, ceil(rows / program.block)) * program.block
 
 
@@ -187,7 +181,7 @@ def pieces_of(missing: Iterable[range], size: int) -> Iterator[range]:
 
 
 def missing_rows(there: Iterable[range], count: int) -> Iterator[range]:
-    """Return which of so many rows are not there.
+    """Yield the missing ones of so many rows.
 
     >>> list(missing_rows([range(4, 6), range(0, 2), range(5, 8)], 10))
     [range(2, 4), range(8, 10)]

@@ -27,9 +27,9 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, Stu
 from compoundkin.studies.study_rows import RunStore, StudyRows, piece_size, pieces_of
 
 Progress: TypeAlias = Callable[[int, int], Any]
-# What ends a run and is nobody's mistake in the program: workers that die, disks that are full, connections lost.
+# Errors that stop a run and are no programming error: dead workers, full disks, lost connections.
 _ENDS = (CompoundkinError, BrokenExecutor, CancelledError, OSError, PicklingError, MemoryError)
-# Errors of libraries that carry tasks to workers, by the library: none of them is imported here.
+# Libraries that send tasks to workers, whose errors stop a run; none is imported here.
 _CARRIERS = {"distributed", "tornado"}
 
 
@@ -40,9 +40,9 @@ def run_study(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> StudyRows:
-    """Compute all rows that are missing and return all.
+    """Compute all missing rows and return all.
 
-    Raises InvalidInput for workers that are none, StudyStopped where it comes to no end.
+    Raises InvalidInput for invalid workers, StudyStopped where the run cannot be completed.
     """
     with workers(on, threads) as computing, suppress_pose_warnings():
         missing = list(store.missing())
@@ -58,7 +58,7 @@ def run_study(
 
 
 def _taken(store: RunStore, answered: Iterable[tuple[range, Any]]) -> Iterator[range]:
-    """Yield the rows of each answer when they are kept."""
+    """Yield the rows of each answer when they are stored."""
     try:
         for rows, answer in answered:
             store.take(rows, answer)
@@ -78,11 +78,11 @@ def _answered(computing: Workers, store: RunStore, pieces: Iterable[range]) -> G
 
 
 def _stopped(store: RunStore, error: Exception) -> StudyStopped:
-    """Return what is told of a run that stops."""
+    """Return the error of a stopped run."""
     what = str(error).strip() or type(error).__name__
     if isinstance(error, BrokenExecutor):
         what = f"a worker died: {what}"
-    return StudyStopped(Problem("", what, store.kept()))
+    return StudyStopped(Problem("", what, store.remainder()))
 
 
 Piece = TypeVar("Piece")
@@ -92,9 +92,9 @@ Answer = TypeVar("Answer")
 def run_pieces(
     executor: Executor, work: Callable[[Piece], Answer], pieces: Iterable[Piece], room: Callable[[], int]
 ) -> Iterator[tuple[Piece, Answer]]:
-    """Yield what some work answers to each piece, as soon as it does.
+    """Yield each piece with the result of `work`, as soon as it is done.
 
-    So many are under way at a time as there is room for. What is not begun when the caller stops is cancelled.
+    At most `room()` pieces are under way. Pieces that have not begun when the caller stops are cancelled.
     """
     waiting: dict[Future[Answer], Piece] = {}
     coming = iter(pieces)
@@ -117,37 +117,34 @@ def _submitted(executor: Executor, work: Callable[[Piece], Answer], piece: Piece
     except BrokenExecutor:
         raise
     except RuntimeError as error:
-        # what executors say that have been shut down
+        # raised by executors that have been shut down
         raise InvalidInput(Problem("on", f"it takes no work: {error}", "give one that is open")) from None
 
 
-# So many pieces are under way for each worker: one that it computes, and one that waits for it.
+# Pieces under way for each worker: one being computed, one waiting.
 AT_A_TIME = 2
-# How many workers a foreign executor is thought to have: it does not say; and a cluster at least: it may be just
-# starting, and one that adapts itself grows with the work that waits.
+# The assumed number of workers of a foreign executor, which does not say; and the least of a cluster, which may be
+# starting, or grow with the work that waits.
 UNKNOWN_WORKERS = 16
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Workers(ShortRepr):
-    """An executor, or None where all is computed here.
-
-    `number` says how many workers it has now.
-    """
+    """An executor, or None for this thread alone; `number()` is its present number of workers."""
 
     executor: Executor | None
     number: Callable[[], int]
 
     def room(self) -> int:
-        """Return how many pieces may be under way now."""
+        """Return the number of pieces that may be under way now."""
         return AT_A_TIME * self.number()
 
 
 @contextmanager
 def workers(on: Any, threads: int | None) -> Iterator[Workers]:
-    """Yield who computes. Threads of our own end with the run.
+    """Yield the workers of a run. Own threads end with the run.
 
-    Raises InvalidInput for what is neither an executor nor a client.
+    Raises InvalidInput for other objects than an executor or a client.
     """
     if on is None:
         number = threads or usable_cores()
@@ -163,7 +160,7 @@ def workers(on: Any, threads: int | None) -> Iterator[Workers]:
 
 
 def usable_cores() -> int:
-    """Return on how many cores this process may run."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -124,7 +124,7 @@ def test_a_slider_crank_is_balanced_wholly_by_its_rod_or_half_by_its_crank() -> 
 
 
 def test_what_only_slides_cannot_be_balanced_and_is_named() -> None:
-    """Tepper and Lowen: a yoke that only slides has no way of pins to the frame; half its mass is the best."""
+    """Tepper and Lowen: a yoke that only slides has no chain of pins to the frame; half its mass is the best."""
     links = (ck.link("frame", O=0), ck.link("crank", O=0, A=1), ck.link("block", A=0), ck.link("yoke", Y=0))
     slides = (
         ck.slide("yoke", on="frame", through="O", angle=0),
@@ -135,7 +135,7 @@ def test_what_only_slides_cannot_be_balanced_and_is_named() -> None:
     assert not found.is_full
     assert found.unreached == ("yoke",)
     np.testing.assert_allclose(found.counterweights[0].moment, -1.5, rtol=1e-12)
-    assert "does not exist: no way of pins alone leads from yoke to the frame" in found.text()
+    assert "does not exist: no chain of pins alone joins yoke to the frame" in found.text()
     np.testing.assert_allclose(found.after[0].greatest, 6.0, rtol=1e-12)
 
 

@@ -409,7 +409,7 @@ def test_friction_that_equilibrium_leaves_open() -> None:
 
     rubbed = forces(ck.friction("A", 0.1, radius=0.01))
     assert rubbed.friction.undetermined == ("A",)
-    assert "leaves open what presses in A" in rubbed.friction.remarks[0]
+    assert "does not determine the normal force in A" in rubbed.friction.remarks[0]
     for value in (rubbed.drives["crank"].effort, rubbed.pairs["A"].friction, rubbed.pairs["B"].force):
         assert np.isnan(value).all()
     none = forces().drives["crank"].effort

@@ -108,7 +108,7 @@ def test_what_would_turn_a_roller_is_left_aside() -> None:
 )
 def test_loads_that_ask_for_velocities_need_some(load: Any) -> None:
     motion = ck.solve(eight_bar_pin(load), order=0)
-    with pytest.raises(ck.errors.InvalidInput, match="solved to order 0, and its velocities are asked for by"):
+    with pytest.raises(ck.errors.InvalidInput, match="solved to order 0, and its velocities are needed by"):
         ck.force_analysis(motion, inertia=False)
 
 

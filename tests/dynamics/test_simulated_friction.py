@@ -70,7 +70,7 @@ def test_slider_crank_loses_energy_and_has_no_effort() -> None:
 
 def test_friction_of_several_drivers_is_refused() -> None:
     """It is said which."""
-    with pytest.raises(InvalidInput, match="is followed in mechanisms of one driver"):
+    with pytest.raises(InvalidInput, match="is simulated in mechanisms with one driver"):
         ck.simulate(
             five_bar().replace(ck.friction("P", 0.1, radius=0.01)), start={"left": 1.7, "right": 1.0}, until=1.0
         )

@@ -259,7 +259,7 @@ def test_a_roller_on_a_swinging_follower_does_not_turn() -> None:
 
 def test_energies_that_do_not_add_up_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """A warning says so, here of what is allowed else. What only rounds is no error."""
-    for name in ("LOST", "WORSE"):
+    for name in ("ENERGY_TOLERANCE", "WORSE"):
         monkeypatch.setattr(f"compoundkin.dynamics.simulation.forward_dynamics.{name}", 0.0)
     with pytest.warns(FewDigits, match="energies do not add up"):
         ck.simulate(slider_crank(), start=1.0, until=0.1)

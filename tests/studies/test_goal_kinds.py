@@ -134,8 +134,8 @@ def test_a_full_turn_of_four_bars_is_grashofs_condition() -> None:
 def test_places_keep_their_order(turns: bool, way: int) -> None:
     timing = DriverSchedule("crank", 5, 0.0, 2 * np.pi if turns else 3.0, turns, True)
     values = np.sort(np.random.default_rng(1).uniform(0.1, 2.9, (6, 5)), axis=1)[:, ::way]
-    found = timing.values(timing.nearest((values[:, :, None] - timing.looked_at) ** 2))
-    step = timing.looked_at[1] - timing.looked_at[0]
+    found = timing.values(timing.nearest((values[:, :, None] - timing.sampled_values) ** 2))
+    step = timing.sampled_values[1] - timing.sampled_values[0]
     moved = found - 2 * np.pi * turns * np.round((found - values)[:, :1] / (2 * np.pi))
     assert abs(moved - values).max() < 2.0 * step  # each is near, or next to another that is
     assert (way * np.diff(found) > 0).all()
@@ -146,29 +146,29 @@ def test_places_keep_their_order(turns: bool, way: int) -> None:
 
 def test_what_is_no_goal_is_told() -> None:
     wrong: list[tuple[Any, str]] = [
-        (lambda: function("bar.angle", [1, 2, 3]), "is no function"),
-        (lambda: function("bar.angle", lambda crank: "x").outputs(MOTION), "no number for each value"),
+        (lambda: function("bar.angle", [1, 2, 3]), "neither pairs nor a function"),
+        (lambda: function("bar.angle", lambda crank: "x").outputs(MOTION), "not return a number for each value"),
         (lambda: function("bar.angle", lambda crank: np.log(-1.0 - crank**2)).outputs(MOTION), "not finite"),
         (lambda: function("G", [(0, 1)]).outputs(MOTION), "it is a vector"),
-        (lambda: dwell("bar.angle", None), "no such stretch"),
-        (lambda: dwell("bar.angle", (1.0, 1.0)), "no such stretch"),
+        (lambda: dwell("bar.angle", None), "not two different values"),
+        (lambda: dwell("bar.angle", (1.0, 1.0)), "not two different values"),
         (lambda: even("bar.angle.stroke").outputs(MOTION), "always even"),
         (lambda: target("G.x", [1.0, 2.0]).outputs(MOTION), "2 values, and 12 poses"),
-        (lambda: target("G.x.stroke", "far"), "is no value"),
+        (lambda: target("G.x.stroke", "far"), "is not a value"),
         (lambda: trace("G", [1, 2], driver="rank").outputs(MOTION), "no driver 'rank'"),
         (lambda: trace("G", [1, 2]).outputs(ck.solve(SIX_BAR, 0.5)), "stands still"),
-        (lambda: poses("plate", "G", [(1, 2)]), "these are no poses"),
+        (lambda: poses("plate", "G", [(1, 2)]), "these are not poses"),
         (lambda: poses("plate", "G", [(1, 2, 3)], arm=0.0), "the arm above 0"),
         (lambda: poses("plate", "G", [(1, 2, 3)]).outputs(MOTION), "1 places, and 12 poses"),
-        (lambda: straight_line("G", angle=np.nan), "no number"),
-        (lambda: at_least("G.x", np.inf), "is no bound"),
-        (lambda: at_least("G.velocity", 1.0).outputs(MOTION), "it is a vector"),
-        (lambda: box("G", x=(2, 1)), "no box"),
-        (lambda: box("G"), "no box"),
+        (lambda: straight_line("G", angle=np.nan), "not finite"),
+        (lambda: at_least("G.x", np.inf), "is not a valid bound"),
+        (lambda: at_least("G.velocity", 1.0).outputs(MOTION), "a vector has no least value"),
+        (lambda: box("G", x=(2, 1)), "ends of the box"),
+        (lambda: box("G"), "ends of the box"),
         (lambda: distance("A", "B"), "leave no distance"),
         (lambda: distance("A", "B", at_least=3, at_most=2), "leave no distance"),
-        (lambda: assembles(1.5), "no transmission index"),
-        (lambda: full_turn().outputs(ck.solve(ck.load("slider-crank"))), ""),
+        (lambda: assembles(1.5), "not a transmission index"),
+        (lambda: full_turn().outputs(ck.solve(ck.catalog.load_named("slider-crank"))), ""),
     ]
     for call, said in wrong[:-1]:
         with np.errstate(all="ignore"), pytest.raises(ck.errors.CompoundkinError, match=said):

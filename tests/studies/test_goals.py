@@ -51,7 +51,7 @@ def hold_slopes(asked: Goal | DesignConstraint, unknowns: Number | None = None) 
 class AtOwnValues(Goal):
     """A point near two places, wherever the driver is then."""
 
-    told, has_own_poses = "two places", True
+    description, has_own_poses = "two places", True
     places = np.array([20 + 5j, 22 + 3j])
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
@@ -79,12 +79,12 @@ def test_what_does_not_fit_is_told_at_once() -> None:
     motion = ck.solve(ck.load("six-bar"), TURN)
     with pytest.raises(ck.errors.InvalidInput, match="3 points, and 12 poses"):
         path("G", [1, 2, 3]).outputs(motion)
-    with pytest.raises(ck.errors.InvalidInput, match=r'say which figure of it: "G.x.greatest"'):
+    with pytest.raises(ck.errors.InvalidInput, match=r'take a figure of it: "G.x.greatest"'):
         least("G.x").outputs(motion)
     for wrong in ("abc", [], [np.nan], [[1, 2, 3]], 5):
-        with pytest.raises(ck.errors.InvalidInput, match="these are no points"):
+        with pytest.raises(ck.errors.InvalidInput, match="these are not points"):
             path("G", wrong)
-    with pytest.raises(ck.errors.InvalidInput, match="no positive number"):
+    with pytest.raises(ck.errors.InvalidInput, match="not a positive number"):
         -1.0 * path("G", [1])
 
 

@@ -149,7 +149,7 @@ def test_functions_of_a_pose_are_outputs_in_folders_too(tmp_path: Path) -> None:
     assert_same(away(5 + 2j).run(tmp_path), result)
     with pytest.raises(ck.errors.InvalidInput, match=r"differs in outputs\.error\.content, given\.target"):
         away(5 + 3j).run(tmp_path)
-    with pytest.raises(ck.errors.InvalidInput, match=r"outputs\.error: it is an object of a program"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"outputs\.error: it is a Python object"):
         ck.results.StudyResult.open(tmp_path)
     with pytest.raises(ck.errors.InvalidInput, match="no output reads it"):
         ck.study(result.study.mechanism, {"crank.B.x": (0.9, 1.1)}, "C", count=4, given={"target": 0})

@@ -57,7 +57,7 @@ def test_heads_that_are_damaged_or_new_are_told(tmp_path: Path) -> None:
     text = head.read_text("utf-8")
     for old, new, told in (
         ('"format": 1', '"format": 9', "its format 9 is not known; update compoundkin"),
-        ('"mechanism":', '"mechanismus":', "what it says of the study is damaged"),
+        ('"mechanism":', '"mechanismus":', "its study is damaged"),
     ):
         head.write_text(text.replace(old, new, 1), "utf-8")
         with pytest.raises(InvalidInput, match=told):

@@ -27,13 +27,13 @@ from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.dynamics.reactions.reverse_pass import Reactions, all_reactions, own_wrenches, reverse_pass
 from compoundkin.model.pairs.contract import as_transmitting_pair
 
-# Steps for all poses; a friction that presses its own pair with 0.9 of itself takes ten.
+# Steps for all poses; a friction that raises its own normal force by 0.9 of itself takes ten.
 NEWTON_STEPS = 60
 # Sums differ from their image by so many parts of the terms that cancel in them: rounding.
 SUM_ROUNDING = 2e-15
 # Two solutions are one where they differ by this part.
 SAME_SOLUTION = 1e-7
-# So many presses have all directions tried; of more, so many patterns of them.
+# All directions of up to so many normal forces are tried; of more, so many patterns.
 ALL_DIRECTIONS, PATTERNS = 6, 96
 # So many turns of the forces in pins are tried as well. Of random systems of two or three pins that feed on each other
 # strongly one of two solutions is then missed in one to four of a thousand; of one pin, or of contacts, in none.
@@ -44,7 +44,7 @@ ONE, NONE, SEVERAL, UNKNOWN = range(4)
 class Frictions(NamedTuple):
     """The sizes of frictions with their signs, (frictions, poses).
 
-    The state tells how many solutions there are at each pose.
+    `state` is the number of solutions at each pose.
     """
 
     sizes: Number
@@ -52,10 +52,7 @@ class Frictions(NamedTuple):
 
 
 def solve_coulomb(influence: FrictionInfluence, signs: Number) -> Frictions:
-    """Return the frictions against motion in some senses.
-
-    `signs` (frictions, poses) are -1, 0 or 1.
-    """
+    """Return the frictions that oppose motion of the given signs (frictions, poses): -1, 0 or 1."""
     finite = np.isfinite(influence.own).all(axis=0) & np.isfinite(influence.by).all(axis=(0, 1))
     state = np.where(finite & np.isfinite(signs).all(axis=0), ONE, UNKNOWN)
     sums = np.full(signs.shape, np.nan)
@@ -73,7 +70,7 @@ def solve_coulomb(influence: FrictionInfluence, signs: Number) -> Frictions:
 
 
 def _iterated(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
-    """Return the sums of presses from the frictionless ones, and where they came to rest."""
+    """Return the sums of normal forces, iterated from the frictionless ones, and where they converged."""
     sums = influence.sums(np.abs(influence.own))
     going: Number = np.arange(sums.shape[1])
     rested = np.zeros(sums.shape[1], dtype=bool)
@@ -82,7 +79,7 @@ def _iterated(influence: FrictionInfluence, signs: Number) -> tuple[Number, Numb
     for _ in range(NEWTON_STEPS):
         image, newton = _steps(part, senses, at)
         gaps = _distance_from_image(part, senses, newton), _distance_from_image(part, senses, image)
-        # what is not a number is never the better one
+        # NaN is never the better one
         better = gaps[0] <= gaps[1]
         at = np.where(better[None], newton, image)
         sums[:, going] = at
@@ -96,33 +93,33 @@ def _iterated(influence: FrictionInfluence, signs: Number) -> tuple[Number, Numb
 
 
 def _steps(influence: FrictionInfluence, signs: Number, sums: Number) -> tuple[Number, Number]:
-    """Return the image of some sums, and what Newton makes of them."""
-    presses = influence.normal_forces(-signs * sums)
-    sizes = np.abs(presses)
+    """Return the image of the sums, and their next Newton iterate."""
+    normal_forces = influence.normal_forces(-signs * sums)
+    sizes = np.abs(normal_forces)
     image = influence.sums(sizes)
-    matrix = _matrix(influence, signs, _directions(presses, sizes, 0.0))
+    matrix = _matrix(influence, signs, _directions(normal_forces, sizes, 0.0))
     return image, sums - solve(matrix, (sums - image).T).T
 
 
 def _directions(normal_forces: Number, sizes: Number, otherwise: Number) -> Number:
-    """Return the directions of presses, something else where there are none."""
+    """Return the directions of normal forces, `otherwise` where they vanish."""
     return np.where(sizes > 0.0, normal_forces / np.where(sizes > 0.0, sizes, 1.0), otherwise)
 
 
 def _matrix(influence: FrictionInfluence, signs: Number, toward: Number) -> Number:
-    """Return the derivatives of sums minus their image, (poses, pairs, frictions). Presses keep their directions."""
+    """Return the derivatives of sums minus image, (poses, pairs, frictions), for fixed directions of normal forces."""
     along = influence.sums((np.conjugate(toward) * influence.by).real) * signs[:, None]
     return np.eye(len(signs)) + along.transpose(2, 1, 0)
 
 
 def _distance_from_image(influence: FrictionInfluence, signs: Number, sums: Number) -> Number:
-    """Return how far sums are from their image."""
+    """Return the largest residual: the distance of the sums from their image."""
     found: Number = np.abs(sums - influence.sums(np.abs(influence.normal_forces(-signs * sums)))).max(axis=0)
     return found
 
 
 def _solve_by_directions(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
-    """Return the only solution at each pose. The state tells where there is none, or more than one."""
+    """Return the solution at each pose where it is unique, and the state: none, one or several."""
     found = np.full(signs.shape, np.nan)
     count = np.zeros(signs.shape[1], dtype=int)
     for toward in _starts(influence, signs):
@@ -134,12 +131,12 @@ def _solve_by_directions(influence: FrictionInfluence, signs: Number) -> tuple[N
 
 
 def _from_directions(influence: FrictionInfluence, signs: Number, toward: Number) -> tuple[Number, Number]:
-    """Return the solution nearest to some directions of presses, and where it is one."""
+    """Return the solution nearest to given directions of normal forces, and where it is valid."""
     for _ in range(NEWTON_STEPS):
         right = influence.sums((np.conjugate(toward) * influence.own).real)
         sums = solve(_matrix(influence, signs, toward), right.T).T
-        presses = influence.normal_forces(-signs * sums)
-        before, toward = toward, _directions(presses, np.abs(presses), toward)
+        normal_forces = influence.normal_forces(-signs * sums)
+        before, toward = toward, _directions(normal_forces, np.abs(normal_forces), toward)
         if not np.any(np.abs(toward - before) > SUM_ROUNDING):
             break
     closed = _distance_from_image(influence, signs, sums) <= 10.0 * SUM_ROUNDING * influence.rounding(sums)
@@ -147,10 +144,10 @@ def _from_directions(influence: FrictionInfluence, signs: Number, toward: Number
 
 
 def _starts(influence: FrictionInfluence, signs: Number) -> Iterator[Number]:
-    """Yield directions of presses (presses, poses) to start from.
+    """Yield initial directions (normal forces, poses).
 
-    They are those without friction and their opposites, in all combinations; and those of frictions alone that feed on
-    themselves, which solutions of large forces have. Forces of pins may point anywhere: some are turned at random.
+    They are the frictionless ones and their opposites in all combinations, and those of frictions that sustain
+    themselves, which solutions with large forces have. Forces of pins may point anywhere: some are turned at random.
     """
     own = _directions(influence.own, np.abs(influence.own), 1.0)
     alone = influence.normal_forces(-signs * influence.feeding(signs).T) - influence.own
@@ -164,23 +161,23 @@ def _starts(influence: FrictionInfluence, signs: Number) -> Iterator[Number]:
 
 
 def _patterns(normal_forces: int) -> Number:
-    """Return patterns of signs, (patterns, presses)."""
+    """Return patterns of signs, (patterns, normal forces)."""
     if normal_forces <= ALL_DIRECTIONS:
         return np.array(list(product((1.0, -1.0), repeat=normal_forces)))
     drawn = np.random.default_rng(1).choice([1.0, -1.0], (PATTERNS - 1, normal_forces))
     return np.concatenate([np.ones((1, normal_forces)), drawn])
 
 
-# So often at most is what parts gears found again: each time its change is a friction's part of the one before.
-ROUNDS = 60
+# Separating forces of gears are computed again at most so often; each change is a friction's part of the one before.
+GEAR_ITERATIONS = 60
 
 
 @dataclass(frozen=True, eq=False)
 class BlockWithFriction:
-    """A block of poses whose frictions can be found in any direction of motion. The loads are known."""
+    """A block of poses under known loads, whose frictions can be computed in any direction of motion."""
 
     at: LoadedBlock
-    rubs: tuple[LoadedContact, ...]
+    contacts: tuple[LoadedContact, ...]
     known: Mapping[str, Wrench]
     units: tuple[Wrench, ...]
     dry: Reactions
@@ -190,20 +187,20 @@ class BlockWithFriction:
     def with_friction(self, sizes: Number) -> Reactions:
         """Return the reactions under frictions of these sizes (frictions, poses)."""
         loads = dict(self.known)
-        for k, (rub, unit) in enumerate(zip(self.rubs, self.units, strict=True)):
-            for link, wrench in rub.on_links(unit.times(sizes[k].reshape(self.at.block.shape))).items():
+        for k, (contact, unit) in enumerate(zip(self.contacts, self.units, strict=True)):
+            for link, wrench in contact.on_links(unit.times(sizes[k].reshape(self.at.block.shape))).items():
                 loads[link] = loads.get(link, Wrench()) + wrench
         return all_reactions(self.at, loads)
 
     def frictions(self, signs: Number) -> Frictions:
-        """Return the frictions against motion in some senses, (frictions, poses).
+        """Return the frictions that oppose motion of the given signs, (frictions, poses).
 
-        What parts gears presses bearings too, and goes by what they transmit: where there is such, once more until
-        nothing changes.
+        The separating force of gears loads bearings as well and depends on what they transmit: with gears the solution
+        is repeated until it converges.
         """
         found = solve_coulomb(self.influence, signs)
         gears = any(as_transmitting_pair(self.at.motion.solving_order.pairs[name]) for name in self.dry.pairs)
-        for _ in range(ROUNDS if gears else 0):
+        for _ in range(GEAR_ITERATIONS if gears else 0):
             before, found = found, solve_coulomb(self._parted(found.sizes), signs)
             change = np.abs(found.sizes - before.sizes)
             if not np.any(change > SUM_ROUNDING * np.abs(found.sizes).max(axis=0)):
@@ -211,14 +208,16 @@ class BlockWithFriction:
         return found
 
     def _parted(self, sizes: Number) -> FrictionInfluence:
-        """Return the influence of frictions, what comes with these sizes being given."""
+        """Return the influence of frictions, with the separating forces that frictions of these sizes cause."""
         known = np.nan_to_num(sizes)
         pairs = _of_pairs(self.at, self.with_friction(known))
-        presses = [
-            in_one_row(press, self.at) for rub in self.rubs for press in rub.normal_forces(self.at, pairs[rub.name])
+        normal_forces = [
+            in_one_row(one, self.at)
+            for contact in self.contacts
+            for one in contact.normal_forces(self.at, pairs[contact.name])
         ]
         by_frictions = self.influence.normal_forces(known) - self.influence.own
-        return replace(self.influence, own=np.array(presses, dtype=complex) - by_frictions)
+        return replace(self.influence, own=np.array(normal_forces, dtype=complex) - by_frictions)
 
     def effort(self, driver: str, sizes: Number) -> Number:
         """Return a driver's effort (poses) under frictions of these sizes."""
@@ -234,10 +233,10 @@ class BlockWithFriction:
     def interval(self, driver: str, moved: LoadedBlock, which: Number) -> tuple[Number, Number]:
         """Return the least and the greatest effort that hold a driver at rest.
 
-        `which` are the poses asked for, a mask. The efforts move it one way and the other; where it is
-        wedged one way there is no limit that way.
+        `which` is a mask of poses. The efforts start motion in either direction; the limit is infinite where it is wedged
+        in that direction.
         """
-        signs = senses(self.rubs, moved)
+        signs = senses(self.contacts, moved)
         ends = []
         for way in (-1.0, 1.0):
             found = self.frictions(way * signs)
@@ -247,48 +246,50 @@ class BlockWithFriction:
 
 
 def block_with_friction(
-    at: LoadedBlock, rubs: tuple[LoadedContact, ...], known: Mapping[str, Wrench]
+    at: LoadedBlock, contacts: tuple[LoadedContact, ...], known: Mapping[str, Wrench]
 ) -> BlockWithFriction:
-    """Return a block with what each friction does alone."""
+    """Return a block with the reactions to each friction alone."""
     order, block = at.motion.solving_order, at.block
     dry = all_reactions(at, known)
-    units = tuple(rub.unit(at) for rub in rubs)
-    alone = tuple(reverse_pass(order, block, rub.on_links(unit)) for rub, unit in zip(rubs, units, strict=True))
-    return BlockWithFriction(at, rubs, known, units, dry, alone, _influence(at, rubs, dry, alone))
+    units = tuple(contact.unit(at) for contact in contacts)
+    alone = tuple(
+        reverse_pass(order, block, contact.on_links(unit)) for contact, unit in zip(contacts, units, strict=True)
+    )
+    return BlockWithFriction(at, contacts, known, units, dry, alone, _influence(at, contacts, dry, alone))
 
 
 def _influence(
-    at: LoadedBlock, rubs: tuple[LoadedContact, ...], dry: Reactions, alone: tuple[Reactions, ...]
+    at: LoadedBlock, contacts: tuple[LoadedContact, ...], dry: Reactions, alone: tuple[Reactions, ...]
 ) -> FrictionInfluence:
-    """Return how the pairs that rub are pressed without friction, and by a unit of each."""
-    own, by, starts = list[Number](), [list[Number]() for _ in rubs], list[int]()
-    unrubbed, *each = (_of_pairs(at, reactions) for reactions in (dry, *alone))
-    for rub in rubs:
+    """Return the normal forces without friction, and those of a unit of each friction."""
+    own, by, starts = list[Number](), [list[Number]() for _ in contacts], list[int]()
+    frictionless, *each = (_of_pairs(at, reactions) for reactions in (dry, *alone))
+    for contact in contacts:
         starts.append(len(own))
-        own += [in_one_row(press, at) for press in rub.normal_forces(at, unrubbed[rub.name])]
+        own += [in_one_row(one, at) for one in contact.normal_forces(at, frictionless[contact.name])]
         for column, wrenches in zip(by, each, strict=True):
-            column += [in_one_row(press, at) for press in rub.normal_forces(at, wrenches[rub.name])]
+            column += [in_one_row(one, at) for one in contact.normal_forces(at, wrenches[contact.name])]
     return FrictionInfluence(np.array(own, dtype=complex), np.array(by, dtype=complex), np.array(starts))
 
 
 def _of_pairs(at: LoadedBlock, reactions: Reactions) -> Mapping[str, Wrench]:
-    """Return the wrenches of the mechanism's own pairs. Of one held by too much, parts of some are left free."""
+    """Return the wrenches of the mechanism's own pairs; some of them are partly free if it is overconstrained."""
     structure = at.motion.structure
     if structure.relaxation is None:
         return reactions.pairs
     return own_wrenches(structure, reactions.pairs, at.motion.failed[at.designs, at.poses].shape)
 
 
-# Powers of the gains that tell the largest entry of Perron's vector, with a shift against vectors that alternate.
+# Power iterations for Perron's vector, with a shift against alternating vectors.
 POWER_STEPS, SHIFT = 50, 0.1
 
 
 @dataclass(frozen=True)
 class FrictionInfluence:
-    """The forces that press rubbing pairs together. They are affine in the sizes of the frictions.
+    """Normal forces in pairs with friction, which are affine in the sizes of the frictions.
 
-    `own` (presses, poses) are those without friction, complex; `by` (frictions, presses, poses) what a unit of each
-    friction adds; `starts` (frictions) are the first press of each friction.
+    `own` (normal forces, poses) are those without friction, complex; `by` (frictions, normal forces, poses) what a unit
+    of each friction adds; `starts` (frictions) are the indices of the first normal force of each friction.
     """
 
     own: Number
@@ -296,41 +297,41 @@ class FrictionInfluence:
     starts: Number
 
     def of(self, which: Number) -> FrictionInfluence:
-        """Return those of some poses."""
+        """Return the influence at some poses."""
         return FrictionInfluence(self.own[:, which], self.by[..., which], self.starts)
 
     def normal_forces(self, sizes: Number) -> Number:
-        """Return the forces (presses, poses) under frictions of these sizes (frictions, poses)."""
+        """Return the normal forces (normal forces, poses) under frictions of these sizes (frictions, poses)."""
         total = self.own
         for one, size in zip(self.by, sizes, strict=True):
             total = total + one * size
         return total
 
     def sums(self, values: Number) -> Number:
-        """Return sums over the presses of each friction. The values are (..., presses, poses)."""
+        """Return sums over the normal forces of each friction, of values (..., normal forces, poses)."""
         if len(self.starts) == len(self.own):
             return values
         return np.add.reduceat(values, self.starts, axis=-2)
 
     def rounding(self, sizes: Number) -> Number:
-        """Return how large the terms are that cancel in the presses. It is the largest at each pose."""
+        """Return the largest of the terms that cancel in the normal forces at each pose."""
         total = np.abs(self.own)
         for one, size in zip(self.by, sizes, strict=True):
             total = total + np.abs(one) * np.abs(size)
         return total.max(axis=0)
 
     def gains(self, signs: Number) -> Number:
-        """Return how much each friction presses each pair at most, (poses, pairs, frictions)."""
+        """Return the greatest normal force in each pair by a unit of each friction, (poses, pairs, frictions)."""
         return (self.sums(np.abs(self.by)) * np.abs(signs)[:, None]).transpose(2, 1, 0)
 
     def contracts(self, signs: Number) -> Number:
-        """Tell where frictions have one solution for any load.
+        """Return where frictions have one solution for any load: where identity minus gains is an M-matrix.
 
-        There the matrix one minus the gains is an M-matrix. Then the iteration contracts in some weighted norm.
+        The iteration then contracts in some weighted norm.
         Source: A. Berman and R. J. Plemmons, Nonnegative Matrices in the Mathematical Sciences, theorem 6.2.3.
         """
         gains = self.gains(signs)
-        # the plain norm tells it of most mechanisms
+        # the plain norm suffices for most mechanisms
         sure: Number = gains.sum(axis=-1).max(axis=-1) < 1.0
         asked = np.flatnonzero(~sure)
         if len(asked):
@@ -339,10 +340,7 @@ class FrictionInfluence:
         return sure
 
     def feeding(self, signs: Number) -> Number:
-        """Return how much the frictions feed on each other, (poses, frictions).
-
-        It is Perron's vector of the gains, with 1 for the greatest.
-        """
+        """Return how much frictions amplify each other, (poses, frictions): Perron's vector of the gains, its maximum 1."""
         gains, vector = self.gains(signs), np.ones(signs.T.shape)
         for _ in range(POWER_STEPS):
             vector = np.einsum("pij,pj->pi", gains, vector) + SHIFT * vector

@@ -24,8 +24,8 @@ NO_POWER = 1e-12
 class Efficiency(ShortRepr):
     """How much of the power put in comes out. The rest is lost, by friction.
 
-    What gives power at a pose puts it in, be it a driver, a load, weight or inertia; what takes it, takes it out.
-    Arrays have the motion's shape; NaN where nothing flows.
+    At each pose, whatever gives power (a driver, a load, weight or inertia) counts as input, whatever takes it as
+    output. Arrays have the motion's shape; NaN where no power flows.
     """
 
     forces: Forces
@@ -46,9 +46,9 @@ class Efficiency(ShortRepr):
 
     @property
     def backward(self) -> Number:
-        """The power out over the power in at every pose, all moving backward.
+        """The power out over the power in at every pose for reversed motion under the same loads.
 
-        The loads are the same. Zero or less where a driver must help loads that drive: self-locking.
+        Zero or less where a driver must help loads that drive: self-locking.
         """
         given, taken = self._loads_backward, self._drivers_backward
         with np.errstate(all="ignore"):
@@ -57,7 +57,7 @@ class Efficiency(ShortRepr):
 
     @property
     def self_locking(self) -> Number:
-        """Where loads cannot move it: whichever way they would, the drivers must help. Bool, of the motion's shape."""
+        """Where loads cannot move the mechanism in either direction without the drivers; bool, of the motion's shape."""
         return self.forces.motion.grid.shaped(self._locked)
 
     @property
@@ -95,7 +95,7 @@ class Efficiency(ShortRepr):
 
     @cached_property
     def _least(self) -> float:
-        """What is no power but rounding."""
+        """The power below which a value is rounding."""
         return NO_POWER * max((float(np.nanmax(np.abs(one), initial=0.0)) for one in self._all), default=0.0)
 
     @property
@@ -118,10 +118,10 @@ class Efficiency(ShortRepr):
         value, rate = (self._flat(motion.drives[name].derivative(k)) for k in (0, 1))
         with np.errstate(all="ignore"):
             slope = power / np.abs(rate)
-        # where the driver rests for a moment, as at its start, the work of a step is as beside it
+        # where the driver rests for a moment, as at its start, the slope is that of a neighbour
         for shift in (-1, 1):
             slope = np.where(rate == 0.0, np.roll(slope, shift, axis=-1), slope)
-        # time goes on whichever way the poses are listed
+        # time increases whichever way the poses are listed
         return _sum_over(slope, value)
 
     def _flat(self, value: Number) -> Number:
@@ -138,7 +138,7 @@ def _sum_over(values: Number, places: Number) -> Number:
 
 
 def _ratio(powers: Iterable[Number], least: float) -> Number:
-    """Return what is taken over what is given."""
+    """Return output over input."""
     given = sum(np.maximum(one, 0.0) for one in powers)
     taken = sum(np.maximum(-one, 0.0) for one in powers)
     with np.errstate(all="ignore"):

@@ -19,9 +19,9 @@ from compoundkin.model.loads.friction import Friction
 from compoundkin.model.pairs.contact import FrictionPair, as_friction_pair
 from compoundkin.model.pairs.contract import Ends, Poses
 
-# What rubs slower than this part of the fastest link rests in its pair: rounding of a rate that is zero.
+# A pair that slides slower than this part of the fastest link rests: rounding of a zero rate.
 AT_REST = 1e-12
-# So much of a unit of time, the size by the fastest speed, is a moment before; a pair that rested there too is slower.
+# A moment before, in units of size over fastest speed; a pair that rested then too is slower than the second number.
 STEP, STEP_AT_REST = 1e-6, 1e-10
 
 
@@ -42,34 +42,31 @@ class LoadedContact:
         return at.block.ends[self.name], tuple(at.block.world[name] for name in self.pair.members)
 
     def unit(self, at: LoadedBlock) -> Wrench:
-        """Return the friction by a press of one, toward a growing coordinate.
-
-        It is the wrench on the second member.
-        """
+        """Return the friction for a unit normal force, toward a growing coordinate: a wrench on the second member."""
         radius = 0.0 if self.friction.radius is None else at.fitted(self.friction.radius)
         return self.pair.friction_wrench(*self.sides(at), radius).times(at.fitted(self.friction.coefficient))
 
     def normal_forces(self, at: LoadedBlock, wrench: Wrench) -> tuple[Number, ...]:
-        """Return the forces that press its links together, of the wrench of the pair."""
+        """Return the normal forces of a wrench of the pair."""
         length = None if self.friction.length is None else at.fitted(self.friction.length)
         return self.pair.normal_forces(*self.sides(at), wrench, length)
 
     def on_links(self, wrench: Wrench) -> dict[str, Wrench]:
-        """Return what a wrench on the second member does to both links."""
+        """Return the wrenches on both links, given that on the second member."""
         first, second = self.pair.members[:2]
         return {first: -wrench, second: wrench}
 
     def sliding(self, at: LoadedBlock) -> Number:
-        """Return the speed of the second member against the first where they rub. A pin's is by its size."""
+        """Return the sliding speed of the second member against the first; of a pin at the mechanism's size."""
         _, poses = self.sides(at)
         unit = self.pair.friction_wrench(*self.sides(at), at.motion.size)
         return unit.power(poses[1]) - unit.power(poses[0])
 
 
 def friction_contacts_of(motion: Motion) -> tuple[LoadedContact, ...]:
-    """Return all pairs that rub, in the order in which frictions are written.
+    """Return all pairs with friction, in the order of the mechanism's frictions.
 
-    Raises InvalidInput for a pair that is meant by two names.
+    Raises InvalidInput for a pair that two frictions name.
     """
     pairs, found = motion.solving_order.pairs, dict[str, LoadedContact]()
     for friction in motion.mechanism.frictions.values():
@@ -97,21 +94,21 @@ def _named(motion: Motion, name: str) -> Iterator[str]:
     if not found:
         letter = name if meant is None else meant[0].letters[0]
         known = ", ".join(pair.name for pair in pairs.values() if pair.letters == (letter,))
-        what = "no pair of this motion joins these two links, so that what presses between them is not known"
+        what = "no pair of this motion joins these two links, so that the normal force between them is unknown"
         raise InvalidInput(Problem(f"frictions.{name}", what, f"name {known}, or {letter} for all of them"))
     yield from found
 
 
-def senses(rubs: tuple[LoadedContact, ...], at: LoadedBlock) -> Number:
-    """Return the sense in which each pair rubs, (frictions, poses): -1, 0 or 1.
+def senses(contacts: tuple[LoadedContact, ...], at: LoadedBlock) -> Number:
+    """Return the sense in which each pair slides, (frictions, poses): -1, 0 or 1.
 
-    A pair that reverses at a pose has the sense that it had before.
+    A pair that reverses at a pose has the sense before the reversal.
     """
     fastest = _fastest(at)
-    found = np.array([_sense(rub.sliding(at), AT_REST * fastest, at) for rub in rubs])
+    found = np.array([_sense(contact.sliding(at), AT_REST * fastest, at) for contact in contacts])
     if at.block.order > 1 and not found.all():
         earlier = _earlier(at, fastest)
-        before = np.array([_sense(rub.sliding(earlier), STEP_AT_REST * fastest, at) for rub in rubs])
+        before = np.array([_sense(contact.sliding(earlier), STEP_AT_REST * fastest, at) for contact in contacts])
         found = np.where(found == 0.0, before, found)
     return found
 
@@ -121,7 +118,7 @@ def _sense(sliding: Number, least: Number, at: LoadedBlock) -> Number:
 
 
 def _earlier(at: LoadedBlock, fastest: Number) -> LoadedBlock:
-    """Return the block a moment before, by its series."""
+    """Return the block a moment earlier, by its Taylor series."""
     step = STEP * at.motion.size / np.where(fastest > 0.0, fastest, 1.0)
 
     def shifted(series: Series) -> Series:
@@ -133,12 +130,12 @@ def _earlier(at: LoadedBlock, fastest: Number) -> LoadedBlock:
 
 
 def in_one_row(value: Number, at: LoadedBlock) -> Number:
-    """Return a value at all poses of a block, in one row."""
+    """Return a value at all poses of a block as one row."""
     return np.broadcast_to(value, at.block.shape).reshape(-1)
 
 
 def _fastest(at: LoadedBlock) -> Number:
-    """Return the speed of the fastest link, of its origin or of its turn times the size."""
+    """Return the speed of the fastest link: of its origin, or angular velocity times the mechanism's size."""
     fastest: Number = 0.0
     for pose in at.block.world.values():
         for series, scale in ((pose.z, 1.0), (pose.u, at.motion.size)):

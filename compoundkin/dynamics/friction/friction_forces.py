@@ -24,7 +24,7 @@ REASONS = {NONE: "no forces satisfy Coulomb's law", SEVERAL: "more than one set 
 class Wedged:
     """A stretch of poses at which a mechanism is wedged.
 
-    In its `pair` friction feeds on itself most.
+    In its `pair` friction amplifies itself most.
     """
 
     pair: str
@@ -37,17 +37,17 @@ class Wedged:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FrictionForces(CopiesFields):
-    """The frictions of a motion. Arrays are (designs, poses) here, of the motion's shape in what is asked by name.
+    """The frictions of a motion. Arrays are (designs, poses) here, of the motion's shape in `pairs`.
 
-    `sizes` are those by pairs, for a press of one, toward a growing coordinate of the pair; `state` tells how many
-    solutions there are, `worst` the pair that is wedged first. `backward` are the drivers' efforts if all moves the
-    other way, `intervals` the least and greatest ones that hold where all rests. `undetermined` are the pairs whose
-    friction equilibrium leaves open, as it does what presses there; with it all forces are at the poses `left_open`,
-    unless one of many possible distributions is `assumed`.
+    `sizes` by pairs are for a unit normal force, toward a growing coordinate of the pair; `state` is the number of
+    solutions, `worst` the pair that wedges first. `backward` are the drivers' efforts in reversed motion, `intervals`
+    the least and greatest efforts that hold a mechanism at rest. `undetermined` are the pairs whose normal force, and
+    hence friction, equilibrium does not determine; all forces are then undetermined at the poses `left_open`, unless
+    one of many possible distributions is `assumed`.
     """
 
     motion: Motion
-    rubs: tuple[LoadedContact, ...]
+    contacts: tuple[LoadedContact, ...]
     sizes: Mapping[str, Number]
     units: Mapping[str, Wrench]
     state: Number
@@ -62,8 +62,8 @@ class FrictionForces(CopiesFields):
     @cached_property
     def pairs(self) -> Mapping[str, PairFriction]:
         """The friction of every pair that has some, by the pair's name."""
-        rubs = {rub.name: rub for rub in self.rubs}
-        return Named("pair with friction", tuple(rubs), lambda name: PairFriction(self, rubs[name]))
+        contacts = {contact.name: contact for contact in self.contacts}
+        return Named("pair with friction", tuple(contacts), lambda name: PairFriction(self, contacts[name]))
 
     @property
     def power(self) -> Number:
@@ -71,22 +71,22 @@ class FrictionForces(CopiesFields):
         return sum((one.power for one in self.pairs.values()), np.zeros(self.motion.shape))
 
     def known(self, value: Number) -> Number:
-        """Return a value in the motion's shape. NaN where not assembled, and where frictions leave it open."""
+        """Return a value in the motion's shape, NaN where not assembled or undetermined by friction."""
         return self.motion.grid.known(value if self.assumed else np.where(self.left_open, np.nan, value))
 
     @cached_property
     def remarks(self) -> tuple[str, ...]:
-        """What is to be said of it. Where it is wedged, what is left open, what rests."""
+        """Remarks for a report: wedging, undetermined frictions, rest."""
         found = [str(one) for one in self.wedged]
-        told = "equilibrium leaves open what presses in {}, and with its friction the drivers' efforts"
+        told = "equilibrium does not determine the normal force in {}, nor with its friction the drivers' efforts"
         found += [told.format(name) for name in self.undetermined]
-        if self.rubs and np.any(self.resting):
-            found.append("where no driver moves, efforts are intervals; pairs are shown without friction")
+        if self.contacts and np.any(self.resting):
+            found.append("where no driver moves, efforts are intervals; forces of pairs are without friction")
         return tuple(found)
 
     @property
     def at_rest(self) -> Number:
-        """Where no driver moves. There efforts are intervals, and pairs are shown without friction."""
+        """Poses at which no driver moves: efforts are intervals, and forces of pairs are without friction."""
         return self.motion.grid.shaped(self.resting)
 
     @cached_property
@@ -101,13 +101,13 @@ class FrictionForces(CopiesFields):
 
     def _stretches(self) -> Iterator[Wedged]:
         stuck = self.is_wedged
-        count = max(len(self.rubs), 1)
+        count = max(len(self.contacts), 1)
         for label, stretch in stretches_where(self.motion, np.where(stuck, self.state * count + self.worst, -1)):
-            yield Wedged(self.rubs[label % count].name, stretch, REASONS[label // count])
+            yield Wedged(self.contacts[label % count].name, stretch, REASONS[label // count])
 
     def __repr__(self) -> str:
         stuck = f", {len(self.wedged)} stretches wedged" if self.wedged else ""
-        return f"FrictionForces({', '.join(rub.name for rub in self.rubs)}{stuck})"
+        return f"FrictionForces({', '.join(contact.name for contact in self.contacts)}{stuck})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,17 +115,17 @@ class PairFriction:
     """The friction in a pair, on its second link from its first."""
 
     forces: FrictionForces
-    rub: LoadedContact
+    contact: LoadedContact
 
     @property
     def name(self) -> str:
         """The name of the pair."""
-        return self.rub.name
+        return self.contact.name
 
     @property
     def is_moment(self) -> bool:
         """Whether it is a moment, as in a pin; else a force."""
-        return self.rub.pair.needs_radius
+        return self.contact.pair.needs_radius
 
     @property
     def friction(self) -> Number:
@@ -143,7 +143,7 @@ class PairFriction:
     def power(self) -> Number:
         """Its power, never positive."""
         poses = self.forces.motion.poses
-        first, second = (poses[name] for name in self.rub.pair.members[:2])
+        first, second = (poses[name] for name in self.contact.pair.members[:2])
         return self.forces.known(self.wrench.power(second) - self.wrench.power(first))
 
     def __repr__(self) -> str:
@@ -151,7 +151,7 @@ class PairFriction:
 
 
 def no_friction(motion: Motion) -> FrictionForces:
-    """Return the frictions of a motion that has none."""
+    """Return the empty frictions of a motion without friction."""
     nothing = np.zeros(motion.failed.shape, dtype=int)
     return FrictionForces(motion, (), {}, {}, nothing, nothing, nothing > 0, {}, {})
 
@@ -175,7 +175,7 @@ class PoseStretch:
 
 
 def stretches_where(motion: Motion, labels: Number) -> Iterator[tuple[int, PoseStretch]]:
-    """Yield the stretches of poses of one label, (designs, poses), with their labels. Negative labels are none."""
+    """Yield the stretches of poses with equal labels (designs, poses), each with its label; negative labels are skipped."""
     driver = next(iter(motion.inputs.drives))
     values = np.broadcast_to(motion.inputs.drives[driver][0], labels.shape)
     for design in np.flatnonzero((labels >= 0).any(axis=1)).tolist():

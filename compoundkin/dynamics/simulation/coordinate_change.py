@@ -1,7 +1,7 @@
-"""Another pair in a driver's place, where the mechanism comes to a limit position of that driver.
+"""Change of coordinate: another pair replaces a driver near a limit position of that driver.
 
-Next to a limit position other pairs move infinitely faster than the driver. The fastest of them tells the pose as well,
-and is regular there: the driver's coordinate is then a smooth function of it.
+Near a limit position other pairs move infinitely faster than the driver. The coordinate of the fastest determines the
+pose as well and is regular there: the driver's coordinate is a smooth function of it.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from compoundkin.model.mechanism import Mechanism, available_outputs
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Drivable, as_drivable, as_transmitting_pair
 
-# So many pairs are tried in a driver's place.
+# The number of pairs that are tried instead of a driver.
 TRIED = 4
-# The same pose, solved by other drivers, is the same within this part of the size.
+# Poses solved by different drivers agree within this part of the size.
 SAME_POSE = 1e-6
 
 
 class FastPair(NamedTuple):
-    """A pair and how fast it moves by the scales. A driver moves at unit rate."""
+    """A pair and its scaled speed at unit rate of a driver."""
 
     pair: Pair
     ratio: float
@@ -42,7 +42,7 @@ class FastPair(NamedTuple):
 
 
 def fastest_pairs(chart: DriverChart, state: DriverState) -> list[FastPair]:
-    """Return the pairs that move fastest at unit rate of a free driver. The very fastest comes first."""
+    """Return the pairs that move fastest at unit rate of a free driver, the fastest first."""
     return sorted(_pairs(chart, state), key=lambda found: -found.ratio)[:TRIED]
 
 
@@ -55,10 +55,7 @@ def _pairs(chart: DriverChart, state: DriverState) -> Iterator[FastPair]:
 
 
 def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tuple[DriverChart, Number] | None:
-    """Return the chart with a pair driven in the place of a driver.
-
-    With it comes its state. None where it cannot be solved.
-    """
+    """Return the chart with a pair driven instead of a driver, and its state; None where it cannot be solved."""
     first, second = fast.pair.members
     taken = {own.name for own in chart.mechanism.drives}
     name = next(one for one in (second, f"{second} on {first}", f"{fast.pair.name} driven") if one not in taken)
@@ -74,7 +71,7 @@ def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tupl
     try:
         mechanism = _written(chart.mechanism, items)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FewDigits)  # of those rates that are left behind
+            warnings.simplefilter("ignore", FewDigits)  # of the driver that is replaced
             start = solve(
                 mechanism, {one: [value] for one, value in values.items()}, order=1, modes=_here(state, values)
             )
@@ -105,29 +102,29 @@ def _here(state: DriverState, values: dict[str, float]) -> Configuration:
 
 
 def _written(mechanism: Mechanism, items: list[Item]) -> Mechanism:
-    """Return a mechanism driven elsewhere, without what was said of the old driver."""
+    """Return a mechanism with other drivers, without modes and expectations."""
     kept = [item for item in items if not isinstance(item, Mode | Expectation)]
     outputs = available_outputs(mechanism, [item.name for item in kept if isinstance(item, Drive)])
     return Mechanism(mechanism.title, *kept, units=mechanism.units, outputs=outputs, source=mechanism.source)
 
 
 def as_driven(pair: Pair) -> Drivable:
-    """Return a pair that is known to be one that can be driven."""
+    """Return a pair that can be driven, as such."""
     found = as_drivable(pair)
     assert found is not None
     return found
 
 
 def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> DriverChart:
-    """Return the chart around a pose. It has a table where a single driver moves everything.
+    """Return the chart around a pose, with a table if there is a single driver.
 
-    Raises InvalidInput for friction with several drivers, or with gears, whose flank goes by the force.
+    Raises InvalidInput for friction with several drivers, or with gears, whose flank depends on the force.
     """
     frictions, only = start.mechanism.frictions, len(free) + len(laws) == 1
     if not frictions:
         return TabulatedChart(start, free, laws) if only else DriverChart(start, free, laws)
     geared = any(as_transmitting_pair(pair) for pair in start.solving_order.pairs.values())
     if geared or not only:
-        what = f"friction ({', '.join(frictions)}) is followed in mechanisms of one driver and without gears"
+        what = f"friction ({', '.join(frictions)}) is simulated in mechanisms with one driver and without gears"
         raise InvalidInput(Problem("frictions", what, "leave it out, or write dampers"))
     return FrictionTable(start, free, laws)

@@ -1,4 +1,4 @@
-"""A mechanism in the coordinates of its drivers, some free and some prescribed, solved at one state at a time."""
+"""Chart: a mechanism in the coordinates of its drivers, some free and some prescribed, solved one state at a time."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from compoundkin.model.pairs.contract import as_drivable
 
 @dataclass(eq=False)
 class DriverChart:
-    """The configurations around one pose, by the values of the drivers. The `free` ones obey the equation of motion.
+    """Configurations around one pose as functions of the drivers; the `free` ones obey the equation of motion.
 
-    `start` is a motion of one pose; `laws` prescribe the other drivers. The configuration is kept by signs of dyads and
-    by states of other groups, which follow every accepted state.
+    `start` is a motion of one pose; `laws` prescribe the other drivers. The configuration is that of the signs of dyads
+    and of the states of other groups, which are updated at every accepted state.
     """
 
     start: Motion
@@ -55,7 +55,7 @@ class DriverChart:
 
     @cached_property
     def candidates(self) -> tuple[Pair, ...]:
-        """The pairs that might be driven instead. They are the only ones between their links."""
+        """The pairs that could be driven instead, each the only one between its links."""
         pairs = self.start.structure.pairs
         sides = [frozenset(pair.members) for pair in pairs]
         single = zip(pairs, sides, strict=True)
@@ -63,17 +63,14 @@ class DriverChart:
 
     @cached_property
     def scales(self) -> Number:
-        """How far each free driver goes where it goes far.
-
-        That is a radian, or the mechanism's size.
-        """
+        """The length scale of each free driver: a radian, or the mechanism's size."""
         return np.array([self.order.unit(name) for name in self.free])
 
     def prescribed(self, time: float) -> tuple[Number, Number, Number]:
         """Return values, speeds and accelerations of the prescribed drivers."""
         moved = [law.coordinate(np.array([time]), 2) for law in self.laws.values()]
-        told = [[float(np.ravel(one.derivative(k))[0]) for one in moved] for k in range(3)]
-        return np.array(told[0]), np.array(told[1]), np.array(told[2])
+        rows = [[float(np.ravel(one.derivative(k))[0]) for one in moved] for k in range(3)]
+        return np.array(rows[0]), np.array(rows[1]), np.array(rows[2])
 
     def state(self, time: float, values: Number, speeds: Number) -> DriverState:
         """Return the state at values and speeds of the free drivers."""
@@ -82,7 +79,7 @@ class DriverChart:
         return DriverState(self, time, whole, rates, given[2], self._block(whole, rates))
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
-        """Return what a state grows by."""
+        """Return the rates of a state."""
         return self.state(time, values, speeds).rates
 
     def accelerated(self, state: DriverState) -> Number:
@@ -90,24 +87,24 @@ class DriverChart:
         return state.dry
 
     def begin(self, time: float, values: Number, speeds: Number) -> bool:
-        """Begin to move from a state. Tell whether it moves, which friction may hinder."""
+        """Start from a state; return whether it moves, which friction may prevent."""
         return True
 
     def released(self, time: float, values: Number, until: float) -> float:
-        """Return when a mechanism that is held goes on. It is the end at the latest."""
+        """Return the time at which friction releases the mechanism, at the latest the end."""
         return until
 
-    def told(self, time: float, values: Number, speeds: Number) -> Number:
-        """Return the accelerations of the free drivers at a state that was found."""
+    def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
+        """Return the accelerations of the free drivers at a state of the solution."""
         return self.rates(time, values, speeds).accelerations
 
     @property
     def memory(self) -> tuple[Any, ...]:
-        """What keeps the configuration around the state that was accepted last."""
+        """The configuration at the last accepted state."""
         return dict(self.states), dict(self.near), dict(self.turned)
 
     def recall(self, memory: tuple[Any, ...]) -> None:
-        """Go back to a configuration that was kept."""
+        """Restore a configuration."""
         self.states, self.near, self.turned = (dict(own) for own in memory[:3])
 
     def sign(self, k: int, values: Number) -> float:
@@ -115,11 +112,11 @@ class DriverChart:
         return self.signs[k]
 
     def is_regular(self, values: Number) -> bool:
-        """Tell whether it is known that no pair moves much faster than a driver."""
+        """Return whether no pair is known to move much faster than a driver."""
         return False
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
-        """Follow the configuration to a state that is reached."""
+        """Update the configuration at an accepted state."""
         if self.states or self.order.turning or self.turned:
             found = self.state(time, values, speeds)
             self._follow(found.block.world, found.values)
@@ -127,7 +124,7 @@ class DriverChart:
                 self.turned[pair] = found.angle_of(pair)
 
     def _follow(self, world: Mapping[str, Pose], values: Number | None) -> None:
-        """Note the states of groups without signs, and the angles that are counted, with their rates by the drivers."""
+        """Store the states of groups without signs, and the counted angles with their rates by the drivers."""
         for solver in (s for s in self.order.solvers if s.is_numbered):
             bodies = [_still(world[body.links[0]]) for body in solver.group.bodies]
             self.states[solver.index] = equations_of(solver).state(bodies).reshape(1, 1, -1)
@@ -142,7 +139,7 @@ class DriverChart:
             self.near[link] = LinearAngle(float(np.ravel(turned.c[0])[0]), values, slopes)
 
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
-        """Return an angle of a pair with the full turns that it has made."""
+        """Return an angle of a pair with its full turns."""
         if pair in self.driven:
             name, own = self.driven[pair]
             return float(values[self.names.index(name)]) * own.pair.driven_by(own.drive.link)
@@ -163,7 +160,7 @@ class DriverChart:
 
 @dataclass(frozen=True)
 class _ConfigurationChoice:
-    """The choice of the configuration that is kept."""
+    """The choice of modes that continues the configuration of a chart."""
 
     chart: DriverChart
     values: Number
@@ -173,7 +170,7 @@ class _ConfigurationChoice:
         return self.chart.states[solver.index] if solver.is_numbered else self.chart.sign(solver.index, self.values)
 
     def angle(self, solver: GroupSolver, link: str) -> Number | None:
-        """Return about where a counted angle is."""
+        """Return an estimate of a counted angle."""
         known = self.chart.near.get(link)
         return None if known is None else known.at(self.values)
 

@@ -24,24 +24,24 @@ from compoundkin.model.pairs import Pair
 
 
 class LinearAngle(NamedTuple):
-    """About where an angle is. Its value at values of the drivers, and its rates by them."""
+    """A linear estimate of an angle: its value at values of the drivers, and its derivatives by them."""
 
     angle: float
     values: Number | None
     slopes: Number
 
     def at(self, values: Number) -> float:
-        """Return it at other values."""
+        """Return the estimate at other values."""
         return self.angle if self.values is None else self.angle + float(self.slopes @ (values - self.values))
 
 
 def by_drivers(value: Number, names: tuple[str, ...]) -> Number:
-    """Return the rates of a coordinate by the drivers. They are all in a column but the last."""
+    """Return the rates of a coordinate by the drivers: all of a column but the last."""
     return np.broadcast_to(value, (len(names) + 1, 1))[:-1, 0]
 
 
 class StateChart(Protocol):
-    """What a state asks of its chart."""
+    """The part of a chart that its states need."""
 
     start: Motion
     free: tuple[str, ...]
@@ -55,11 +55,11 @@ class StateChart(Protocol):
         """Return the accelerations of the free drivers at a state."""
 
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
-        """Return an angle of a pair with its turns. It is at values of the drivers."""
+        """Return an angle of a pair with its turns, at values of the drivers."""
 
 
 class Rates(NamedTuple):
-    """What a state grows by. Accelerations of the free drivers, power of what has no potential."""
+    """The rates of a state: accelerations of the free drivers, power of loads without a potential."""
 
     accelerations: Number
     power: float
@@ -73,7 +73,7 @@ class DriverState:
     time: float
     values: Number
     speeds: Number
-    prescribed: Number  # the accelerations of the drivers that are
+    prescribed: Number  # accelerations of the prescribed drivers
     block: Block
 
     @cached_property
@@ -83,7 +83,7 @@ class DriverState:
 
     @cached_property
     def loaded(self) -> LoadedState:
-        """What loads are asked at."""
+        """The state as loads see it."""
         return loaded_state(self.chart.start, self.block, self.time, len(self.values), self._turned)
 
     def _turned(self, pair: str, angle: float) -> float:
@@ -102,7 +102,7 @@ class DriverState:
 
     @cached_property
     def forces(self) -> tuple[Number, Number]:
-        """The forces along the drivers' coordinates. Those that have a potential, and the others."""
+        """The forces along the drivers' coordinates: those with a potential, and the others."""
         stored, others = (self.loaded.along(loads) for loads in self.chart.loads)
         return self.terms.weight + stored, others
 
@@ -113,7 +113,7 @@ class DriverState:
 
     @cached_property
     def accelerations(self) -> Number:
-        """The accelerations of the free drivers, friction heeded."""
+        """The accelerations of the free drivers, with friction."""
         return self.chart.accelerated(self)
 
     @property
@@ -133,7 +133,7 @@ class DriverState:
 
     @property
     def rates(self) -> Rates:
-        """What the state grows by."""
+        """The rates of the state."""
         return Rates(self.accelerations, float(self.forces[1] @ self.speeds) + self._driven)
 
     @property
@@ -156,7 +156,7 @@ ONLY = slice(0, 1)
 
 
 class TrueRates(dict[str, Pose]):
-    """Poses as plain numbers, made when asked for. Their rates are the true ones, the last of each column."""
+    """Poses as plain numbers, made on access, with the true rates, which are the last of each column."""
 
     def __init__(self, world: dict[str, Pose]) -> None:
         super().__init__()
@@ -170,10 +170,10 @@ class TrueRates(dict[str, Pose]):
 
 @dataclass(frozen=True, eq=False)
 class LoadedState(LoadedBlock):
-    """A single pose. It answers what loads ask for, and what they do along each of `count` coordinates.
+    """A single pose as loads see it, and their forces along each of `count` coordinates.
 
-    Each pose of `columns` has in its rates those at unit rate of every coordinate, and last the true ones; the block
-    has these alone. `turns` gives an angle of a pair the full turns that it has made.
+    The rates of each pose of `columns` are those at unit rate of every coordinate, and last the true ones; the block has
+    the true ones alone. `turns` adds to an angle of a pair its full turns.
     """
 
     columns: dict[str, Pose] | None = None
@@ -191,7 +191,7 @@ class LoadedState(LoadedBlock):
         if isinstance(value, float | complex | int):
             return value
         if np.size(value) != 1:
-            what = "it is given pose by pose, and the poses of a simulation are not known before"
+            what = "it is an array over poses, and the poses of a simulation are not known in advance"
             raise InvalidInput(Problem(where, what, "give a number, a function of time or a table"))
         return np.ravel(value)[0].item()
 
@@ -223,7 +223,7 @@ class LoadedState(LoadedBlock):
 def loaded_state(
     motion: Motion, block: Block, seconds: float, count: int, turns: Callable[[str, float], float]
 ) -> LoadedState:
-    """Return what loads ask for at a state of a block of columns."""
+    """Return a state of a block of columns as loads see it."""
     true = Block((1, 1), block.ends, TrueRates(block.world), {}, 1)
     return LoadedState(motion, true, ONLY, ONLY, columns=block.world, seconds=seconds, count=count, turns=turns)
 
@@ -238,7 +238,7 @@ def _number(value: Number, at: int = 0) -> Number:
 
 @dataclass(frozen=True, eq=False)
 class SimulatedState:
-    """A state of a simulation. Its quantities are read by name, as of a motion: ``state["B.y"]``."""
+    """A state of a simulation, with quantities by name as of a motion: ``state["B.y"]``."""
 
     state: DriverState
 
@@ -249,12 +249,12 @@ class SimulatedState:
 
     @property
     def order(self) -> SolvingOrder:
-        """What solved it."""
+        """The solving order."""
         return self.state.chart.order
 
     @property
     def block(self) -> Block:
-        """The pose, solved."""
+        """The solved pose."""
         return self.state.block
 
     def __getitem__(self, name: str) -> Any:
@@ -267,19 +267,19 @@ class SimulatedState:
 
 
 def motion_at(state: DriverState, start: Motion) -> Motion:
-    """Return a state as a motion of one pose. Its free drivers are accelerated."""
+    """Return a state as a motion of one pose, with accelerations."""
     second = np.concatenate([state.accelerations, state.prescribed])
     return accelerated_motion(state, start, state.speeds, second[:, None])
 
 
 def accelerated_motion(state: DriverState, start: Motion, speeds: Number, second: Number) -> Motion:
-    """Return a state as a motion whose poses differ in their accelerations (drivers, poses). Speeds are given anew."""
+    """Return a state with other speeds as a motion whose poses differ in accelerations (drivers, poses)."""
     count = second.shape[1]
-    told = zip(state.chart.names, state.values, speeds, second, strict=True)
+    rows = zip(state.chart.names, state.values, speeds, second, strict=True)
     drives: dict[str, tuple[Number, ...]] = {
-        name: (np.array([[value]]), np.array([[speed]]), row[None]) for name, value, speed, row in told
+        name: (np.array([[value]]), np.array([[speed]]), row[None]) for name, value, speed, row in rows
     }
-    # the bias goes with the squares and products of speeds, as they are in the state
+    # the bias is quadratic in the speeds, and known at those of the state only
     is_own = speeds is state.speeds
 
     def true(series: Series) -> Series:

@@ -37,11 +37,11 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law, as_law, constant_speed, motion_table
 from compoundkin.model.mechanism import Mechanism
 
-# A driver that feels less than this part of the heaviest link, some rounding squared as speeds are, moves no mass.
+# A driver whose equivalent inertia is below this part of the heaviest link's moves no mass: rounding squared.
 NO_MASS = 1e-20
-# From one pose of the result to the next drivers go so far at most (radians, or parts of the size), in so many poses.
+# The greatest step of a driver between poses of the result (radians, parts of the size), and bounds of their number.
 APART, FEWEST, MOST = np.deg2rad(5.0), 100, 20000
-# Energies that are so far from adding up, or so many times the tolerance, are told of.
+# A warning is given for an energy error above this, and above so many times the tolerance.
 ENERGY_TOLERANCE, WORSE = 1e-5, 1e4
 
 
@@ -60,23 +60,23 @@ def simulate(
     modes: Mapping[str, int] | str | Configuration | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Simulation:
-    """Return how a mechanism moves under its masses and loads. It is followed until a time in seconds.
+    """Simulate a mechanism under its masses and loads until a time in seconds.
 
-    Its drivers do not drive: their coordinates are what is found. `start` gives each its value (radians, lengths) or
-    (value, speed), a single driver without its name; without it they rest at the drawn pose, else at the first.
-    Drivers with a law are `prescribed`, and so are those that the call gives a law, a function of time, or a value at
-    which they are held. `modes` are those of `solve`.
+    The coordinates of its drivers are the unknowns. `start` gives each its value (radians, lengths) or (value, speed), a
+    single driver without its name; by default they rest at the drawn pose, else at the first. Drivers with a law are
+    `prescribed`, and so are those to which the call gives a law, a function of time, or a constant value. `modes` are
+    those of `solve`.
 
-    `events` are functions of the state by name, ``lambda state: state["B.y"] - 20``: where one passes through zero it
-    is noted, and the simulation stops if `stop` names it. It stops at an end of a guide, unless a coefficient of
-    `restitution` (0 to 1) says how fast that is left again, and where a contact lets go.
+    `events` are functions of the state by name, ``lambda state: state["B.y"] - 20``: a zero of one
+    is an event, and the simulation stops there if `stop` names it. It stops at a travel limit of a guide, unless a
+    coefficient of `restitution` (0 to 1) gives the rebound, and where a contact lifts off.
 
-    The result is a motion in time at `times`, evenly spaced ones without them; with its forces and energies.
-    The error of a step is `tolerance` of the drivers' values and speeds. Where a driver comes to a limit position,
-    another pair takes its place as the coordinate. `progress(done, total)` is told of every step.
+    The result is a motion in time at `times`, by default evenly spaced ones, with its forces and energies.
+    The error of a step is `tolerance` of the drivers' values and speeds. Near a limit position of a driver another pair
+    becomes the coordinate. `progress(done, total)` is called after every step.
 
     Raises InvalidInput for a mechanism without units or masses, for drivers that move no mass, for times that do not
-    increase; UnknownName for drivers that there are not.
+    increase; UnknownName for unknown drivers.
 
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.model.loads import gravity, mass
@@ -88,14 +88,14 @@ def simulate(
     (np.float64(2.0), True)
     """
     _check_simulated(mechanism, until, tolerance, restitution)
-    _hold_progress(progress)
+    _check_progress(progress)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
     watched = watches(mechanism, events or {}, (stop,) if isinstance(stop, str) else tuple(stop))
     course = SimulatedCourse(float(until), float(tolerance), watched, restitution)
     with np.errstate(all="ignore"):
-        _hold_moving(chart, state)
+        _check_inertia(chart, state)
         integrate(chart, state, course, progress)
         stretches = course.at(_times(course, times))
         motion = simulated_motion(stretches)
@@ -105,14 +105,14 @@ def simulate(
 
 
 def _warn(energy: SimulatedEnergy, tolerance: float) -> None:
-    """Warn where energies do not add up."""
+    """Warn of an energy error."""
     if energy.worst > max(ENERGY_TOLERANCE, WORSE * tolerance):
         what = f"energies do not add up, {energy.worst:.1g} of the greatest is missing"
         warn(f"{what}: a prescribed speed jumps, digits are lost, or several drivers passed a change point", FewDigits)
 
 
 def _check_simulated(mechanism: Mechanism, until: float, tolerance: float, restitution: float | None) -> None:
-    """Raise InvalidInput for what cannot be simulated."""
+    """Raise InvalidInput for a mechanism without masses, and for numbers out of range."""
     _ = mechanism.stated_units
     if not mechanism.masses:
         raise InvalidInput(Problem("masses", "nothing has a mass", 'write mass("link", 0.2, at=..., inertia=...)'))
@@ -124,23 +124,23 @@ def _check_simulated(mechanism: Mechanism, until: float, tolerance: float, resti
         raise InvalidInput(Problem("tolerance", f"{tolerance:g} is too fine or too coarse", "1e-13 to 1e-2"))
 
 
-def _hold_progress(progress: Callable[[int, int], None] | None) -> None:
-    """Raise InvalidInput for what cannot be told of progress."""
+def _check_progress(progress: Callable[[int, int], None] | None) -> None:
+    """Raise InvalidInput for a progress function that fails."""
     try:
         if progress is not None:
             progress(0, PARTS)
     except Exception as error:  # whatever a user's function does
         remedy = "give a function of two numbers: how much is done, of how much"
-        raise InvalidInput(Problem("progress", f"it cannot be told: {error}", remedy)) from error
+        raise InvalidInput(Problem("progress", f"it cannot be called: {error}", remedy)) from error
 
 
-def _hold_moving(chart: DriverChart, state: Number) -> None:
-    """Raise InvalidInput where a free driver moves no mass, and where rates are not finite."""
+def _check_inertia(chart: DriverChart, state: Number) -> None:
+    """Raise InvalidInput where a free driver moves no mass, and at limit positions and change points."""
     n = len(chart.free)
     matrix = chart.state(0.0, state[:n], state[n : 2 * n]).terms.matrix[:n, :n]
     if not (np.isfinite(matrix).all() and chart.start.regular.all()):
         what = "drivers are at a limit position or a change point there"
-        raise InvalidInput(Problem("start", what, "start a little beside it, or drive another link"))
+        raise InvalidInput(Problem("start", what, "start at a distance from it, or drive another link"))
     heaviest = max(own.mass * chart.order.size**2 + own.inertia for own in chart.masses)
     sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
     for name, one in zip(chart.free, sizes, strict=True):
@@ -151,7 +151,7 @@ def _hold_moving(chart: DriverChart, state: Number) -> None:
 
 
 def _times(course: SimulatedCourse, times: Any) -> Number:
-    """Return the times of the result: those asked for as far as they are reached, else evenly spaced ones."""
+    """Return the times of the result: the given ones up to the end, else evenly spaced ones."""
     if times is not None:
         return _requested_events(times, course)
     speeds = [_farthest(step) / (step.last - step.first) for step in course.steps]
@@ -160,7 +160,7 @@ def _times(course: SimulatedCourse, times: Any) -> Number:
 
 
 def _farthest(step: Step) -> float:
-    """Return how far the free drivers go in a step, by their scales."""
+    """Return the greatest scaled step of a free driver."""
     n = len(step.chart.free)
     first, last = (step.between(time)[:n] for time in (step.first, step.last))
     return float(np.max(np.abs(last - first) / step.chart.scales))
@@ -176,7 +176,7 @@ def _requested_events(times: Any, course: SimulatedCourse) -> Number:
 
 @dataclass(frozen=True, eq=False)
 class SimulationStart:
-    """The first pose as a motion. The speeds of free drivers, the laws of others."""
+    """The first pose as a motion, the speeds of free drivers, and the laws of the others."""
 
     motion: Motion
     speeds: Mapping[str, float]
@@ -194,21 +194,21 @@ def simulation_start(
     prescribed: Mapping[str, Any],
     modes: Mapping[str, int] | str | Configuration | None,
 ) -> SimulationStart:
-    """Return where a simulation starts; raises InvalidInput and UnknownName for what does not fit."""
+    """Return the start of a simulation. Raises InvalidInput and UnknownName for invalid arguments."""
     names = [own.name for own in mechanism.drives]
     if start is not None and not isinstance(start, Mapping):
         if len(names) != 1:
             raise InvalidInput(Problem("start", "there is more than one driver", "name them: {'driver': value}"))
         start = {names[0]: start}
-    told: Mapping[str, Any] = start or {}
-    for where, given in (("start", told), ("prescribed", prescribed)):
+    starts: Mapping[str, Any] = start or {}
+    for where, given in (("start", starts), ("prescribed", prescribed)):
         for name in given:
             if name not in names:
                 raise UnknownName(
                     Problem(f"{where}.{name}", f"there is no driver {name!r}", suggestion(str(name), names))
                 )
-    laws = _laws(mechanism, told, prescribed)
-    free = {name: _pair(f"start.{name}", told[name]) if name in told else (None, 0.0)
+    laws = _laws(mechanism, starts, prescribed)
+    free = {name: _pair(f"start.{name}", starts[name]) if name in starts else (None, 0.0)
             for name in names if name not in laws}  # fmt: skip
     if not free:
         raise InvalidInput(Problem("prescribed", "all drivers are prescribed", "leave one free, or use solve()"))
@@ -237,11 +237,11 @@ def _first_pose(
 
 
 def _laws(mechanism: Mechanism, start: Mapping[str, Any], prescribed: Mapping[str, Any]) -> dict[str, Law]:
-    """Return the laws of the drivers that are prescribed, by the call or by the mechanism."""
+    """Return the laws of the drivers prescribed by the call or by the mechanism."""
     found: dict[str, Law] = {}
     for own in mechanism.drives:
         if own.name in prescribed and own.name in start:
-            what = "it is given a start as a free driver, and prescribed too"
+            what = "it has a start as a free driver, and is prescribed too"
             raise InvalidInput(Problem(f"prescribed.{own.name}", what, "leave one of both out"))
         if own.name in prescribed:
             given = prescribed[own.name]
@@ -263,7 +263,7 @@ def _pair(where: str, given: Any) -> tuple[float, float]:
 
 
 def _written_value(mechanism: Mechanism) -> dict[str, float]:
-    """Return the drivers' values of the drawing, else of the first pose."""
+    """Return the drivers' values in the drawing, else at the first pose."""
     order = solving_order_of(mechanism)
     given = inputs(order, {own.name: 0.0 for own in mechanism.drives if own.values is None}, None, None, None)
     shown = shown_by(order)
@@ -274,20 +274,20 @@ def _written_value(mechanism: Mechanism) -> dict[str, float]:
     return found
 
 
-# Accelerations are what forces take.
+# Forces need accelerations.
 ORDER = 2
-# So many coordinates are tried, the last ones first.
+# The number of coordinates that are tried, the last ones first.
 TRIES = 3
-# Poses that two drivers tell agree within this part of the size.
+# Poses by two drivers agree within this part of the size.
 SAME = 1e-6
 # Value, speed and acceleration of a coordinate at times.
 SolvedCourse = tuple[Number, Number, Number]
 
 
 def simulated_motion(stretches: list[ChartStretch]) -> Motion:
-    """Return the motion of all stretches together, at the times that were asked for.
+    """Return the motion of all stretches together, at the requested times.
 
-    It is driven by a coordinate that tells the pose all the time, where there is one.
+    It is driven by a coordinate that determines the pose throughout, where there is one.
     """
     if len(stretches) == 1:
         return _alone(stretches[0])
@@ -301,7 +301,7 @@ def simulated_motion(stretches: list[ChartStretch]) -> Motion:
         if agrees:
             return motion
         tried.append(motion)
-    # no coordinate is regular everywhere: each pose as it was found in the coordinate that was
+    # no coordinate is regular everywhere: each pose is that of the coordinate of its stretch
     motion = tried[0]
     mended = motion.mended(np.zeros(len(times), dtype=int), np.arange(len(times)), poses)
     return replace(mended, failed=np.zeros_like(motion.failed))
@@ -315,7 +315,7 @@ def _alone(stretch: ChartStretch) -> Motion:
 
 
 def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pose]:
-    """Return the poses of all links at the times that were asked for, in a row."""
+    """Return the poses of all links at the requested times, in a row."""
 
     def row(name: str, side: str, k: int) -> Number:
         found = []
@@ -334,7 +334,7 @@ def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pos
 def _driven_by(
     chart: DriverChart, parts: list[Motion], stretches: list[ChartStretch], times: Number, poses: Mapping[str, Pose]
 ) -> tuple[Motion, bool]:
-    """Return the motion by the free drivers of one chart, and whether its poses are those that were found."""
+    """Return the motion by the free drivers of one chart, and whether it has the poses of the simulation."""
     moved = {name: _followed(chart, name, parts, stretches) for name in chart.free}
     first = Configuration(chart.start.structure, {}, placed_at(poses, (0, 0)), {}, {},
                           dimensions_at(chart.start.structure, 0, 0))  # fmt: skip
@@ -348,11 +348,11 @@ def _driven_by(
 
 
 def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[ChartStretch]) -> SolvedCourse:
-    """Return how a driver of a chart moves all the time, read off the motions of all stretches."""
+    """Return the course of a chart's driver over all stretches, read off their motions."""
     own = chart.start.structure.driven[name]
     sense, found, last = float(own.pair.driven_by(own.drive.link)), [], None
     for motion, one in zip(parts, stretches, strict=True):
-        # by the poses: at a multiple pin another driver makes other pairs
+        # by the poses: at a multiple pin another driver leads to other pairs
         ends = motion.inputs.ends.get(own.pair.name) or own.pair.ends(motion.mechanism.geometry)
         series = own.pair.coordinate(ends, tuple(motion.poses[link] for link in own.pair.members))
         rows = [np.broadcast_to(series.derivative(k), motion.failed.shape)[0] * sense for k in range(ORDER + 1)]
@@ -366,21 +366,21 @@ def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: lis
 
 
 def _moved(stretch: ChartStretch) -> dict[str, SolvedCourse]:
-    """Return how the free drivers move in a stretch."""
+    """Return the courses of the free drivers in a stretch."""
     chart, n = stretch.chart, len(stretch.chart.free)
     values, speeds = stretch.states[:n], stretch.states[n : 2 * n]
     rates = stretch.accelerations
     if not np.isfinite(rates).all():
         late = stretch.times[np.argmin(np.isfinite(rates).all(axis=0))]
-        what = f"at {late:g} s the mechanism is at a limit position of its drivers, where their rates are not known"
-        raise InvalidInput(Problem("until", what, "end before, or let other links be its drivers"))
+        what = f"at {late:g} s the mechanism is at a limit position of its drivers, where their rates are unknown"
+        raise InvalidInput(Problem("until", what, "end earlier, or drive other links"))
     return {name: (values[k], speeds[k], rates[k]) for k, name in enumerate(chart.free)}
 
 
 def in_time(
     chart: DriverChart, times: Number, moved: Mapping[str, SolvedCourse], first: Configuration | None
 ) -> Motion:
-    """Return a motion in time of a chart's mechanism. Its free drivers have a law that goes through what they did."""
+    """Return a motion in time of a chart's mechanism, whose free drivers have laws through their simulated courses."""
     laws = {**chart.laws, **{name: motion_table(times, *one) for name, one in moved.items()}}
     drives = [Drive(item.name, item.link, item.on, item.pair, law=laws[item.name]) for item in chart.mechanism.items
               if isinstance(item, Drive)]  # fmt: skip

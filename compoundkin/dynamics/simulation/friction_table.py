@@ -21,17 +21,17 @@ from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 
 # Iterations for the acceleration: secant steps, each from two efforts that are nearly affine in it.
 STEPS = 30
-# It is found where a step changes it by this part.
+# Iterations end where a step changes the acceleration by this part.
 STEP_TOLERANCE = 1e-13
-# A driver that is held is looked at in so many places of the time left; its release is found to this part of the time.
+# The release of a driver is searched at so many times, and found to this part of the time.
 RELEASE_SAMPLES, RELEASED = 200, 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class NormalForceState:
-    """The forces that press pairs at the accelerations 0 and 1. Senses and the driver's effort.
+    """Normal forces at the accelerations 0 and 1, senses of sliding, and the driver's effort.
 
-    The effort is `own` without friction at both accelerations, and `by` more for each unit of friction.
+    The effort is `own` without friction at both accelerations, and changes by `by` for each unit of friction.
     """
 
     influence: FrictionInfluence
@@ -40,7 +40,7 @@ class NormalForceState:
     by: Number
 
     def effort(self, a: float) -> float | None:
-        """Return the driver's effort at an acceleration. None where there is not just one."""
+        """Return the driver's effort at an acceleration, None where it is not unique."""
         own = self.influence.own
         pressed = replace(self.influence.of(np.array([0])), own=own[:, :1] + (own[:, 1:] - own[:, :1]) * a)
         found = solve_coulomb(pressed, self.senses[:, None])
@@ -50,25 +50,25 @@ class NormalForceState:
 
 
 class FrictionTable(TabulatedChart):
-    """The chart of one free driver whose pairs rub. It is driven in one `direction` until it comes to rest."""
+    """The chart of one free driver whose pairs have friction. It moves in one `direction` until it comes to rest."""
 
     direction: float = 1.0
 
     @cached_property
-    def rubs(self) -> tuple[LoadedContact, ...]:
-        """The pairs that rub."""
+    def contacts(self) -> tuple[LoadedContact, ...]:
+        """The pairs with friction."""
         return friction_contacts_of(self.start)
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
-        """Return what a state grows by. The work is that of loads without a potential, and of friction."""
+        """Return the rates of a state. The work is that of loads without a potential, and of friction."""
         state = self.state(time, values, speeds)
         gained = state.terms.matrix[0, 0] * state.accelerations[0] + state.terms.bias[0] - state.forces[0][0]
         return Rates(state.accelerations, float(gained * speeds[0]))
 
-    def told(self, time: float, values: Number, speeds: Number) -> Number:
-        """Return the acceleration at a state that was found; none where it rests."""
+    def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
+        """Return the acceleration at a state of the solution; zero where friction holds it."""
         if speeds[0] == 0.0:
-            way = self.way_on(self.state(time, values, speeds))
+            way = self.direction_from_rest(self.state(time, values, speeds))
             if way == 0.0:
                 return np.zeros(1)
         else:
@@ -97,32 +97,29 @@ class FrictionTable(TabulatedChart):
         return np.array([a])
 
     def begin(self, time: float, values: Number, speeds: Number) -> bool:
-        """Take the direction in which it goes on. Tell whether it moves: friction may hold it."""
-        way = float(np.sign(speeds[0])) or self.way_on(self.state(time, values, speeds))
+        """Set the direction of motion; return whether it moves, which friction may prevent."""
+        way = float(np.sign(speeds[0])) or self.direction_from_rest(self.state(time, values, speeds))
         self.direction = way or self.direction
         return way != 0.0
 
-    def way_on(self, state: DriverState) -> float:
-        """Return in which direction the driver goes on from rest. Zero where friction holds it."""
-        # the effort that would keep it going each way; without one it is wedged
+    def direction_from_rest(self, state: DriverState) -> float:
+        """Return the direction in which the driver starts from rest, zero where friction holds it."""
+        # the effort that would sustain motion in each direction; None where it is wedged
         efforts = [self._pressed(state, np.zeros(1), np.zeros((1, 2)), way).effort(0.0) for way in (-1.0, 1.0)]
         if efforts[1] is not None and efforts[1] < 0.0:
             return 1.0
         return -1.0 if efforts[0] is not None and efforts[0] > 0.0 else 0.0
 
     def released(self, time: float, values: Number, until: float) -> float:
-        """Return when a driver that friction holds goes on.
-
-        Loads that depend on time let it. It is the end at the latest.
-        """
+        """Return the time at which friction releases the driver, by loads that depend on time; at the latest the end."""
         if not self.has_others:
             return until
 
         def moves(at: float) -> bool:
-            return self.way_on(self.state(at, values, np.zeros(1))) != 0.0
+            return self.direction_from_rest(self.state(at, values, np.zeros(1))) != 0.0
 
-        looks = np.linspace(time, until, RELEASE_SAMPLES + 1)[1:]
-        late = next((float(at) for at in looks if moves(float(at))), None)
+        times = np.linspace(time, until, RELEASE_SAMPLES + 1)[1:]
+        late = next((float(at) for at in times if moves(float(at))), None)
         if late is None:
             return until
         early = late - (until - time) / RELEASE_SAMPLES
@@ -132,18 +129,18 @@ class FrictionTable(TabulatedChart):
         return late
 
     def _pressed(self, state: DriverState, speeds: Number, second: Number, way: float) -> NormalForceState:
-        """Return what presses the pairs at two accelerations, and the driver's effort by it."""
+        """Return the normal forces at two accelerations, and the driver's effort."""
         at = self._loaded(state, speeds, second)
-        block = block_with_friction(at, self.rubs, at.known(True))
-        none = np.zeros((len(self.rubs), 2))
+        block = block_with_friction(at, self.contacts, at.known(True))
+        none = np.zeros((len(self.contacts), 2))
         own = block.effort(self.free[0], none)
-        each = np.eye(len(self.rubs))
+        each = np.eye(len(self.contacts))
         by = np.array([(block.effort(self.free[0], none + one[:, None]) - own)[0] for one in each])
         return NormalForceState(block.influence, way * self._senses(state), own, by)
 
     def _senses(self, state: DriverState) -> Number:
-        """Return in which sense each pair rubs as the driver's coordinate grows."""
-        return senses(self.rubs, self._loaded(state, np.ones(1), np.zeros((1, 1))))[:, 0]
+        """Return the sense in which each pair slides as the driver's coordinate grows."""
+        return senses(self.contacts, self._loaded(state, np.ones(1), np.zeros((1, 1))))[:, 0]
 
     def _loaded(self, state: DriverState, speeds: Number, second: Number) -> LoadedBlock:
         motion = accelerated_motion(state, self.start, speeds, second)

@@ -28,23 +28,23 @@ from compoundkin.dynamics.simulation.simulation_events import (
 )
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 
-# No step takes a driver farther than this (radians, or parts of the size): configurations are followed, angles counted.
+# The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
 LONGEST_MOVE = 1.0
-# Where a pair moves so many times as fast as a driver and cannot take its place, the motion ends.
+# The motion ends where a pair moves so many times as fast as a driver and cannot replace it.
 LIMIT = 1e4
-# A step that is this part of the longest leads nowhere: the configuration cannot be followed any farther.
+# The integration stalls where a step is below this part of the longest.
 STALLED = 1e-7
-# What is said where friction holds a mechanism.
+# The name of the event where friction holds a mechanism.
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
 SLOWEST = 1e-3
-# What is told of progress: so many parts of the whole.
+# Progress counts so many parts.
 PARTS = 1000
 Progress = Callable[[int, int], None]
 
 
 def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
-    """Add the steps from a state of a chart on, and what happens."""
+    """Add the steps and events that follow from a state of a chart."""
     n = len(chart.free)
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
@@ -71,7 +71,7 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
 
 
 def _begun(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> Any:
-    """Return the integrator from a state on. A mechanism that friction holds rests first; None where it stays so."""
+    """Return the integrator from a state, after a rest where friction holds it; None where it stays at rest."""
     n = len(chart.free)
     values, speeds = state[:n], state[n : 2 * n]
     if chart.begin(time, values, speeds):
@@ -87,19 +87,19 @@ def _begun(chart: DriverChart, time: float, state: Number, course: SimulatedCour
 
 
 def _resting(state: Number) -> Callable[[Number], Number]:
-    """Return a state that stays, as a function of time."""
+    """Return a constant state as a function of time."""
     return lambda times: np.repeat(state[:, None], len(times), axis=1) if np.ndim(times) else state
 
 
 class _Interruption(NamedTuple):
-    """Where the course is broken off, and the state with which it goes on. None where it ends."""
+    """The time at which the course is interrupted, and the state from which it continues, None at the end."""
 
     time: float
     state: Number | None
 
 
 def _passed(course: SimulatedCourse) -> _Interruption | None:
-    """Note what happened in the last step; return where that breaks the course off, None where it does not."""
+    """Record the events of the last step; return the interruption by one, if any."""
     step = course.steps[-1]
     for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
         n, watch = len(step.chart.free), one.watch
@@ -126,7 +126,7 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
 
 
 def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
-    """Return a chart and its state with which to go on. None where this one is good, or where nothing is better."""
+    """Return another chart and its state to continue with; None where the present one is regular or none is better."""
     n = len(chart.free)
     stalls = solver.step_size < STALLED * min(solver.max_step, course.until)
     if chart.is_regular(solver.y[:n]) and not stalls:
@@ -148,7 +148,7 @@ def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[
 
 
 def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
-    """Stop the simulation where it is."""
+    """Stop the simulation at its present state."""
     solver.status = "finished"
     _stop(course, "limit", text)
 
@@ -176,15 +176,15 @@ def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCou
 
 
 def _driver_paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: float) -> Number:
-    """Return about how fast each free driver will move: by its speed, or by its acceleration over its scale."""
+    """Return the expected pace of each free driver, by its speed or by its acceleration over its scale."""
     quick = np.maximum(np.abs(speeds), np.sqrt(np.abs(accelerations) * chart.scales))
-    # one that is at rest without a load is measured against the others, and they against their scales in the whole time
+    # a driver at rest without a load is scaled by the others, and these by their scales over the whole time
     found: Number = np.maximum(quick, chart.scales * max(np.max(quick / chart.scales), 1.0 / duration) * SLOWEST)
     return found
 
 
 def longest_step(chart: DriverChart, speeds: Number, accelerations: Number) -> float:
-    """Return the time in which no driver goes too far."""
+    """Return the longest time step in which no driver exceeds LONGEST_MOVE."""
     rate = np.max(np.abs(speeds) / chart.scales)
     growth = np.max(np.abs(accelerations) / chart.scales)
     # s = v t + a t^2 / 2, solved for the time without cancellation
@@ -195,27 +195,27 @@ def longest_step(chart: DriverChart, speeds: Number, accelerations: Number) -> f
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A step of the integration. Its chart, its times, and the state in between as a function of time."""
+    """A step of the integration: its chart, its times, and the state as a function of time."""
 
     chart: DriverChart
     first: float
     last: float
     between: Callable[[Number], Number]
-    memory: tuple[Any, ...]  # what keeps the configuration at its beginning
+    memory: tuple[Any, ...]  # the configuration at its beginning
 
-    def told(self, times: Number, states: Number) -> Number:
-        """Return the accelerations of the free drivers at times in it, in columns."""
+    def accelerations_at(self, times: Number, states: Number) -> Number:
+        """Return the accelerations of the free drivers at times in the step, in columns."""
         n = len(self.chart.free)
         self.chart.recall(self.memory)
-        found = [self.chart.told(t, y[:n], y[n : 2 * n]) for t, y in zip(times, states.T, strict=True)]
+        found = [self.chart.accelerations_at(t, y[:n], y[n : 2 * n]) for t, y in zip(times, states.T, strict=True)]
         return np.array(found).T
 
 
 @dataclass(frozen=True, eq=False)
 class ChartStretch:
-    """The course in one chart. States at times are in columns, its first and last among them.
+    """The course in one chart, with states in columns, its first and last among them.
 
-    `asked` tells which of the times were asked for.
+    `asked` is a mask of the requested times.
     """
 
     chart: DriverChart
@@ -227,9 +227,9 @@ class ChartStretch:
 
 @dataclass(eq=False)
 class SimulatedCourse:
-    """The steps from the start on. A state is the free drivers' values, their speeds, and the work done.
+    """The steps from the start. A state is the free drivers' values, their speeds, and the work done.
 
-    `fastest` is the approach of the fastest impact.
+    `fastest` is the approach speed of the fastest impact.
     """
 
     until: float
@@ -249,14 +249,14 @@ class SimulatedCourse:
         return [_stretch(steps, times, k == 0) for k, steps in enumerate(runs)]
 
     def cut(self, time: float) -> None:
-        """Let the last step end at a time. It is left out where nothing is left of it."""
+        """Let the last step end at a time; an empty step is dropped."""
         step = self.steps.pop()
         if time > step.first or not self.steps:
             self.steps.append(replace(step, last=time))
 
     @property
     def last(self) -> float:
-        """The time that is reached."""
+        """The time reached."""
         return self.steps[-1].last if self.steps else 0.0
 
 
@@ -270,6 +270,6 @@ def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
     for k in np.unique(index):
         here = whole[index == k]
         states.append(steps[k].between(here))
-        accelerations.append(steps[k].told(here, states[-1]))
-    whole_states, told = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
-    return ChartStretch(steps[0].chart, whole, whole_states, told, np.isin(whole, own))
+        accelerations.append(steps[k].accelerations_at(here, states[-1]))
+    whole_states, rates = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
+    return ChartStretch(steps[0].chart, whole, whole_states, rates, np.isin(whole, own))

@@ -1,4 +1,4 @@
-"""The energy of a simulated motion: kinetic, potential, the work of what has no potential, and what does not add up."""
+"""The energy of a simulated motion: kinetic, potential, the work of loads without a potential, and the error."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.contract import Load
 
-# So large a part of the total energy is lost in its sums.
+# The rounding error of the total energy.
 ROUNDING = 64.0 * np.finfo(float).eps
 
 
@@ -35,25 +35,25 @@ class SimulatedEnergy(ShortRepr):
 
     @property
     def error(self) -> Number:
-        """What does not add up: the change of the total less the work."""
+        """The energy error: the change of the total less the work."""
         return self.total - self.total[0] - self.work
 
     @property
     def peak(self) -> float:
-        """The greatest of the energies. Kinetic, a change of the potential, or the work."""
+        """The greatest of kinetic energy, change of potential energy, and work."""
         parts = (self.kinetic, self.potential - self.potential[0], self.work)
         return max(float(np.max(np.abs(part))) for part in parts)
 
     @property
     def worst(self) -> float:
-        """The greatest error as a part of the peak. What is rounding of the total counts as none."""
+        """The greatest error relative to the peak, zero where it is rounding of the total."""
         error = float(np.max(np.abs(self.error)))
         rounding = ROUNDING * float(np.max(np.abs(self.total)))
         return error / self.peak if error > rounding and self.peak else 0.0
 
 
 def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:
-    """Return the energies of a motion of one design. Its mass centres tell them."""
+    """Return the energies of a motion of one design."""
     mechanism = motion.mechanism
     factor, fall = mechanism.stated_units.inertia, complex(first_entry(mechanism.free_fall))
     kinetic, potential = np.zeros(motion.shape), np.zeros(motion.shape)

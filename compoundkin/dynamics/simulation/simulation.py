@@ -1,4 +1,4 @@
-"""A simulated motion: its poses in time, the forces in it, its energy, and what happened."""
+"""The result of a simulation: the motion in time, its forces, its energy, and events."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from compoundkin.kinematics.motion import Motion
 
 @dataclass(frozen=True, eq=False)
 class Simulation(DisplaysHtml):
-    """A mechanism that moved under its loads. `motion` is a motion in time, solved again at `times`.
+    """The motion of a mechanism under its loads. `motion` is a motion in time, solved again at `times`.
 
     `events` are in the order of time. `steps` and `evaluations` count those of the integration.
     """
@@ -42,5 +42,5 @@ class Simulation(DisplaysHtml):
 
     def __repr__(self) -> str:
         title, last = self.motion.mechanism.title, float(np.ravel(self.times)[-1])
-        told = f", {count_phrase(len(self.events), 'event')}" if self.events else ""
-        return f"Simulation({title!r} over {last:.6g} s in {count_phrase(self.steps, 'step')}{told})"
+        events = f", {count_phrase(len(self.events), 'event')}" if self.events else ""
+        return f"Simulation({title!r} over {last:.6g} s in {count_phrase(self.steps, 'step')}{events})"

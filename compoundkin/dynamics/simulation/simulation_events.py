@@ -1,4 +1,4 @@
-"""What happens in a simulation: limit positions, ends of guides, lift-off, and what a user asks for."""
+"""Events of a simulation: limit positions, travel limits of guides, lift-off, and a user's own."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.model.pairs.travel_limits import as_travel_limited
 
-# Within a step what is watched is looked at in so many places, so that what comes and goes is found as well.
+# Each watched function is sampled at so many places of a step, so that double zeros are found as well.
 EVENT_SAMPLES = 4
-# What begins below zero is looked at these parts of a step as well: a bounce may be far shorter than the step.
+# A function that starts below zero is sampled at these parts of a step too: a bounce may be far shorter.
 EARLY = 2.0 ** np.arange(-44.0, -2.0)
 # An impact slower than this part of the fastest, or of the drivers' speeds, each by its scale, is the last one.
 SLOW = 1e-6
-# What coming to an end of a guide is called.
+# The name of the event at a travel limit.
 END = "end"
-# What a driver that comes to rest is called, where friction changes its direction.
+# The name of the event at which a driver comes to rest, where friction changes its direction.
 REST = "rest"
 Function = Callable[[SimulatedState], Any]
 
 
 @dataclass(frozen=True)
 class SimulationEvent:
-    """Something that happened. When, what it is called, and whether the simulation stopped there."""
+    """An event: its time, its name, and whether the simulation stopped there."""
 
     time: float
     name: str
@@ -47,9 +47,9 @@ class SimulationEvent:
 
 @dataclass(frozen=True, eq=False)
 class Watch:
-    """A function of the state that passes through zero, and what that means.
+    """A function of the state whose zeros are events.
 
-    Where it `falls` only passing downwards counts, or being below from the start. A user's own is `asked` for.
+    If it `falls`, only downward zeros count, or a negative value at the start. A user's own is `asked`.
     """
 
     name: str
@@ -64,10 +64,10 @@ class Watch:
         n = len(chart.free)
         here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]))
         try:
-            told = np.ravel(self.function(here))[0]
-            if self.asked and (np.iscomplexobj(told) or np.isnan(told)):
-                raise ValueError(f"it returns {told}")
-            found = float(told)
+            result = np.ravel(self.function(here))[0]
+            if self.asked and (np.iscomplexobj(result) or np.isnan(result)):
+                raise ValueError(f"it returns {result}")
+            found = float(result)
         except CompoundkinError:
             raise
         except Exception as error:  # whatever a user's function does
@@ -78,7 +78,7 @@ class Watch:
 
 @dataclass(frozen=True, eq=False)
 class Passed:
-    """Something watched that passes through zero at a time, and the state there."""
+    """A zero of a watched function: its time, and the state there."""
 
     watch: Watch
     time: float
@@ -86,7 +86,7 @@ class Passed:
 
 
 def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ...]) -> tuple[Watch, ...]:
-    """Return what is watched. Ends of guides, contacts that are not held, and a user's own events."""
+    """Return the watched functions: travel limits, one-sided contacts, and a user's own."""
     for name, function in events.items():
         if not callable(function):
             remedy = 'give a function of the state: lambda state: state["B.y"] - 20'
@@ -108,19 +108,19 @@ def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:
         yield Watch(END, _to_end, "a guide ends", True, True)
     for pair in mechanism.written_pairs:
         contact = as_profile_contact(pair)
-        # in a groove the roller goes over to the other flank
+        # in a groove the roller changes to the other flank
         if contact is not None and not contact.has_ends:
             text = f"the contact at {pair.name} lets go"
             yield Watch(f"{pair.name} lift-off", _pressing(pair.name), text, True, True)
 
 
 def _to_end(state: SimulatedState) -> float:
-    # where it is reached, no pose is beyond it yet
+    # the margin is zero where the limit is just reached
     return float(np.ravel(state.order.guide_ends.margin(state.block))[-1]) - AT_END
 
 
 def ended_pair(state: SimulatedState) -> Pair:
-    """Return the pair that is nearest to an end of its guide."""
+    """Return the pair nearest to a travel limit."""
     ends = state.order.guide_ends
     return ends.pairs[int(np.ravel(ends.nearest(state.block))[-1])]
 
@@ -132,7 +132,7 @@ def _pressing(name: str) -> Function:
 def first_passed(
     watched: tuple[Watch, ...], chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
 ) -> list[Passed]:
-    """Return what passes through zero in a step, in the order of time."""
+    """Return the zeros in a step, in the order of time."""
     found = [Passed(one, time, between(time)) for one in watched for time in _zeros(one, chart, times, between)]
     return sorted(found, key=lambda one: one.time)
 
@@ -140,20 +140,20 @@ def first_passed(
 def _zeros(
     watch: Watch, chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
 ) -> Iterator[float]:
-    """Yield the times at which a function passes through zero; the first where it is below all the time."""
+    """Yield the times of zeros; the first time where the function is negative throughout."""
 
     def value(time: float) -> float:
         return watch.value(chart, time, between(time))
 
-    looks = np.linspace(*times, EVENT_SAMPLES + 1)
-    known = [value(float(time)) for time in looks]
+    samples = np.linspace(*times, EVENT_SAMPLES + 1)
+    known = [value(float(time)) for time in samples]
     if watch.falls and known[0] <= 0.0:
         early = times[0] + (times[1] - times[0]) * EARLY
-        looks = np.concatenate([looks[:1], early, looks[1:]])
+        samples = np.concatenate([samples[:1], early, samples[1:]])
         known = [known[0], *(value(float(time)) for time in early), *known[1:]]
         if max(known) <= 0.0 > min(known):
             yield times[0]
-    for low, high, first, last in zip(looks[:-1], looks[1:], known[:-1], known[1:], strict=True):
+    for low, high, first, last in zip(samples[:-1], samples[1:], known[:-1], known[1:], strict=True):
         if first > 0.0 >= last or (not watch.falls and first < 0.0 <= last):
             yield _zero(value, float(low), float(high))
 
@@ -163,14 +163,14 @@ def _zero(function: Callable[[float], float], low: float, high: float) -> float:
 
     fine = 1e-14 * max(abs(high), 1e-300)
     found, is_above = float(brentq(function, low, high, xtol=fine, rtol=1e-14)), function(low) > 0.0
-    # the far side of a zero that is met: what is done there must not meet it again
+    # the far side of the zero, so that the continuation does not meet it again
     while found < high and (function(found) > 0.0) is is_above:
         found, fine = min(found + fine, high), 2.0 * fine
     return found
 
 
 class Impact(NamedTuple):
-    """An impact at an end of a guide. How fast it was met, the free drivers' speeds afterwards, the lost energy."""
+    """An impact at a travel limit: the approach speed, the free drivers' speeds afterwards, the lost energy."""
 
     approach: float
     speeds: Number
@@ -178,9 +178,9 @@ class Impact(NamedTuple):
 
 
 def after_impact(here: SimulatedState, restitution: float, fastest: float) -> Impact | None:
-    """Return what follows from an impact, `fastest` being the approach of the fastest before.
+    """Return the result of an impact; None where the approach is slow against `fastest`, that of the fastest before.
 
-    None where what comes to the end hardly moves. The impulse acts along the coordinate that ends,
+    The impulse acts along the limited coordinate,
     M (v+ - v-) = n p with n . v+ = -e n . v-.
 
     Source: Newton's law of impact in generalized coordinates, D. T. Greenwood, Principles of Dynamics, section 4.8.

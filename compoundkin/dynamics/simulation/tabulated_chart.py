@@ -35,17 +35,17 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 
-# A pair that moves so many times as fast as a driver (each by its scale) is better to go on with: squares of this enter
-# the equation of motion, and twice as many of its digits are lost.
+# A pair that moves so many times as fast as a driver, by their scales, is the better coordinate: the equation of motion
+# has squares of this ratio and loses twice as many digits.
 FASTER = 30.0
-# Poses a whole turn apart are the same within this part of the size.
+# Poses a full turn apart agree within this part of the size.
 SAME = 1e-9
-# A table reaches so far to both sides: half a turn, or this part of the size.
+# The reach of a table to both sides: half a turn, or this part of the size.
 REACH = 0.5
 
 
 class TabulatedChart(DriverChart):
-    """The chart of one free driver. Where its table does not hold, states are solved as ever."""
+    """The chart of one free driver. Where its table is not accurate, states are solved."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -65,12 +65,12 @@ class TabulatedChart(DriverChart):
             return False
         try:
             list(load.wrenches(next(iter(loaded_blocks(self.start)))))
-        except InvalidInput:  # it asks for the time, and the first pose has none
+        except InvalidInput:  # it needs the time, and the first pose has none
             return False
         return True
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
-        """Return what a state grows by."""
+        """Return the rates of a state."""
         value, speed = float(values[0]), float(speeds[0])
         piece, value = self._piece(value)
         if piece is None:
@@ -96,16 +96,16 @@ class TabulatedChart(DriverChart):
 
     @property
     def memory(self) -> tuple[Any, ...]:
-        """What keeps the configuration, the table among it."""
+        """The configuration, with the table."""
         return (*super().memory, self.table, self.wraps)
 
     def recall(self, memory: tuple[Any, ...]) -> None:
-        """Go back to a configuration that was kept."""
+        """Restore a configuration."""
         super().recall(memory)
         self.table, self.wraps = memory[3:]
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
-        """Follow the configuration to a state that is reached."""
+        """Update the configuration at an accepted state."""
         value = float(values[0])
         table = self.table
         if self.turned or table is None or self._piece(value)[0] is None:
@@ -114,7 +114,7 @@ class TabulatedChart(DriverChart):
             self._tabulate(value, self.state(time, values, speeds).block.world)
 
     def sign(self, k: int, values: Number) -> float:
-        """Return the sign of a dyad's mode. It changes where the motion of the table passes a change point."""
+        """Return the sign of a dyad's mode, which changes where the motion of the table passes a change point."""
         table = self.table
         if table is None or k not in table.motion.change_points:
             return super().sign(k, values)
@@ -122,7 +122,7 @@ class TabulatedChart(DriverChart):
         return table.sign(k, value)
 
     def is_regular(self, values: Number) -> bool:
-        """Tell whether no pair moves much faster than the driver."""
+        """Return whether no pair moves much faster than the driver."""
         piece, _ = self._piece(float(values[0]))
         return piece is not None and piece.ratio < FASTER
 
@@ -158,7 +158,7 @@ class TabulatedChart(DriverChart):
 
 
 class _Columns(dict[str, Pose]):
-    """The poses of a piece at a value, made when asked for."""
+    """The poses of a piece at a value, made on access."""
 
     def __init__(self, piece: TablePiece, basis: Number, speed: float) -> None:
         super().__init__()
@@ -171,17 +171,17 @@ class _Columns(dict[str, Pose]):
 
 # Pieces of a table to begin with, and how often they are halved.
 PIECES, HALVED = 16, 7
-# Polynomials hold where their last coefficients are this part of the largest: some hundred units of rounding.
+# Polynomials are accurate where their last coefficients are below this part of the largest: a hundred roundings.
 HOLDS, LAST = 3e-14, 3
-# Next to a change point accelerations have some ten digits; a corner of a load is still far above this.
+# Near a change point accelerations have some ten digits; a corner of a load is still far above this.
 HOLDS_NEAR = 1e-8
-# Poses of the motion by which the configuration is kept.
+# Poses of the motion that has the configuration.
 POSES = 145
 
 
 @dataclass(frozen=True, eq=False)
 class DriveTable:
-    """A table over a range of a driver. Pieces in order; where nothing holds there is none."""
+    """A table over a range of a driver: accurate pieces in order, with gaps."""
 
     low: float
     high: float
@@ -204,7 +204,7 @@ class DriveTable:
 def drive_table(
     first: Configuration, driver: str, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
 ) -> DriveTable | None:
-    """Return the table of a driver around a configuration. None where that cannot be solved."""
+    """Return the table of a driver around a configuration, None where it cannot be solved."""
     mechanism = first.structure.mechanism
     try:
         with warnings.catch_warnings():
@@ -220,25 +220,25 @@ def drive_table(
 def _pieces(
     motion: Motion, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
 ) -> list[TablePiece]:
-    """Return the pieces that hold, in order."""
+    """Return the accurate pieces, in order."""
     edges, found = np.linspace(low, high, PIECES + 1), []
     todo = list(pairwise(edges.tolist()))
     for _ in range(HALVED + 1):
         made = _solved(motion, todo, (low, high), loads, pairs)
-        found += [piece for piece in made if _holds(piece)]
-        broken = [piece for piece in made if not _holds(piece)]
+        found += [piece for piece in made if _is_accurate(piece)]
+        broken = [piece for piece in made if not _is_accurate(piece)]
         todo = [part for one in broken for part in pairwise([one.low, (one.low + one.high) / 2, one.high])]
         if not todo:
             break
     else:
         if motion.change_points:
-            found += [piece for piece in broken if _holds(piece, HOLDS_NEAR)]
+            found += [piece for piece in broken if _is_accurate(piece, HOLDS_NEAR)]
     return with_bridges(sorted(found, key=lambda piece: piece.low), high - low)
 
 
-def _holds(piece: TablePiece, part: float = HOLDS) -> bool:
+def _is_accurate(piece: TablePiece, part: float = HOLDS) -> bool:
     scales = np.max(np.abs(piece.terms), axis=1)
-    # the bias is a derivative of the inertia, and the forces are alike
+    # the bias is a derivative of the inertia; both forces have one scale
     scales = np.array([scales[:2].max()] * 2 + [scales[2:].max()] * 2)
     return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * scales[:, None]))
 
@@ -250,11 +250,11 @@ def _solved(
     loads: Sequence[Sequence[Load]],
     pairs: Sequence[Pair],
 ) -> list[TablePiece]:
-    """Return pieces, solved all at once."""
+    """Return pieces, solved together."""
     values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
     at = between(motion, 0, _places(values, ends))
     rows = _terms(at, loads)
-    # beyond an end of a guide groups close all the same
+    # beyond a travel limit groups still close
     rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
     ratios = _ratios(at, pairs)
     cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
@@ -263,7 +263,7 @@ def _solved(
 
 
 def _places(values: Number, ends: tuple[float, float]) -> Number:
-    """Return where along the motion of a table values are."""
+    """Return the places of values along the motion of a table."""
     places: Number = np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (POSES - 1)
     return places
 
@@ -286,7 +286,7 @@ def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
 
 
 def _ratios(motion: Motion, pairs: Sequence[Pair]) -> Number:
-    """Return how fast the fastest of some pairs moves, each by its scale."""
+    """Return the greatest scaled speed of the pairs."""
     found = np.zeros(motion.failed.shape[1])
     for pair in pairs:
         scale = 1.0 if pair.free_is_angle else motion.size
@@ -309,12 +309,12 @@ _DEGREES = np.arange(POINTS)
 
 @dataclass(eq=False)
 class TablePiece:
-    """A piece of a table. It has polynomials of inertia, bias, stored and other forces, and the poses at its points."""
+    """A piece of a table: polynomials of inertia, bias, stored and other forces, and the poses at its points."""
 
     low: float
     high: float
     terms: Number  # (4, POINTS)
-    ratio: float  # how fast the fastest pair moves, by the scales
+    ratio: float  # the greatest scaled speed of a pair
     nodes: Mapping[str, Pose]
     place: slice
     known: dict[str, Number] = field(default_factory=dict)
@@ -351,25 +351,25 @@ class TablePiece:
         return np.broadcast_to(row, POINTS) if row.size == 1 else row[self.place]
 
 
-# A bridge rests on so many widths of the gap to both sides, and its polynomial is of this degree.
+# A bridge is fitted to so many widths of the gap on both sides, with a polynomial of this degree.
 BESIDE, DEGREE = 1.9, 12
-# No gap is bridged that is more than this part of the table; what is less than this part of a piece is rounding.
+# Bridged gaps are at most this part of the table; below this part of a piece they are rounding.
 WIDEST, NO_GAP = 1.0 / 200.0, 1e-9
-# The polynomial goes through what it continues within this part of the largest value.
+# The polynomial fits the neighbouring pieces within this part of the largest value.
 FITS = 1e-9
 
 
 class BridgePiece(TablePiece):
-    """A piece that continues what is beside it."""
+    """A piece that continues its neighbours."""
 
-    beside: Sequence[tuple[TablePiece, float]]  # pieces to both sides with places there
+    beside: Sequence[tuple[TablePiece, float]]  # neighbouring pieces with places there
 
     def polynomials(self, link: str) -> Number:
         """Make the polynomials of a link's origin and orientation, each with its rate."""
         return self.through(lambda piece: piece.of(link))[0]
 
     def through(self, polynomials: Callable[[TablePiece], Number]) -> tuple[Number, float]:
-        """Return polynomials through those beside it, and by how much they miss them."""
+        """Return polynomials fitted to the neighbouring pieces, and the error of the fit."""
         places = np.array([place for _, place in self.beside])
         values = np.array([polynomials(piece) @ piece.basis(place) for piece, place in self.beside])
         middle, reach = (self.low + self.high) / 2.0, (BESIDE + 0.5) * (self.high - self.low)
@@ -380,7 +380,7 @@ class BridgePiece(TablePiece):
 
 
 def with_bridges(pieces: Sequence[TablePiece], width: float) -> list[TablePiece]:
-    """Return pieces in order, with others where narrow gaps are between them."""
+    """Return pieces in order, with bridges over narrow gaps."""
     starts, found = [piece.low for piece in pieces], list(pieces[:1])
     for left, right in pairwise(pieces):
         gap = right.low - left.high
@@ -393,7 +393,7 @@ def with_bridges(pieces: Sequence[TablePiece], width: float) -> list[TablePiece]
 def _bridge(
     pieces: Sequence[TablePiece], starts: Sequence[float], left: TablePiece, right: TablePiece
 ) -> BridgePiece | None:
-    """Return the piece between two others. None where no one polynomial continues what is on both sides."""
+    """Return the piece between two others, None where no polynomial continues both."""
     made = BridgePiece(left.high, right.low, left.terms, max(left.ratio, right.ratio), left.nodes, left.place)
     spread = (NODES[:: POINTS // DEGREE] + 1.0) / 2.0 * BESIDE * (made.high - made.low)
     places = np.concatenate([made.low - spread, made.high + spread]).tolist()

@@ -1,4 +1,1 @@
-"""Goals and constraints of better dimensions: one file for each kind, by what people ask for.
-
-What is asked along a motion, or at driver values of its own, is a `Term`.
-"""
+"""Goals and constraints of an optimisation, which have values and slopes along a motion or at driver values of their own."""

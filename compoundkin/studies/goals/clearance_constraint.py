@@ -28,19 +28,19 @@ from compoundkin.studies.goals.goal import DesignConstraint
 class ClearanceConstraint(DesignConstraint):
     """The least clearance of the outlines of links at all poses.
 
-    It is that of two links, of one and all others, or of all.
+    Between two links, between one and all others, or between all.
     """
 
     value: float
     links: tuple[str, ...]
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """The links and the least clearance."""
         return f"{' and '.join(self.links) or 'links'} at least {self.value:g} clear"
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the places of all corners. Raises InvalidInput where nothing is compared."""
+        """Return the positions of all corners. Raises InvalidInput where no outlines are compared."""
         shapely("goals.clearance")
         bodies = [*self._compared(motion)]
         known = {name for one in _all(motion) for name in (one.one, one.other)}
@@ -61,20 +61,23 @@ class ClearanceConstraint(DesignConstraint):
                 yield one
 
     def margins(self, trial: DesignTrial) -> Number:
-        """Return how far each two bodies are beyond the clearance wanted."""
-        return np.stack([clearances.min(axis=(1, 2)) for clearances, _ in self._found(trial)], axis=1) - self.value
+        """Return the clearance of each two bodies less the required one."""
+        return (
+            np.stack([clearances.min(axis=(1, 2)) for clearances, _ in self._pair_clearances(trial)], axis=1)
+            - self.value
+        )
 
-    def _found(self, trial: DesignTrial) -> Iterator[tuple[Number, ComparedBodies]]:
-        """Yield the clearances of each two bodies, (designs, shapes, poses)."""
+    def _pair_clearances(self, trial: DesignTrial) -> Iterator[tuple[Number, ComparedBodies]]:
+        """Yield each two bodies with their clearances, (designs, shapes, poses)."""
         there, motion = trial.closely, trial.designs.path.reference
         for bodies in self._compared(motion):
             yield np.stack([_clearances(there, _points(motion), two) for two in bodies.shapes], axis=1), bodies
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those, at the poses that have them. Where cores cross they are not known, and zero."""
+        """Return the slopes of the margins at their poses; zero where cores cross, as they are unknown."""
         there, points = trial.closely, _points(trial.designs.path.reference)
         found = []
-        for clearances, bodies in self._found(trial):
+        for clearances, bodies in self._pair_clearances(trial):
             flat = clearances.reshape(len(clearances), -1)
             best, pose = np.divmod(np.where(np.isnan(flat).any(axis=1), 0, flat.argmin(axis=1)), clearances.shape[2])
             slopes = np.full((len(clearances), len(trial.coordinates)), np.nan)
@@ -87,7 +90,7 @@ class ClearanceConstraint(DesignConstraint):
 
 
 def _all(motion: Motion) -> tuple[ComparedBodies, ...]:
-    """Return all bodies that are compared in the mechanism as it stands."""
+    """Return all compared bodies of the original mechanism."""
     points = _points(motion)
     shapes = outline_shapes(motion.mechanism, points, motion.shape)
     return compared_outlines(motion.mechanism, shapes, points).compared
@@ -126,10 +129,10 @@ def _slopes(trial: DesignTrial, both: list[OutlineVertices], rows: Number, pose:
 def clearance(at_least: float, one: str | None = None, other: str | None = None) -> DesignConstraint:
     """Return the constraint that links keep clear of each other by their outlines.
 
-    Of two links, of `one` and all others on its layers, or of all links. It is looked at along the motion at every ten
-    degrees at most, with what `interference` compares. Raises InvalidInput for what is no clearance.
+    Between two links, between `one` and all others on its layers, or between all links: those that `interference`
+    compares, at steps of at most ten degrees along the motion. Raises InvalidInput for a negative or infinite number.
 
-    >>> clearance(2.0, "crank", "frame").told
+    >>> clearance(2.0, "crank", "frame").description
     'crank and frame at least 2 clear'
     """
     if not np.isfinite(at_least) or at_least < 0.0:
@@ -139,19 +142,19 @@ def clearance(at_least: float, one: str | None = None, other: str | None = None)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OutlineVertices(ShortRepr):
-    """The corners of a shape's core. `points` are those of its link in the mechanism as it stands."""
+    """The corners of a shape's core. `points` are those of its link in the original mechanism."""
 
     shape: OutlineShape
     points: Mapping[str, complex]
 
     @classmethod
     def of(cls, shape: OutlineShape, points: Points) -> OutlineVertices:
-        """Return those of a shape."""
+        """Return the corners of a shape."""
         return cls(shape, points[shape.link])
 
     @property
     def _origin(self) -> str:
-        """The point by which other places of the link are told."""
+        """The reference point of other places on the link."""
         return next(iter(self.points))
 
     @property
@@ -159,14 +162,14 @@ class OutlineVertices(ShortRepr):
         return not all(self.shape.letters) and self.shape.link != FRAME
 
     def outputs(self) -> Iterator[str]:
-        """Yield what is asked of a trial for them."""
+        """Yield the outputs of a trial that they need."""
         yield from (f"{letter}.{POSITION}" for letter in self.shape.letters if letter)
         if self._has_places:
             yield f"{self._origin}.{POSITION}"
             yield f"{self.shape.link}.{ANGLE}"
 
     def values(self, trial: DesignTrial) -> Number:
-        """Return where they are, (designs, poses, corners)."""
+        """Return their positions, (designs, poses, corners)."""
         places = [self._place(trial, q) if not letter else trial.values(f"{letter}.{POSITION}")
                   for q, letter in zip(self.shape.core, self.shape.letters, strict=True)]  # fmt: skip
         shape = trial.number, trial.designs.poses
@@ -179,7 +182,7 @@ class OutlineVertices(ShortRepr):
         return trial.values(f"{self._origin}.{POSITION}") + turn * (q - self._own(trial))
 
     def _own(self, trial: DesignTrial) -> Number:
-        """Return where the point of reference is on its link, which may be free, (designs, 1)."""
+        """Return the place of the reference point on its link, which may be a free dimension, (designs, 1)."""
         name, given = f"{self.shape.link}.{self._origin}", trial.designs.dimensions
         if name in given:
             return np.reshape(given[name], (-1, 1))
@@ -206,9 +209,7 @@ class OutlineVertices(ShortRepr):
 
 
 def nearest_weights(vertices: Number, closed: bool, place: Number) -> Number:
-    """Return a place on the edge of a core as parts of its corners.
-
-    They are (n, corners).
+    """Return the weights of corners (n, corners) for places on the edge of a core.
 
     >>> nearest_weights(np.array([[0j, 4 + 0j]]), False, np.array([1 + 0j])).tolist()
     [[0.75, 0.25]]

@@ -30,25 +30,22 @@ from compoundkin.studies.goals.goal import DesignConstraint
 
 @dataclass(frozen=True)
 class FigureBound:
-    """A figure that is at least a value, with the sign -1 at most."""
+    """A lower bound of a figure; with the sign -1 an upper bound."""
 
     name: str
     value: float
     sign: int = 1
 
     @property
-    def told(self) -> str:
-        """What is bounded, and how."""
+    def description(self) -> str:
+        """The figure and its bound."""
         is_angle = is_angle_word(motion_figure(self.name)[0].rpartition(".")[2])
         value = f"{degrees(self.value):g} deg" if is_angle else f"{self.value:g}"
         return f"{self.name} at {'least' if self.sign > 0 else 'most'} {value}"
 
     @property
     def figure(self) -> str:
-        """The figure, of a quantity its least or greatest value.
-
-        That is over the motion, between the poses too.
-        """
+        """The figure, for a quantity its least or greatest value over the motion, between the poses too."""
         is_figure = motion_figure(self.name)[1]
         return self.name if is_figure else f"{self.name}.{LEAST if self.sign > 0 else GREATEST}"
 
@@ -60,24 +57,24 @@ class BoundConstraint(DesignConstraint):
     bounds: tuple[FigureBound, ...]
 
     @property
-    def told(self) -> str:
-        """What is bounded, and how."""
-        return ", ".join(one.told for one in self.bounds)
+    def description(self) -> str:
+        """The figure and its bound."""
+        return ", ".join(one.description for one in self.bounds)
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return the figures; raises InvalidInput for vectors."""
         for one in self.bounds:
             if quantity(motion, motion_figure(one.name)[0]).is_vector:
-                raise InvalidInput(Problem(one.name, "it is a vector, and has no least value", f'"{one.name}.length"'))
+                raise InvalidInput(Problem(one.name, "a vector has no least value", f'"{one.name}.length"'))
         return tuple(dict.fromkeys(one.figure for one in self.bounds))
 
     def margins(self, trial: DesignTrial) -> Number:
-        """Return how far each is from its bound."""
+        """Return the distance of each figure from its bound."""
         there = trial.closely
         return np.stack([one.sign * (there.values(one.figure) - one.value) for one in self.bounds], axis=1)
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those."""
+        """Return the slopes of the margins."""
         there = trial.closely
         return np.stack([one.sign * there.slopes(one.figure) for one in self.bounds], axis=1)
 
@@ -85,7 +82,7 @@ class BoundConstraint(DesignConstraint):
 def _bound(where: str, name: str, value: float, sign: int) -> FigureBound:
     if not np.isfinite(value):
         raise InvalidInput(
-            Problem(f"{where}.{name}", f"{value} is no bound", "give a finite number, radians for angles")
+            Problem(f"{where}.{name}", f"{value} is not a valid bound", "give a finite number, radians for angles")
         )
     return FigureBound(name, float(value), sign)
 
@@ -94,9 +91,9 @@ def _bound(where: str, name: str, value: float, sign: int) -> FigureBound:
 def at_least(name: str, value: float) -> DesignConstraint:
     """Return the constraint that a figure is at least a value.
 
-    A quantity is so at every pose and between. Radians for angles. Raises InvalidInput for what is no number.
+    For a quantity at every pose and between. Angles are in radians. Raises InvalidInput for a number that is not finite.
 
-    >>> at_least("ram.displacement.stroke", 60.0).told
+    >>> at_least("ram.displacement.stroke", 60.0).description
     'ram.displacement.stroke at least 60'
     """
     return BoundConstraint((_bound("at_least", name, value, 1),))
@@ -106,9 +103,9 @@ def at_least(name: str, value: float) -> DesignConstraint:
 def at_most(name: str, value: float) -> DesignConstraint:
     """Return the constraint that a figure is at most a value.
 
-    A quantity is so at every pose and between. Radians for angles. Raises InvalidInput for what is no number.
+    For a quantity at every pose and between. Angles are in radians. Raises InvalidInput for a number that is not finite.
 
-    >>> at_most("crank.effort", 120.0).told
+    >>> at_most("crank.effort", 120.0).description
     'crank.effort at most 120'
     """
     return BoundConstraint((_bound("at_most", name, value, -1),))
@@ -116,16 +113,15 @@ def at_most(name: str, value: float) -> DesignConstraint:
 
 @checked
 def transmits(link: str, least: float) -> DesignConstraint:
-    """Return the constraint that a transmission angle is at least so great.
+    """Return the constraint of a least transmission angle in the dyad that moves a link.
 
-    It is that of the dyad that moves a link, in radians, folded to 0 to pi / 2, a right angle is best. Raises
-    InvalidInput for what is no such angle. Source: H. Alt, 1932.
+    Radians, folded to 0 to pi / 2, where a right angle is best. Raises InvalidInput for an angle outside this range. Source: H. Alt, 1932.
 
-    >>> transmits("rocker", 0.7).told
+    >>> transmits("rocker", 0.7).description
     'rocker.transmission_angle at least 40.107 deg'
     """
     if not 0.0 < least < np.pi / 2:
-        what, remedy = f"{least:g} is no angle between 0 and pi / 2", "give radians, as compoundkin.deg(40)"
+        what, remedy = f"{least:g} is not between 0 and pi / 2", "give radians, as compoundkin.deg(40)"
         raise InvalidInput(Problem(f"transmits.{link}", what, remedy))
     return at_least(f"{link}.{TRANSMISSION_ANGLE}", least)
 
@@ -134,15 +130,19 @@ def transmits(link: str, least: float) -> DesignConstraint:
 def box(point: str, *, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> DesignConstraint:
     """Return the constraint that a point stays in a box.
 
-    That is between two coordinates in x, in y or in both. A pivot of the frame is such a point too. Raises InvalidInput
-    for ends that are reversed, and where none are given.
+    Between two coordinates in x, in y or in both; also for a pivot of the frame. Raises InvalidInput for reversed ends,
+    and for none.
 
-    >>> box("G", x=(0, 10)).told
+    >>> box("G", x=(0, 10)).description
     'G.x at least 0, G.x at most 10'
     """
     sides = {part: ends for part, ends in (("x", x), ("y", y)) if ends is not None}
     if not sides or any(not low < high for low, high in sides.values()):
-        raise InvalidInput(Problem(f"box.{point}", "this is no box", "x=(0, 10), y=(-5, 5), the lesser first"))
+        raise InvalidInput(
+            Problem(
+                f"box.{point}", "the ends of the box are missing or reversed", "x=(0, 10), y=(-5, 5), the lesser first"
+            )
+        )
     ends = [(f"{point}.{part}", *pair) for part, pair in sides.items()]
     bounds = ((_bound("box", name, low, 1), _bound("box", name, high, -1)) for name, low, high in ends)
     return BoundConstraint(tuple(one for both in bounds for one in both))
@@ -150,24 +150,21 @@ def box(point: str, *, x: tuple[float, float] | None = None, y: tuple[float, flo
 
 @dataclass(frozen=True)
 class DistanceConstraint(DesignConstraint):
-    """The distance of two points at all poses.
-
-    Of one link it is a length.
-    """
+    """Bounds of the distance of two points at all poses; of points of one link, a length."""
 
     points: tuple[str, str]
     low: float | None
     high: float | None
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """The points and the bounds."""
         bounds = (("least", self.low), ("most", self.high))
         said = " and ".join(f"at {word} {value:g}" for word, value in bounds if value is not None)
         return f"{self.points[0]} from {self.points[1]} {said}"
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the places of both."""
+        """Return the positions of both points."""
         return tuple(f"{one}.{POSITION}" for one in self.points)
 
     def _between(self, trial: DesignTrial) -> Number:
@@ -175,14 +172,14 @@ class DistanceConstraint(DesignConstraint):
         return np.broadcast_arrays(other - one, np.empty((trial.number, 1)))[0]
 
     def margins(self, trial: DesignTrial) -> Number:
-        """Return how far the least and the greatest distance are from their bounds."""
+        """Return the margins of the least and the greatest distance."""
         lengths = np.abs(self._between(trial))
         low = [] if self.low is None else [lengths.min(axis=1) - self.low]
         high = [] if self.high is None else [self.high - lengths.max(axis=1)]
         return np.stack(low + high, axis=1)
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those, at the poses that have them."""
+        """Return the slopes of the margins at their poses."""
         between = self._between(trial)
         lengths = np.abs(between)
         one, other = (trial.closely.slopes(f"{name}.{POSITION}") for name in self.points)
@@ -196,12 +193,12 @@ class DistanceConstraint(DesignConstraint):
 
 @checked
 def distance(one: str, other: str, *, at_least: float | None = None, at_most: float | None = None) -> DesignConstraint:
-    """Return the constraint that two points keep a distance at all poses.
+    """Return the constraint that the distance of two points is within bounds at all poses.
 
-    Points of one link keep a length, that of a bar or between two pivots. Raises InvalidInput for bounds that are
-    none, and where none are given.
+    For points of one link it is a length, of a bar or between two pivots. Raises InvalidInput for invalid bounds, and for
+    none.
 
-    >>> distance("A", "B", at_least=5.0, at_most=60.0).told
+    >>> distance("A", "B", at_least=5.0, at_most=60.0).description
     'A from B at least 5 and at most 60'
     """
     if one == other:
@@ -214,38 +211,34 @@ def distance(one: str, other: str, *, at_least: float | None = None, at_most: fl
     return DistanceConstraint((one, other), at_least, at_most)
 
 
-# Where a whole turn is looked at: every five degrees, and between these places as far as figures do.
+# Samples of a full turn, every five degrees; figures are searched between them too.
 TURNED = np.linspace(0.0, TURN, 73)
-# A sine of some degrees from the limit: what is nearer jams, and slopes grow beyond all bounds at the limit itself.
+# The sine of some degrees from the limit: nearer ones jam, and slopes are infinite at the limit.
 MARGIN = 0.05
 
 
 @dataclass(frozen=True)
 class AssemblyConstraint(DesignConstraint):
-    """The least transmission index of every group is above a margin.
-
-    It is looked at along the motion, or over a whole turn of a driver.
-    """
+    """The least transmission index of every group is above a margin, along the motion or over a full turn of a driver."""
 
     margin: float = MARGIN
     turned: bool = False
     driver: str | None = None
 
     @property
-    def told(self) -> str:
-        """Where it is assembled."""
+    def description(self) -> str:
+        """The range over which it is assembled."""
         return "a full turn of the driver" if self.turned else "assembled over the whole motion"
 
     @property
     def has_own_poses(self) -> bool:
-        """Whether a whole turn is looked at."""
+        """Whether it is for a full turn."""
         return self.turned
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the index of each group.
+        """Return the transmission index of each group, or for groups without one the angle of a link.
 
-        Where there is none, the angle of a link says whether it closes. Raises InvalidInput where the driver that is to
-        turn does not.
+        Raises InvalidInput where the driver cannot turn.
         """
         if self.turned:
             name = driver_of("full_turn", motion, self.driver)
@@ -265,14 +258,14 @@ class AssemblyConstraint(DesignConstraint):
         return trial.at(driver_of("full_turn", trial.designs.path.reference, self.driver), TURNED)
 
     def margins(self, trial: DesignTrial) -> Number:
-        """Return how far each group is from its limit; NaN where it is beyond."""
+        """Return the margin of each group, NaN beyond its limit."""
         there = self._there(trial)
         found = [there.values(name) for name in trial.responses]
-        # what only tells whether it closes is far from any limit where it does
+        # a group without an index has a margin of 1 where it closes
         return np.stack([one - self.margin if one.ndim == 1 else 1.0 + 0.0 * one.sum(axis=1) for one in found], axis=1)
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those."""
+        """Return the slopes of the margins."""
         there = self._there(trial)
         found = [there.slopes(name) for name in trial.responses]
         return np.stack([one if one.ndim == 2 else 0.0 * one.sum(axis=1) for one in found], axis=1)
@@ -280,7 +273,7 @@ class AssemblyConstraint(DesignConstraint):
 
 def _margin(where: str, margin: float) -> float:
     if not 0.0 <= margin < 1.0:
-        raise InvalidInput(Problem(where, f"the margin {margin} is no transmission index", "0 to 1, as 0.05"))
+        raise InvalidInput(Problem(where, f"the margin {margin} is not a transmission index", "0 to 1, as 0.05"))
     return float(margin)
 
 
@@ -288,10 +281,10 @@ def _margin(where: str, margin: float) -> float:
 def assembles(margin: float = MARGIN) -> DesignConstraint:
     """Return the constraint that designs are assembled over the whole motion.
 
-    That is between its poses too. So they stay on one circuit, in one configuration. `margin` is the least transmission
-    index that is left, a sine: 0 is the limit itself. Raises InvalidInput for what is none.
+    Between its poses too, so that they stay on one circuit, in one configuration. `margin` is the least transmission
+    index, a sine: 0 is the limit itself. Raises InvalidInput for a margin outside 0 to 1.
 
-    >>> assembles().told
+    >>> assembles().description
     'assembled over the whole motion'
     """
     return AssemblyConstraint(_margin("assembles", margin))
@@ -301,11 +294,11 @@ def assembles(margin: float = MARGIN) -> DesignConstraint:
 def full_turn(driver: str | None = None, margin: float = MARGIN) -> DesignConstraint:
     """Return the constraint that a driver can make a full turn.
 
-    It is asked whatever of the turn the motion needs. All other drivers stay where the motion begins. Of a four-bar it
-    is Grashof's condition, with the driver on the shortest link or the frame the shortest. Raises InvalidInput for a
-    margin that is none.
+    Independent of the range of the motion; all other drivers stay where the motion begins. For a four-bar it is
+    Grashof's condition, with the driver on the shortest link or the frame the shortest. Raises InvalidInput for a margin
+    outside 0 to 1.
 
-    >>> full_turn("crank").told
+    >>> full_turn("crank").description
     'a full turn of the driver'
     """
     return AssemblyConstraint(_margin("full_turn", margin), True, driver)

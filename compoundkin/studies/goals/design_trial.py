@@ -1,4 +1,4 @@
-"""Designs on trial: what goals and constraints ask of them."""
+"""Trial designs: values and slopes of outputs for goals and constraints."""
 
 from __future__ import annotations
 
@@ -16,10 +16,7 @@ from compoundkin.studies.responses.response import Response
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DesignTrial(ShortRepr):
-    """Some designs along the motion, and the unknowns of the goal that asks.
-
-    Those are (designs, unknowns). What is computed is computed once, however often it is asked for.
-    """
+    """Some designs along the motion, and the unknowns (designs, unknowns) of one goal. Results are computed once."""
 
     designs: Designs
     responses: Mapping[str, Response]
@@ -28,12 +25,12 @@ class DesignTrial(ShortRepr):
 
     @property
     def number(self) -> int:
-        """How many designs there are."""
+        """The number of designs."""
         return self.designs.number
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """The free numbers, by which slopes are."""
+        """The free coordinates by which slopes are taken."""
         return self.designs.path.coordinates
 
     @property
@@ -42,10 +39,7 @@ class DesignTrial(ShortRepr):
         return tuple(self.designs.inputs.drives)
 
     def values(self, name: str) -> Number:
-        """Return what has a name.
-
-        It is (designs,) of a figure, (designs, poses) of a course; NaN where not assembled.
-        """
+        """Return the values of an output: (designs,) of a figure, (designs, poses) of a course; NaN where not assembled."""
         return self.responses[name].values(self.designs)
 
     def slopes(self, name: str) -> Number:
@@ -57,7 +51,7 @@ class DesignTrial(ShortRepr):
         return np.asarray(self.designs.slopes[name, driver])
 
     def at(self, driver: str, values: Number) -> DesignTrial:
-        """Return the same designs where one driver has other values, (poses,) or (designs, poses).
+        """Return the same designs at other values of one driver, (poses,) or (designs, poses).
 
         All other drivers stay where the motion begins; rates that vary along the motion are those of its first pose.
         """
@@ -73,10 +67,7 @@ class DesignTrial(ShortRepr):
 
     @property
     def closely(self) -> DesignTrial:
-        """The same designs, with poses between those of a motion that has few.
-
-        What a motion does between two of its poses that are far apart is seen from neither.
-        """
+        """The same designs with refined samples, where the poses of the motion are far apart."""
         places = refined_samples(self.designs.poses)
         if len(places) == self.designs.poses:
             return self
@@ -87,10 +78,9 @@ class DesignTrial(ShortRepr):
         return self._elsewhere[key]
 
     def apart(self, driver: str, values: Number) -> PosesApart:
-        """Return the same designs at values of one driver, each by itself.
+        """Return the same designs at separate values of one driver, (designs, poses).
 
-        They are (designs, poses). No motion leads from one to the next: limits between them are not looked for, and
-        angles not counted on.
+        No motion joins them: limits between them are not searched, and turns of angles not counted.
         """
         rows = np.repeat(np.arange(self.number), values.shape[1])
         whole = replace(self, designs=self.designs.picked(rows))
@@ -99,10 +89,7 @@ class DesignTrial(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PosesApart(ShortRepr):
-    """Poses of designs that no motion joins.
-
-    Each is a design of one pose in `single`.
-    """
+    """Separate poses of designs, each a design of one pose in `single`."""
 
     single: DesignTrial
     shape: tuple[int, int]
@@ -125,9 +112,7 @@ def _first(rate: Number) -> Number:
 
 
 def real_parts(vectors: Number) -> Number:
-    """Return complex residuals as real ones, along the second axis.
-
-    They are x of all, then y of all.
+    """Return complex residuals as real ones along the second axis: all x, then all y.
 
     >>> real_parts(np.array([[1 + 2j, 3 + 4j]])).tolist()
     [[1.0, 3.0, 2.0, 4.0]]

@@ -18,9 +18,9 @@ from compoundkin.studies.goals.design_trial import DesignTrial
 
 @dataclass(frozen=True)
 class GoalUnknown:
-    """A number that a goal finds beside the dimensions.
+    """An unknown of a goal besides the dimensions, such as a driver's value at a point without timing.
 
-    Such is a driver's value at a point without timing. The search begins between `low` and `high`, and stays there
+    The search begins between `low` and `high`, and stays there
     where it is bounded; angles are radians.
     """
 
@@ -31,12 +31,12 @@ class GoalUnknown:
 
 
 class Term(ABC):
-    """What goals and constraints have in common: numbers of each design, their slopes."""
+    """The common part of goals and constraints: numbers of each design, and their slopes."""
 
     @property
     @abstractmethod
-    def told(self) -> str:
-        """What it asks, in a few words: "G.position through 10 points"."""
+    def description(self) -> str:
+        """A short description: "G.position through 10 points"."""
 
     @property
     def unit(self) -> str:
@@ -45,33 +45,27 @@ class Term(ABC):
 
     @property
     def has_own_poses(self) -> bool:
-        """Whether it asks at driver values of its own.
-
-        It does so by `DesignTrial.at`, and not along the motion.
-        """
+        """Whether it is evaluated at driver values of its own, by `DesignTrial.at`, and not along the motion."""
         return False
 
     @abstractmethod
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the names of all that it asks of a trial.
+        """Return the names of the outputs that it needs of a trial.
 
-        `motion` is that of the mechanism as it stands. Raises InvalidInput for what does not fit, such as a target of
-        another number of poses.
+        `motion` is that of the original mechanism. Raises InvalidInput for a goal that does not fit it, such as a target
+        with another number of poses.
         """
 
     def unknowns(self, motion: Motion) -> tuple[GoalUnknown, ...]:
-        """Return what it finds beside the dimensions."""
+        """Return its unknowns besides the dimensions."""
         return ()
 
     def guesses(self, trial: DesignTrial) -> Number:
-        """Return good unknowns of each design, where a search begins.
-
-        They are (designs, unknowns), from those of the sample, `trial.unknowns`.
-        """
+        """Return initial unknowns of each design (designs, unknowns), by default those of the sample, `trial.unknowns`."""
         return trial.unknowns
 
     def has_slopes(self, trial: DesignTrial) -> bool:
-        """Tell whether its slopes are known."""
+        """Return whether its slopes are known exactly."""
         return all(response.has_slopes for response in trial.responses.values())
 
     @abstractmethod
@@ -83,9 +77,9 @@ class Term(ABC):
 
 
 class Summand(ABC):
-    """What can be added to goals, with a weight."""
+    """A goal or a sum of goals, which can be added and weighted."""
 
-    # a number of NumPy leaves it to its weight
+    # so that a number of NumPy leaves multiplication to this class
     __array_ufunc__ = None
 
     @property
@@ -95,16 +89,16 @@ class Summand(ABC):
 
     def __add__(self, other: object) -> GoalSum:
         if not isinstance(other, Summand):
-            raise InvalidInput(Problem("objective", f"{short_repr(other)} is no goal that could be added", ADDED))
+            raise InvalidInput(Problem("objective", f"{short_repr(other)} is not a goal and cannot be added", ADDED))
         return GoalSum((*self.parts, *other.parts))
 
     def __radd__(self, other: object) -> GoalSum:
-        # Python's own sum begins with nothing
+        # Python's sum starts with 0
         return GoalSum(self.parts) if is_real(other) and other == 0 else self + other
 
     def __mul__(self, weight: object) -> GoalSum:
         if not (is_real(weight) and 0.0 < float(weight) < np.inf):  # type: ignore[arg-type]
-            raise InvalidInput(Problem("weight", f"{short_repr(weight)} is no positive number", WEIGHED))
+            raise InvalidInput(Problem("weight", f"{short_repr(weight)} is not a positive number", WEIGHED))
         return GoalSum(tuple((float(weight) * own, goal) for own, goal in self.parts))  # type: ignore[arg-type]
 
     __rmul__ = __mul__
@@ -117,27 +111,24 @@ class Summand(ABC):
 
 
 ADDED = 'add goals: ck.goals.least("...") + 2 * ck.goals.path("...", points)'
-WEIGHED = "2 * goal; what shall be as great as can be is goals.greatest(...)"
+WEIGHED = "2 * goal; goals.greatest(...) maximises a figure"
 
 
 class Goal(Term, Summand):
-    """What shall be least.
-
-    It is the sum of its residuals, or where `is_squares` of their squares.
-    """
+    """A goal: the sum of its residuals, or of their squares if `is_squares`, is minimised."""
 
     @property
     def is_squares(self) -> bool:
-        """Whether the sum of squares is meant."""
+        """Whether the sum of squares is minimised."""
         return True
 
     @abstractmethod
     def residuals(self, trial: DesignTrial) -> Number:
-        """Return what is summed, (designs, residuals); NaN where a design is not assembled."""
+        """Return the residuals (designs, residuals); NaN where a design is not assembled."""
 
     @property
     def places(self) -> Mapping[str, Number]:
-        """Places that points are to be at, by the points."""
+        """Target places by point."""
         return {}
 
     @property
@@ -148,17 +139,14 @@ class Goal(Term, Summand):
 
 @dataclass(frozen=True)
 class GoalSum(Summand):
-    """Several goals at once, by their weights."""
+    """A weighted sum of goals."""
 
     parts: tuple[tuple[float, Goal], ...] = ()
 
 
 class DesignConstraint(Term):
-    """What shall hold: all its margins are at least 0."""
+    """A constraint: all its margins must be at least 0."""
 
     @abstractmethod
     def margins(self, trial: DesignTrial) -> Number:
-        """Return how far it holds, (designs, margins), in its unit.
-
-        NaN where a design is not assembled.
-        """
+        """Return its margins (designs, margins) in its unit; NaN where a design is not assembled."""

@@ -26,8 +26,8 @@ class PathGoal(Goal):
     through: Number  # (poses,) complex
 
     @property
-    def told(self) -> str:
-        """The point and how many places."""
+    def description(self) -> str:
+        """The point and the number of places."""
         return f"{self.point} through {len(self.through)} points with timing"
 
     @property
@@ -40,10 +40,7 @@ class PathGoal(Goal):
         return f"{self.point}.{POSITION}"
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the place of the point.
-
-        Raises InvalidInput where there are not as many poses as places.
-        """
+        """Return the position of the point. Raises InvalidInput where the numbers of poses and places differ."""
         poses = motion.inputs.poses
         if poses != len(self.through):
             what = f"there are {len(self.through)} points, and {poses} poses"
@@ -51,11 +48,11 @@ class PathGoal(Goal):
         return (self._output,)
 
     def residuals(self, trial: DesignTrial) -> Number:
-        """Return what the point is off in x at all poses, then in y."""
+        """Return the errors in x at all poses, then in y."""
         return real_parts(trial.values(self._output) - self.through)
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those."""
+        """Return the slopes of the residuals."""
         return real_parts(trial.slopes(self._output))
 
 
@@ -63,44 +60,44 @@ class PathGoal(Goal):
 def path(point: str, through: object) -> Goal:
     """Return the goal that a point goes through places, each at its own pose.
 
-    `through` are complex numbers or (x, y), as many as there are poses. Raises InvalidInput for what is none.
+    `through` are complex numbers or (x, y), one for each pose. Raises InvalidInput for other objects.
 
-    >>> path("G", [(1, 2), (3, 4)]).told
+    >>> path("G", [(1, 2), (3, 4)]).description
     'G through 2 points with timing'
     """
     return PathGoal(point, plane_points(f"path.{point}", through))
 
 
 def plane_points(where: str, given: object) -> Number:
-    """Return places of the plane as complex numbers. Raises InvalidInput for what is none."""
+    """Return places in the plane as complex numbers. Raises InvalidInput for other objects."""
     if isinstance(given, tuple) and len(given) == 2 and all(map(is_real, given)):
-        raise InvalidInput(Problem(where, f"{given} is one point, and no list of them", f"[{given}, ...]"))
+        raise InvalidInput(Problem(where, f"{given} is one point, not a list of points", f"[{given}, ...]"))
     try:
         found = np.asarray(given)
         found = as_planar(found) if found.ndim == 2 and found.shape[1] == 2 else found + 0j
     except (TypeError, ValueError, OverflowError):
         found = np.empty((0, 0))
     if found.ndim != 1 or not found.size or not np.isfinite(found).all():
-        raise InvalidInput(Problem(where, "these are no points", "give a list of (x, y) or of complex numbers"))
+        raise InvalidInput(Problem(where, "these are not points", "give a list of (x, y) or of complex numbers"))
     return found
 
 
-# Designs whose distances from all places are held at once.
+# Designs whose distances from all places are in memory at once.
 BLOCK = 512
 
 
 @dataclass(frozen=True, eq=False)
 class TraceGoal(Goal):
-    """What places are off where the driver is best for each of them."""
+    """The errors at target points, with the best driver value for each."""
 
     wanted: TargetPoints
     driver: str | None = None
     is_ordered: bool = True
 
     @property
-    def told(self) -> str:
-        """What is to be where."""
-        return f"{self.wanted.told}{'' if self.is_ordered else ' in any order'}"
+    def description(self) -> str:
+        """The targets."""
+        return f"{self.wanted.description}{'' if self.is_ordered else ' in any order'}"
 
     @property
     def places(self) -> Mapping[str, Number]:
@@ -109,14 +106,11 @@ class TraceGoal(Goal):
 
     @property
     def has_own_poses(self) -> bool:
-        """The driver goes where it is best."""
+        """True: driver values are unknowns."""
         return True
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return what is compared.
-
-        Raises InvalidInput where it is not plain which driver is meant.
-        """
+        """Return the compared outputs. Raises InvalidInput for an ambiguous driver."""
         self._schedule(motion)
         return self.wanted.outputs
 
@@ -126,11 +120,11 @@ class TraceGoal(Goal):
         )
 
     def unknowns(self, motion: Motion) -> tuple[GoalUnknown, ...]:
-        """Return what tells where the driver is at each place."""
+        """Return the unknowns for the driver's value at each place."""
         return self._schedule(motion).unknowns
 
     def guesses(self, trial: DesignTrial) -> Number:
-        """Return those for the poses that are nearest, in their order."""
+        """Return the unknowns for the nearest poses, in their order."""
         schedule = self._schedule(trial.designs.path.reference)
         if not trial.number:
             return trial.unknowns
@@ -140,10 +134,10 @@ class TraceGoal(Goal):
         for start in range(0, trial.number, BLOCK):
             rows = np.arange(start, min(start + BLOCK, trial.number))
             some = replace(trial, designs=trial.designs.picked(rows), unknowns=trial.unknowns[rows])
-            yield some.at(schedule.driver, schedule.looked_at)
+            yield some.at(schedule.driver, schedule.sampled_values)
 
     def residuals(self, trial: DesignTrial) -> Number:
-        """Return what is off in x at all places, in y, in the angle."""
+        """Return the errors in x at all places, in y, in the angle."""
         off = self.wanted.off(self._there(trial))
         return off.reshape(len(off), -1)
 
@@ -152,7 +146,7 @@ class TraceGoal(Goal):
         return trial.apart(schedule.driver, schedule.values(trial.unknowns))
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those."""
+        """Return the slopes of the residuals."""
         schedule = self._schedule(trial.designs.path.reference)
         there = self._there(trial)
         by_driver = self.wanted.off_slopes(there, schedule.driver)
@@ -163,13 +157,13 @@ class TraceGoal(Goal):
 
 @checked
 def trace(point: str, through: object, *, driver: str | None = None, in_order: bool = True) -> Goal:
-    """Return the goal that a point goes through places, wherever its driver is then.
+    """Return the goal that a point goes through places, at any values of the driver.
 
-    `through` are complex numbers or (x, y), met in their order one way or the other; with `in_order=False` in any, as
-    where a driver goes there and back. A driver that makes a whole turn over the poses may begin anywhere in it, and
-    does not go on beyond one turn; any other stays in its range. Raises InvalidInput for what is none.
+    `through` are complex numbers or (x, y), in forward or backward order; with `in_order=False` in any order, as for an
+    oscillating driver. A driver that makes a full turn over the poses may begin anywhere in it, and does not exceed one
+    turn; any other stays in its range. Raises InvalidInput for other objects.
 
-    >>> trace("G", [(1, 2), (3, 4), (1, 2)]).told
+    >>> trace("G", [(1, 2), (3, 4), (1, 2)]).description
     'G through 3 points'
     """
     return TraceGoal(TargetPoints(point, plane_points(f"trace.{point}", through)), driver, in_order)
@@ -177,14 +171,14 @@ def trace(point: str, through: object, *, driver: str | None = None, in_order: b
 
 @dataclass(frozen=True, eq=False)
 class PoseGoal(Goal):
-    """What a link is off from poses."""
+    """The errors of a link at target poses."""
 
     wanted: TargetPoints
 
     @property
-    def told(self) -> str:
-        """What is to be where."""
-        return f"{self.wanted.told} with timing"
+    def description(self) -> str:
+        """The targets."""
+        return f"{self.wanted.description} with timing"
 
     @property
     def places(self) -> Mapping[str, Number]:
@@ -192,20 +186,17 @@ class PoseGoal(Goal):
         return {self.wanted.point: self.wanted.places}
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return what is compared.
-
-        Raises InvalidInput where there are not as many poses as are wanted.
-        """
-        self.wanted.hold(f"poses.{self.wanted.link}", motion)
+        """Return the compared outputs. Raises InvalidInput where the numbers of poses differ."""
+        self.wanted.check(f"poses.{self.wanted.link}", motion)
         return self.wanted.outputs
 
     def residuals(self, trial: DesignTrial) -> Number:
-        """Return what is off in x at all poses, in y, in the angle."""
+        """Return the errors in x at all poses, in y, in the angle."""
         off = self.wanted.off(trial)
         return off.reshape(len(off), -1)
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those."""
+        """Return the slopes of the residuals."""
         found = self.wanted.off_slopes(trial)
         return found.reshape(len(found), -1, found.shape[-1])
 
@@ -223,10 +214,10 @@ def poses(
     """Return the goal that a link is in poses.
 
     `wanted` are (x, y, angle): a point of it, and its angle in radians, each at its own pose of the motion; with
-    `timed=False` in their order wherever the driver is then. An angle counts as the length it makes at `arm`, by
-    default the reach of the places about their middle. Raises InvalidInput for what is none.
+    `timed=False` in their order at any values of the driver. An angle error counts as a length at `arm`, by default the
+    greatest distance of the places from their mean. Raises InvalidInput for other objects.
 
-    >>> poses("plate", "G", [(1, 2, 0.0), (3, 4, 0.5)]).told
+    >>> poses("plate", "G", [(1, 2, 0.0), (3, 4, 0.5)]).description
     'plate with G in 2 poses with timing'
     """
     found = target_poses(f"poses.{link}", link, point, wanted, arm)
@@ -235,10 +226,7 @@ def poses(
 
 @dataclass(frozen=True, eq=False)
 class TargetPoints:
-    """Places of a point, (places,) complex.
-
-    With `angles` also those of a link, which count as lengths by `arm`.
-    """
+    """Target places of a point, (places,) complex, and `angles` of a link, which count as lengths at `arm`."""
 
     point: str
     places: Number
@@ -247,30 +235,27 @@ class TargetPoints:
     arm: float = 1.0
 
     @property
-    def told(self) -> str:
-        """What is to be where."""
+    def description(self) -> str:
+        """The targets."""
         if self.link:
             return f"{self.link} with {self.point} in {len(self.places)} poses"
         return f"{self.point} through {len(self.places)} points"
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """The names of what is off."""
+        """The names of the compared outputs."""
         place = f"{self.point}.{POSITION}"
         return (place, f"{self.link}.{ANGLE}") if self.link else (place,)
 
-    def hold(self, where: str, motion: Motion) -> None:
-        """Raise InvalidInput where there are not as many poses as places."""
+    def check(self, where: str, motion: Motion) -> None:
+        """Raise InvalidInput where the numbers of poses and places differ."""
         poses, places = motion.inputs.poses, len(self.places)
         if poses != places:
             what, remedy = f"there are {places} places, and {poses} poses", "values=... of the driver, one for each"
             raise InvalidInput(Problem(where, what, remedy))
 
     def off(self, trial: DesignTrial | PosesApart) -> Number:
-        """Return what is off at each pose, (designs, numbers, poses).
-
-        The numbers are x, y and the angle.
-        """
+        """Return the errors in x, y and the angle at each pose, (designs, numbers, poses)."""
         place = trial.values(self.outputs[0]) - self.places
         parts = [place.real, place.imag]
         if self.link:
@@ -278,17 +263,14 @@ class TargetPoints:
         return np.stack(parts, axis=1)
 
     def off_slopes(self, trial: DesignTrial | PosesApart, driver: str = "") -> Number:
-        """Return the slopes of that by the coordinates, or by a driver.
-
-        They are (designs, numbers, poses, coordinates).
-        """
+        """Return their slopes by the coordinates, or by a driver, (designs, numbers, poses, coordinates)."""
         place, *angle = (
             trial.driver_slopes(name, driver)[..., None] if driver else trial.slopes(name) for name in self.outputs
         )
         return np.stack([place.real, place.imag, *(self.arm * one for one in angle)], axis=1)
 
     def squares(self, trial: DesignTrial) -> Number:
-        """Return the squares of what is off, (designs, places, poses)."""
+        """Return the squared errors, (designs, places, poses)."""
         place = trial.values(self.outputs[0])[:, None, :] - self.places[:, None]
         found = place.real**2 + place.imag**2
         if self.link:
@@ -298,16 +280,13 @@ class TargetPoints:
 
 
 def target_poses(where: str, link: str, point: str, given: object, arm: float | None) -> TargetPoints:
-    """Return poses of a link, given as (x, y, angle) in radians.
-
-    Raises InvalidInput for what is none.
-    """
+    """Return target poses of a link, given as (x, y, angle) in radians. Raises InvalidInput for other objects."""
     try:
         rows = np.asarray(given, dtype=float)
     except (TypeError, ValueError, OverflowError):
         rows = np.empty(0)
     if rows.ndim != 2 or rows.shape[1] != 3:
-        raise InvalidInput(Problem(where, "these are no poses", "give a list of (x, y, angle), radians"))
+        raise InvalidInput(Problem(where, "these are not poses", "give a list of (x, y, angle), radians"))
     places = plane_points(where, rows[:, :2])
     if not np.isfinite(rows).all() or (arm is not None and not (np.isfinite(arm) and arm > 0.0)):
         raise InvalidInput(Problem(where, "angles and arm must be numbers, the arm above 0", "arm=10.0"))

@@ -18,27 +18,27 @@ from compoundkin.studies.goals.goal import Goal
 
 @dataclass(frozen=True)
 class DwellGoal(Goal):
-    """What an output differs from its mean, at all poses of a stretch."""
+    """The differences of an output from its mean at all poses of a stretch."""
 
     output: str
     stretch: DriverStretch
 
     @property
-    def told(self) -> str:
-        """The output, and where."""
-        return f"{self.output} even{self.stretch.told}"
+    def description(self) -> str:
+        """The output and the stretch."""
+        return f"{self.output} even{self.stretch.description}"
 
     @property
     def has_own_poses(self) -> bool:
-        """Whether it asks over a part of the motion."""
+        """Whether it is for a part of the motion."""
         return self.stretch.ends is not None
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return the output; raises InvalidInput for the figure of a whole course."""
-        self.stretch.hold(motion)
+        self.stretch.check(motion)
         of, figure = motion_figure(self.output)
         if figure:
-            raise InvalidInput(Problem(self.output, "it is one number, and always even", f'say "{of}"'))
+            raise InvalidInput(Problem(self.output, "it is a figure, and always even", f'take "{of}"'))
         return (self.output,)
 
     def residuals(self, trial: DesignTrial) -> Number:
@@ -47,7 +47,7 @@ class DwellGoal(Goal):
         return real_parts(found - found.mean(axis=1, keepdims=True))
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of those."""
+        """Return the slopes of the residuals."""
         found = self.stretch.of(trial).slopes(self.output)
         return real_parts(found - found.mean(axis=1, keepdims=True))
 
@@ -56,10 +56,10 @@ class DwellGoal(Goal):
 def dwell(output: str, between: object, *, driver: str | None = None) -> Goal:
     """Return the goal that an output stands still between two values of the driver.
 
-    The squares of what it differs from its mean are summed over 25 poses; points may be given too. Raises InvalidInput
-    for what is no stretch.
+    The squared differences from its mean are summed over 25 poses; points are possible too. Raises InvalidInput for an
+    invalid stretch.
 
-    >>> dwell("rocker.angle", (1.0, 2.0)).told
+    >>> dwell("rocker.angle", (1.0, 2.0)).description
     'rocker.angle even between 1 and 2'
     """
     return DwellGoal(output, driver_stretch(f"dwell.{output}", () if between is None else between, driver))
@@ -67,12 +67,11 @@ def dwell(output: str, between: object, *, driver: str | None = None) -> Goal:
 
 @checked
 def even(output: str) -> Goal:
-    """Return the goal that an output is as even as can be.
+    """Return the goal that an output is as even as possible.
 
-    That is over the whole motion, "crank.effort". The squares of what it differs from its mean are summed over the
-    poses.
+    For example "crank.effort" over the whole motion. The squared differences from its mean are summed over the poses.
 
-    >>> even("crank.effort").told
+    >>> even("crank.effort").description
     'crank.effort even'
     """
     return DwellGoal(output, driver_stretch(f"even.{output}", None, None))
@@ -80,23 +79,20 @@ def even(output: str) -> Goal:
 
 @dataclass(frozen=True)
 class StraightLineGoal(Goal):
-    """The distances of a point from the line that fits best.
-
-    It has a direction or any.
-    """
+    """The distances of a point from the line of best fit, whose direction may be fixed."""
 
     point: str
     stretch: DriverStretch
     angle: float | None = None
 
     @property
-    def told(self) -> str:
-        """The point, and where."""
-        return f"{self.point} along a straight line{self.stretch.told}"
+    def description(self) -> str:
+        """The point and the stretch."""
+        return f"{self.point} along a straight line{self.stretch.description}"
 
     @property
     def has_own_poses(self) -> bool:
-        """Whether it asks over a part of the motion."""
+        """Whether it is for a part of the motion."""
         return self.stretch.ends is not None
 
     @property
@@ -104,8 +100,8 @@ class StraightLineGoal(Goal):
         return f"{self.point}.{POSITION}"
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the place of the point."""
-        self.stretch.hold(motion)
+        """Return the position of the point."""
+        self.stretch.check(motion)
         return (self._output,)
 
     def residuals(self, trial: DesignTrial) -> Number:
@@ -128,7 +124,7 @@ class StraightLineGoal(Goal):
         if self.angle is not None:
             return np.asarray(found)
         squares = (about**2).sum(axis=1)[:, None]
-        # a point that rests has no line that could turn
+        # a point at rest has no line
         turn = ((about[..., None] * by).sum(axis=1) / np.where(squares == 0.0, 1.0, squares)).imag
         return found - turn[:, None, :] * (about * along.conj()).real[..., None]
 
@@ -141,41 +137,38 @@ def _about(places: Number) -> Number:
 def straight_line(point: str, between: object = None, *, angle: float | None = None, driver: str | None = None) -> Goal:
     """Return the goal that a point goes along a straight line.
 
-    That is between two values of the driver, or over all poses. The squares of its distances from the line that fits
-    best are summed; `angle` fixes its direction (radians). Ask beside it for a length, `at_least("G.x.stroke", 20)`: a
-    point that rests has no distance at all. Raises InvalidInput for what is no stretch. Source of the fit: K. Pearson,
+    Between two values of the driver, or over all poses. The squared distances from the line of best fit are summed;
+    `angle` fixes its direction (radians). Combine it with a length, `at_least("G.x.stroke", 20)`: a point at rest has no
+    distance from a line. Raises InvalidInput for an invalid stretch. Source of the fit: K. Pearson,
     Phil. Mag. 2 (1901) 559-572.
 
-    >>> straight_line("G", (1.0, 2.0)).told
+    >>> straight_line("G", (1.0, 2.0)).description
     'G along a straight line between 1 and 2'
     """
     if angle is not None and not np.isfinite(angle):
-        raise InvalidInput(Problem(f"straight_line.{point}", "the angle is no number", "angle=0.0, radians"))
+        raise InvalidInput(Problem(f"straight_line.{point}", "the angle is not finite", "angle=0.0, radians"))
     return StraightLineGoal(point, driver_stretch(f"straight_line.{point}", between, driver), angle)
 
 
-# Poses at which a stretch is looked at: what bends once or twice within it is followed well.
+# Poses of a stretch: enough for a course with one or two bends.
 POSES = 25
 
 
 @dataclass(frozen=True)
 class DriverStretch:
-    """Values of a driver from one end to the other.
-
-    Without `ends` it is the motion itself.
-    """
+    """A stretch of a driver's values; without `ends` the whole motion."""
 
     where: str
     ends: tuple[float, float] | None = None
     driver: str | None = None
 
     @property
-    def told(self) -> str:
-        """Nothing, or that it is a part."""
+    def description(self) -> str:
+        """The ends as text, empty for the whole motion."""
         return "" if self.ends is None else f" between {self.ends[0]:g} and {self.ends[1]:g}"
 
-    def hold(self, motion: Motion) -> None:
-        """Raise InvalidInput where it is not plain which driver is meant."""
+    def check(self, motion: Motion) -> None:
+        """Raise InvalidInput for an ambiguous driver."""
         if self.ends is not None:
             driver_of(self.where, motion, self.driver)
 
@@ -193,10 +186,7 @@ class DriverStretch:
 
 
 def driver_stretch(where: str, between: object, driver: str | None) -> DriverStretch:
-    """Return the stretch between two values of a driver.
-
-    It is all of the motion where none are given. Raises InvalidInput for what is none.
-    """
+    """Return the stretch between two values of a driver, by default the whole motion. Raises InvalidInput for other objects."""
     if between is None:
         return DriverStretch(where, None, driver)
     try:
@@ -205,5 +195,7 @@ def driver_stretch(where: str, between: object, driver: str | None) -> DriverStr
     except (TypeError, ValueError):
         given = False
     if not given:
-        raise InvalidInput(Problem(where, "there is no such stretch", "between=(1.0, 2.5), values of the driver"))
+        raise InvalidInput(
+            Problem(where, "these are not two different values", "between=(1.0, 2.5), values of the driver")
+        )
     return DriverStretch(where, (low, high), driver)

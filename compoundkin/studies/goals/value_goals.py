@@ -19,28 +19,28 @@ from compoundkin.studies.goals.goal import Goal
 
 @dataclass(frozen=True)
 class LeastGoal(Goal):
-    """One figure of each design: it, or with the sign -1 its opposite."""
+    """A figure that is minimised, or with the sign -1 maximised."""
 
     name: str
     sign: float = 1.0
 
     @property
-    def told(self) -> str:
-        """The figure, and which way."""
+    def description(self) -> str:
+        """The figure and the direction."""
         return f"{self.name} as {'small' if self.sign > 0 else 'great'} as can be"
 
     @property
     def is_squares(self) -> bool:
-        """It is meant itself, not its square."""
+        """False: the figure itself is minimised, not its square."""
         return False
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return its name; raises InvalidInput where it is a whole course, and no number."""
+        """Return its name; raises InvalidInput for a course."""
         figure = motion_figure(self.name)[1]
         if not figure:
             found = quantity(motion, self.name)
-            what = "it has a value at every pose, and is no number that could be least"
-            remedy = f'say which figure of it: "{found.name}{".length" * found.is_vector}.{GREATEST}"'
+            what = "it has a value at every pose, not a single one to minimise"
+            remedy = f'take a figure of it: "{found.name}{".length" * found.is_vector}.{GREATEST}"'
             raise InvalidInput(Problem(self.name or "objective", what, remedy))
         return (self.name,)
 
@@ -57,7 +57,7 @@ class LeastGoal(Goal):
 def least(name: str) -> Goal:
     """Return the goal that a figure is as small as can be: "crank.effort.greatest".
 
-    >>> least("plate.transmission_angle.stroke").told
+    >>> least("plate.transmission_angle.stroke").description
     'plate.transmission_angle.stroke as small as can be'
     """
     return LeastGoal(name)
@@ -67,7 +67,7 @@ def least(name: str) -> Goal:
 def greatest(name: str) -> Goal:
     """Return the goal that a figure is as great as can be: "plate.transmission_angle.least".
 
-    >>> greatest("plate.transmission_angle.least").told
+    >>> greatest("plate.transmission_angle.least").description
     'plate.transmission_angle.least as great as can be'
     """
     return LeastGoal(name, -1.0)
@@ -75,14 +75,14 @@ def greatest(name: str) -> Goal:
 
 @dataclass(frozen=True, eq=False)
 class TargetGoal(Goal):
-    """What a figure, or a quantity at each pose, is off."""
+    """The difference of a figure, or of a quantity at each pose, from a target value."""
 
     name: str
     value: Number
 
     @property
-    def told(self) -> str:
-        """What is to be how much."""
+    def description(self) -> str:
+        """The figure and its target."""
         return f"{self.name} {self.value:g}" if not np.ndim(self.value) else f"{self.name} {len(self.value)} values"
 
     @property
@@ -90,35 +90,35 @@ class TargetGoal(Goal):
         return bool(motion_figure(self.name)[1])
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return its name; raises InvalidInput where there are not as many values as poses."""
+        """Return its name; raises InvalidInput where the numbers of values and poses differ."""
         count = 1 if self._is_figure else motion.inputs.poses
         if np.size(self.value) not in (1, count):
             what = f"there are {np.size(self.value)} values, and {count} poses"
             raise InvalidInput(Problem(f"target.{self.name}", what, "give one value, or one for each pose"))
         if np.iscomplexobj(self.value) and (self._is_figure or not quantity(motion, self.name).is_vector):
-            what = f"{self.name} is no vector, and cannot be {short_repr(np.asarray(self.value).tolist())}"
+            what = f"{self.name} is not a vector, and cannot be {short_repr(np.asarray(self.value).tolist())}"
             raise InvalidInput(Problem(f"target.{self.name}", what, "give a real number"))
         return (self.name,)
 
     def residuals(self, trial: DesignTrial) -> Number:
-        """Return what it is off."""
+        """Return the differences."""
         found = trial.values(self.name) - self.value
         return found[:, None] if self._is_figure else real_parts(found)
 
     def slopes(self, trial: DesignTrial) -> Number:
-        """Return the slopes of that."""
+        """Return the slopes of the residuals."""
         found = trial.slopes(self.name)
         return found[:, None] if self._is_figure else real_parts(found)
 
 
 @checked
 def target(name: str, value: object) -> Goal:
-    """Return the goal that a figure has a value, or a quantity.
+    """Return the goal that a figure or a quantity has a value.
 
-    `value` is a number, or one for each pose; radians for angles, complex for vectors. Raises InvalidInput for what is
-    none.
+    `value` is a number, or one for each pose; radians for angles, complex for vectors. Raises InvalidInput for other
+    objects.
 
-    >>> target("ram.displacement.time_ratio", 1.4).told
+    >>> target("ram.displacement.time_ratio", 1.4).description
     'ram.displacement.time_ratio 1.4'
     """
     try:
@@ -128,6 +128,6 @@ def target(name: str, value: object) -> Goal:
         good = False
     if not good:
         raise InvalidInput(
-            Problem(f"target.{name}", f"{short_repr(value)} is no value", "a number, or one for each pose")
+            Problem(f"target.{name}", f"{short_repr(value)} is not a value", "a number, or one for each pose")
         )
     return TargetGoal(name, found if found.ndim else found[()])

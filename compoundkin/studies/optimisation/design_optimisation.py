@@ -95,7 +95,7 @@ def optimise(
 def _warn(found: Optimum) -> None:
     """Warn of an answer that is not what was asked, or cannot be made."""
     if not found.is_held:
-        broken = [one.told for one in found.constraints if not one.is_held]
+        broken = [one.description for one in found.constraints if not one.is_held]
         warn(f"no design was found at which all constraints hold: not {', '.join(broken)}", UnmetConstraints)
     # goals with driver values of their own may need a part of the motion only
     if not found.is_whole and not all(one.has_own_poses for one in found.goals):
@@ -288,7 +288,9 @@ def _held_constraints(problem: DesignProblem, best: SearchedDesigns, scales: Num
         parts = margins / scales[place : place + len(margins)]
         place += len(margins)
         is_held, binds = bool(parts.min() >= -HOLDS_WITHIN), bool(abs(parts.min()) < AT_END)
-        found.append(HeldConstraint(one.term.told, float(margins.min()), _unit(problem, one.term), is_held, binds))
+        found.append(
+            HeldConstraint(one.term.description, float(margins.min()), _unit(problem, one.term), is_held, binds)
+        )
     return tuple(found)
 
 

@@ -73,7 +73,7 @@ class DesignSearch(ShortRepr):
         self._tell(0)
         scales = self.begun.scales
         self._tell(STARTED)
-        close = ended_searches(self.problem, self._led(), scales, NEARLY)
+        close = ended_searches(self.problem, self._descended(), scales, NEARLY)
         self._tell(LED)
         count = self._worth(close)
         refine = METHODS.get(self.word, METHODS["SLSQP"])
@@ -92,16 +92,18 @@ class DesignSearch(ShortRepr):
             return len(close)
         return min(sum(one.violation < FAR for one in close), REFINED if self.problem.has_slopes else BY_DIFFERENCES)
 
-    def _led(self) -> Number:
+    def _descended(self) -> Number:
         """Return where all starts lead at once."""
         if self.word == EVOLUTION:
-            found = evolve(self.problem, self.begun.parts, self.begun.scales, self.seed, self._told(GENERATIONS))
+            found = evolve(
+                self.problem, self.begun.parts, self.begun.scales, self.seed, self._step_counter(GENERATIONS)
+            )
             return np.where(self.begun.matters, found, self.begun.parts[0])
         if self.leads_on:
-            return descend(self.problem, self.begun.parts, self.begun.scales, self._told(STEPS))
+            return descend(self.problem, self.begun.parts, self.begun.scales, self._step_counter(STEPS))
         return self.begun.parts
 
-    def _told(self, steps: int) -> Callable[[], None]:
+    def _step_counter(self, steps: int) -> Callable[[], None]:
         """Return what is called after each of some steps that lead all starts on."""
         done = [0]
 
@@ -203,7 +205,7 @@ def _failed(designs: SearchedDesigns) -> Counter[str]:
     """Count designs by the group that first cannot be assembled, or the guide that is beyond an end."""
     counted: Counter[str] = Counter()
     path = designs.problem.path
-    failed = designs.designs(path).found.failed
+    failed = designs.designs(path).outputs.failed
     if failed is not None:
         first = np.where(failed > 0, failed, np.iinfo(failed.dtype).max).min(axis=-1)
         for index, count in zip(*np.unique(first[(failed > 0).any(axis=-1)], return_counts=True), strict=True):

@@ -50,7 +50,7 @@ class HeldConstraint:
     `margin` is the least that it has, in its unit.
     """
 
-    told: str
+    description: str
     margin: float
     unit: str
     is_held: bool
@@ -72,13 +72,13 @@ class LocalMinimum(ShortRepr):
     def motion(self) -> Motion:
         """Its motion, in the configuration that the search kept to."""
         with suppress_pose_warnings():
-            return solve(self._designed, **self._told)
+            return solve(self._designed, **self._solve_arguments)
 
     @cached_property
     def mechanism(self) -> Mechanism:
         """The mechanism with its dimensions, which moves as it did in the search."""
         with suppress_pose_warnings():
-            return with_modes(self._designed, self.motion, self._told)
+            return with_modes(self._designed, self.motion, self._solve_arguments)
 
     @property
     def modes(self) -> str | Configuration:
@@ -86,7 +86,7 @@ class LocalMinimum(ShortRepr):
         return self._path.modes
 
     @property
-    def _told(self) -> dict[str, Any]:
+    def _solve_arguments(self) -> dict[str, Any]:
         return {**self._moved, "modes": self._path.modes}
 
     @property
@@ -163,7 +163,7 @@ class Optimum(DisplaysHtml, ShortRepr):
     def binding(self) -> tuple[str, ...]:
         """What keeps it from being better: bounds and constraints, in words."""
         bounds = [f"{one.name} at its {one.binds} bound" for one in self.changes if one.binds]
-        return (*bounds, *(one.told for one in self.constraints if one.binds))
+        return (*bounds, *(one.description for one in self.constraints if one.binds))
 
     @property
     def is_held(self) -> bool:

@@ -44,12 +44,12 @@ class AssembledRange(ShortRepr):
 
 def assembled_range(designs: Designs) -> AssembledRange:
     """Return where designs are not assembled; it is looked at once."""
-    return designs.kept(AssembledRange, lambda: _search_failures(designs))
+    return designs.computed_once(AssembledRange, lambda: _search_failures(designs))
 
 
 def _search_failures(designs: Designs) -> AssembledRange:
     shape = designs.number, designs.poses
-    values = designs.found
+    values = designs.outputs
     failed = np.zeros(shape, dtype=np.int32) if values.failed is None else np.broadcast_to(values.failed, shape)
     between, after = np.zeros(shape[0], dtype=np.int32), np.zeros(shape[0], dtype=int)
     none: Number = np.empty(0, dtype=int)

@@ -49,7 +49,7 @@ class CourseSearch(ShortRepr):
     is_angle: bool = False
     squared: bool = False
 
-    def found(self) -> CourseExtreme:
+    def extreme(self) -> CourseExtreme:
         """Return the greatest values, times the sign."""
         with np.errstate(all="ignore"):
             parts, course = self._course()
@@ -64,7 +64,7 @@ class CourseSearch(ShortRepr):
         number, poses = self.designs.number, self.designs.poses
         parts = refinement_parts(poses)
         if parts == 1:
-            return 1, self.sign * np.broadcast_to(self.designs.found[self.name], (number, poses))
+            return 1, self.sign * np.broadcast_to(self.designs.outputs[self.name], (number, poses))
         places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
         return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
 

@@ -89,7 +89,7 @@ class Designs(ShortRepr):
     dimensions: Mapping[str, Number]
     inputs: Inputs
     times: Number | None = None
-    _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False)
+    _computed: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def number(self) -> int:
@@ -102,18 +102,18 @@ class Designs(ShortRepr):
         return self.inputs.poses
 
     @property
-    def found(self) -> PathValues:
+    def outputs(self) -> PathValues:
         """The outputs of the path, (designs, poses)."""
-        return self.kept("found", self._found)
+        return self.computed_once("outputs", self._outputs)
 
-    def _found(self) -> PathValues:
+    def _outputs(self) -> PathValues:
         values, dimensions, more = self.call
         return self.path.compiled(values, dimensions, **more)
 
     @property
     def slopes(self) -> PathSensitivities:
         """The outputs with their slopes by all free numbers and drivers."""
-        return self.kept("slopes", self._slopes)
+        return self.computed_once("slopes", self._slopes)
 
     def _slopes(self) -> PathSensitivities:
         values, dimensions, more = self.call
@@ -122,7 +122,7 @@ class Designs(ShortRepr):
     @property
     def numbers(self) -> CallNumbers:
         """The numbers of the call that finds them."""
-        return self.kept("numbers", self._numbers)
+        return self.computed_once("numbers", self._numbers)
 
     def _numbers(self) -> CallNumbers:
         values, dimensions, more = self.call
@@ -133,7 +133,7 @@ class Designs(ShortRepr):
     @property
     def motion(self) -> Motion:
         """All of them solved by `solve`, to all orders."""
-        return self.kept("motion", self._motion)
+        return self.computed_once("motion", self._motion)
 
     def _motion(self) -> Motion:
         values, dimensions, more = self.call if self.times is None else self._call_in_time
@@ -148,12 +148,12 @@ class Designs(ShortRepr):
         dimensions = {name: value[rows] for name, value in self.dimensions.items()}
         return replace(self, dimensions=dimensions, inputs=inputs_of_designs(self.inputs, rows))
 
-    def kept(self, key: Hashable, make: Callable[[], Result]) -> Result:
+    def computed_once(self, key: Hashable, make: Callable[[], Result]) -> Result:
         """Return what is made once, under a key."""
         # `cached_property` would let one thread compute at a time, whatever the designs: its lock is that of the class
-        if key not in self._kept:
-            self._kept[key] = make()
-        found: Result = self._kept[key]
+        if key not in self._computed:
+            self._computed[key] = make()
+        found: Result = self._computed[key]
         return found
 
     def moved(self, coordinate: str, by: float) -> Designs:
@@ -184,7 +184,7 @@ class Designs(ShortRepr):
         if not is_angle:
             return found
         k, weight = interval(self.inputs, places)
-        course = self.found[name]
+        course = self.outputs[name]
         beside = course[rows[:, None], k] * (1.0 - weight) + course[rows[:, None], k + 1] * weight
         return found + whole_turns(beside - found)
 

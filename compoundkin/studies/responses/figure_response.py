@@ -54,18 +54,18 @@ class FigureResponse(Response):
             found[:, known] = designs.slopes_at(self.of, rows[known], places[known])
         if self.squared:
             # a length that comes to zero, as a speed at a dead centre, comes to zero still when dimensions change
-            most = np.abs(np.broadcast_to(designs.found[self.of], (designs.number, designs.poses))).max(axis=1)
+            most = np.abs(np.broadcast_to(designs.outputs[self.of], (designs.number, designs.poses))).max(axis=1)
             values = np.stack([self.extreme(designs, sign).value for sign, _ in PARTS_OF[self.figure]], axis=1)
             found[:, np.abs(values) <= ZERO * most[:, None]] = 0.0
         return found @ np.array([weight for _, weight in PARTS_OF[self.figure]])
 
     def extreme(self, designs: Designs, sign: float) -> CourseExtreme:
         """Return the greatest values, with the sign -1 the least. They are searched once."""
-        return designs.kept((self.of, sign), lambda: self._found(designs, sign))
+        return designs.computed_once((self.of, sign), lambda: self._search(designs, sign))
 
-    def _found(self, designs: Designs, sign: float) -> CourseExtreme:
+    def _search(self, designs: Designs, sign: float) -> CourseExtreme:
         """Search them; what passes change points, where a mode ends, is solved."""
-        found = CourseSearch(designs, self.of, sign, self.is_angle, self.squared).found()
+        found = CourseSearch(designs, self.of, sign, self.is_angle, self.squared).extreme()
         handed = assembled_range(designs).to_solve
         handed = handed[~np.isnan(found.value[handed])]
         if len(handed):
@@ -117,7 +117,7 @@ class StrokeRatioResponse(Response):
     def _part(self, designs: Designs) -> Number:
         """Return which part of the cycle leads from the least to the greatest value."""
         high, low = (self._progress(designs, self.stroke.extreme(designs, sign).place) for sign in ENDS)
-        stroke, course = self.stroke.values(designs), designs.found[self.stroke.of]
+        stroke, course = self.stroke.values(designs), designs.outputs[self.stroke.of]
         with np.errstate(invalid="ignore"):
             closes = np.abs(course[:, -1] - course[:, 0]) <= SAME_PLACE * stroke
         return np.where(closes & (stroke > 0.0), np.mod(high - low, 1.0), np.nan)

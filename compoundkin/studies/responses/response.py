@@ -60,7 +60,7 @@ class CourseResponse(Response):
 
     def values(self, designs: Designs) -> Number:
         """Return its values at all poses."""
-        return np.asarray(designs.found[self.name])
+        return np.asarray(designs.outputs[self.name])
 
     def slopes(self, designs: Designs) -> Number:
         """Return its slopes at all poses, (coordinates, designs, poses)."""

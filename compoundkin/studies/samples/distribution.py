@@ -70,7 +70,7 @@ class Distribution(CopiesFields, Variation):
         return cls._held(where, family.name, tuple(shape.tolist()), data.get("loc", 0.0), data.get("scale", 1.0))
 
     @classmethod
-    def given_as(cls, where: str, given: Any) -> Self | None:
+    def from_argument(cls, where: str, given: Any) -> Self | None:
         """Return a frozen distribution of scipy.stats; families without numbers are refused."""
         if type(given).__module__.partition(".")[0] != "scipy":
             return None

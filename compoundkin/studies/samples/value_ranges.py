@@ -61,7 +61,7 @@ class ValueRange(Variation):
         return cls.between(where, data["low"], data["high"])
 
     @classmethod
-    def given_as(cls, where: str, given: Any) -> Self | None:
+    def from_argument(cls, where: str, given: Any) -> Self | None:
         """Return a tuple of two as a range."""
         if not isinstance(given, tuple):
             return None
@@ -154,7 +154,7 @@ class Levels(ShortRepr, Variation):
         return cls.of(where, data["values"])
 
     @classmethod
-    def given_as(cls, where: str, given: Any) -> Self | None:
+    def from_argument(cls, where: str, given: Any) -> Self | None:
         """Return a list, an array or a column of a table as levels."""
         is_array = hasattr(given, "__array__") and np.ndim(given) > 0
         return cls.of(where, given) if isinstance(given, list | range) or is_array else None

@@ -79,7 +79,7 @@ class Variation(ABC):
         """Return what study files say, by its keys, as a variation; raises InvalidInput."""
 
     @classmethod
-    def given_as(cls, where: str, given: Any) -> Self | None:
+    def from_argument(cls, where: str, given: Any) -> Self | None:
         """Return what is given in Python as this kind, if it is."""
         return None
 

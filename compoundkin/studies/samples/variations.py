@@ -47,7 +47,7 @@ def variation_of(where: str, given: Any) -> Variation:
     if isinstance(given, Variation):
         return given
     for kind in VARIATIONS:
-        found = kind.given_as(where, given)
+        found = kind.from_argument(where, given)
         if found is not None:
             return found
     raise InvalidInput(Problem(where, f"{short_repr(given)} is nothing that a dimension can be", _REMEDY))

@@ -108,7 +108,7 @@ def output_tolerances(
     over the whole motion; warns UnassembledPoses of some.
     """
     _check_nominal(designs)
-    values, assembled = designs.found(responses)
+    values, assembled = designs.values(responses)
     _report_progress(assembled)
     outputs: dict[str, OutputTolerance] = {}
     for response in responses:
@@ -157,7 +157,7 @@ def _report_slopes(one: OutputTolerance) -> None:
 
 def _check_nominal(designs: TolerancedDesigns) -> None:
     with suppress_pose_warnings():
-        missing = int(np.count_nonzero(~designs.nominal.found.assembled))
+        missing = int(np.count_nonzero(~designs.nominal.outputs.assembled))
     if missing:
         what = f"{count_phrase(missing, 'pose')} of the mechanism itself cannot be assembled"
         raise NotAssembled(Problem("values", what, "give values at which it can, gaps(solve(...)) tells where"))
@@ -198,7 +198,7 @@ class TolerancedDesigns(ShortRepr):
         """The one design without errors."""
         return self.path.designs(self.own)
 
-    def found(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
+    def values(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
         """Return the values of responses by name, and which designs assemble."""
         self._hold_room(responses)
         parts: dict[str, list[Number]] = {one.name: [] for one in responses}

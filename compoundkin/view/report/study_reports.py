@@ -276,14 +276,14 @@ def optimum_report(found: Optimum, outputs: Sequence[str] = ()) -> Report:
 
 
 def _optimum_about(found: Optimum) -> Iterator[Block]:
-    yield Paragraph(f"What shall be least: {listed(one.told for one in found.goals)}.")
+    yield Paragraph(f"What shall be least: {listed(one.description for one in found.goals)}.")
     squares = "sum of squares" if all(one.is_squares for one in found.goals) else "objective"
     before = f"from {objective_text(found, found.value_before)} " if np.isfinite(found.value_before) else ""
     yield Paragraph(f"The {squares} came {before}to {objective_text(found, found.value)}.")
     if not np.isfinite(found.value_before):
         yield Paragraph("The mechanism as it stood has no objective: it cannot be assembled over the whole motion.")
     if not found.is_held:
-        broken = listed(one.told for one in found.constraints if not one.is_held)
+        broken = listed(one.description for one in found.constraints if not one.is_held)
         yield Alert(f"Not all constraints hold: {broken}", "widen the ranges of dimensions, or ask for less")
     if not found.is_whole:
         what = "It cannot be assembled all along the motion, between its poses too"
@@ -307,8 +307,8 @@ def _changes_table(found: Optimum) -> TableBlock:
 def _constraints_table(found: Optimum) -> TableBlock:
     rows: list[tuple[Cell, ...]] = []
     for one in found.constraints:
-        margin = Quantity(one.told, one.unit, np.array([one.margin])).shown
-        rows.append((one.told, float(margin.values[0]), margin.unit, one.is_held, "binds" if one.binds else ""))
+        margin = Quantity(one.description, one.unit, np.array([one.margin])).shown
+        rows.append((one.description, float(margin.values[0]), margin.unit, one.is_held, "binds" if one.binds else ""))
     heads = Column("constraint"), Column("least margin", style="each"), Column("unit"), Column("", style="passed")
     return TableBlock((*heads, Column("")), tuple(rows), keys=1)
 
