@@ -96,7 +96,7 @@ def workspace_lines(found: Workspace) -> list[str]:
     length, area = (f" {unit}", f" {unit}²") if unit else ("", "")
     outline = np.concatenate(found.outer)
     x, y = ((float(np.min(part)), float(np.max(part))) for part in (outline.real, outline.imag))
-    angles = found.reach.led.driven.structure.driven_angles
+    angles = found.reach.prescribed.driven.structure.driven_angles
     spans = []
     for name in found.drivers:
         low, high = found.ranges.get(name, (0.0, 2.0 * np.pi))

@@ -17,11 +17,11 @@ from compoundkin.model.pairs import Pair
 
 @dataclass(frozen=True, eq=False)
 class Limit:
-    """A limit position (driver dead point). There the driver turns back, for a group comes to the end of its reach.
+    """A limit position (driver dead point): a group comes to the end of its reach, and the driver turns back.
 
     `value` is the driver's (radians between -pi and pi, or a length), `greatest` whether the driver comes from lesser
-    values. `group` is the index of the group responsible, `links` are its links. Of `branches` that meet there the
-    numbers are told.
+    values. `group` is the index of the group responsible, `links` are its links, `branches` the numbers of the branches
+    that meet there.
     """
 
     value: float
@@ -35,7 +35,7 @@ class Limit:
 
 @dataclass(frozen=True, eq=False)
 class ChangePoint:
-    """A place where two modes of a group meet. The motion goes on, from there in either of them."""
+    """A change point: two modes of a group meet, and the motion can continue in either."""
 
     value: float
     group: int
@@ -47,11 +47,11 @@ class ChangePoint:
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """A part of a circuit between turning points of the driver. It has one configuration for each driver value.
+    """A part of a circuit between turning points of the driver, with one configuration for each driver value.
 
     `low` and `high` bound the driver's value; of a branch that turns fully they are one or more full turns apart.
-    `ends` are the limit positions at both, None where the branch ends otherwise, which `open_ends` tell: at the end of
-    the range, of a guide, at infinity; or, for a full turn, not at all. `configuration` is that in the middle.
+    `ends` are the limit positions at both, None where the branch ends otherwise: `open_ends` are the end of the range
+    or of a guide, or infinity; a full turn has no end. `configuration` is that in the middle.
     """
 
     number: int
@@ -90,13 +90,13 @@ class Circuit:
 
     @property
     def turns_fully(self) -> bool:
-        """Whether the driver may turn on and on."""
+        """Whether the driver can turn without end."""
         return self.winding != 0
 
 
 @dataclass(frozen=True)
 class CircuitPlace:
-    """The place of a configuration. It has the numbers of its circuit and branch, and the driver's value."""
+    """The place of a configuration: the numbers of its circuit and branch, and the driver's value."""
 
     circuit: int
     branch: int
@@ -107,7 +107,7 @@ class CircuitPlace:
 
 @dataclass(frozen=True, eq=False)
 class Toggle:
-    """A toggle position. There a link on the frame stands still and turns back while the driver goes on."""
+    """A toggle position: a link on the frame stands still and turns back while the driver goes on."""
 
     value: float
     link: str
@@ -119,7 +119,7 @@ class Toggle:
 
 CELLS = 72
 HALVINGS = 48
-# A link whose rate is below this (of the size, or radians, a radian of the segment's angle) throughout stands still.
+# A link stands still if its rate (size or radians per radian of the segment's angle) is nowhere above this.
 STILL = 1e-9
 
 
@@ -133,19 +133,19 @@ def circuits_of_chains(placing: SegmentPoses, chains: tuple[SegmentChain, ...], 
     known = dict(zip(places, every, strict=True))
     found, first = [], 1
     for number, chain in enumerate(chains, start=1):
-        found.append(_Maker(placing, chain, period, known, number, first).circuit())
+        found.append(_CircuitBuilder(placing, chain, period, known, number, first).circuit())
         first += len(found[-1].branches)
     return tuple(found)
 
 
 def _places(segments: Segments) -> list[tuple[int, int]]:
-    """Return the middles of all segments, and those of their ends that are limit positions or change points."""
+    """Return the middles of all segments, and their ends at limit positions or change points."""
     ends = np.isin(segments.kind, (LIMIT, CHANGE)).tolist()
     return [(row, side) for row in range(segments.rows) for side in (NONE, 0, 1) if side == NONE or ends[row][side]]
 
 
-class _Maker:
-    """Makes one circuit."""
+class _CircuitBuilder:
+    """Builds one circuit."""
 
     def __init__(
         self,
@@ -172,7 +172,7 @@ class _Maker:
         return Circuit(self.number, branches, *around, self.chain.closed)
 
     def _span(self, visits: Iterable[Visit]) -> tuple[float, float]:
-        """Return the least and greatest driver value of some segments, periods counted."""
+        """Return the least and greatest driver value of some visits, with their periods."""
         segments = self.placing.segments
         ends = [(segments.low[v.row] + v.periods * self.period, segments.high[v.row] + v.periods * self.period)
                 for v in visits]  # fmt: skip
@@ -183,7 +183,7 @@ class _Maker:
         return float(segments.high[visit.row] - segments.low[visit.row])
 
     def _limits(self) -> dict[tuple[int, int], Limit]:
-        """Return the limit positions by the index of the branch before, and side; between each branch and the next."""
+        """Return the limit positions between branches, by the index of the branch before and the side."""
         found = {}
         segments, count = self.placing.segments, len(self.parts)
         for i, part in enumerate(self.parts):
@@ -244,7 +244,7 @@ class _Maker:
 
 
 def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[Toggle, ...]:
-    """Return all toggle positions, by circuit and branch. They are in the order in which the circuit passes them."""
+    """Return all toggle positions, in the order in which circuits and branches pass them."""
     found: dict[int, list[tuple[float, Toggle]]] = {}
     with np.errstate(all="ignore"):
         for link, pair in _on_frame(placing):
@@ -257,7 +257,7 @@ def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[To
 
 
 def _on_frame(placing: SegmentPoses) -> Iterator[tuple[str, Pair]]:
-    """Yield links that a pair of one freedom joins to the frame, no driver being in it."""
+    """Yield links that a pair of one freedom without a driver joins to the frame."""
     ground = placing.sweep.solving_order.structure.ground.links[0]
     driven = {d.pair.name for d in placing.sweep.solving_order.structure.driven.values()}
     for name, pair in placing.sweep.solving_order.pairs.items():

@@ -13,7 +13,6 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
-from compoundkin.configurations import closed_form_segments, general_segments
 from compoundkin.configurations.circuit import (
     Branch,
     Circuit,
@@ -23,10 +22,11 @@ from compoundkin.configurations.circuit import (
     circuits_of_chains,
     toggles_of,
 )
-from compoundkin.configurations.closed_form_segments import cut_at_ends
+from compoundkin.configurations.closed_form_segments import cut_at_ends, lifted_by_closed_form
 from compoundkin.configurations.driver_range import driver_range, starting_values
 from compoundkin.configurations.enumeration import AllModes, closed_redundant
-from compoundkin.configurations.routes import Route, located, place_of, route
+from compoundkin.configurations.general_segments import lifted_by_continuation
+from compoundkin.configurations.routes import Route, place_of, required_place, route
 from compoundkin.configurations.segment_poses import SegmentPoses, Sweep
 from compoundkin.configurations.segments import Segments, segment_chains
 from compoundkin.kinematics.configuration import Configuration
@@ -37,14 +37,14 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
 
-# The configurations are counted anew at so many driver values, spread by the golden ratio.
+# Driver values, spread by the golden ratio, at which the configurations are counted independently.
 FRESH = 48
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
-# More pieces of curves than these nobody can read, and with each group they are twice as many.
+# Nobody can read more segments, and each further group doubles them.
 MOST_SEGMENTS = 8192
 # Angles along a segment at which redundant pairs must be closed.
 INSIDE = (0.7, 1.3, 2.1)
-# Where the counts differ, everything is done again with slices so many times as dense.
+# Where the counts differ, the segments are traced again with slices so many times as dense.
 FINENESS = (1, 3, 9)
 
 
@@ -52,8 +52,9 @@ FINENESS = (1, 3, 9)
 class Circuits(DisplaysHtml):
     """All circuits of a mechanism, moved by one driver while the others stand still.
 
-    `fixed` are the values of the others. The real configurations were counted at `checked` fresh driver values, and
-    `consistent` says whether as many branches cross each of them; `start` is where `solve` and the drawing begin.
+    `fixed` are the values of the others. The real configurations were counted at `checked` further driver values;
+    `consistent` is whether as many branches cross each of them. `start` is the place where `solve` and the drawing
+    begin.
     """
 
     structure: Structure
@@ -78,18 +79,18 @@ class Circuits(DisplaysHtml):
 
     @cached_property
     def toggles(self) -> tuple[Toggle, ...]:
-        """The places where links on the frame turn back. They stand still there while the driver goes on."""
+        """The toggle positions, where links on the frame turn back while the driver goes on."""
         return toggles_of(self.placing, self.circuits)
 
     def at(self, configuration: Configuration) -> CircuitPlace:
-        """Return the circuit and branch that a configuration lies on.
+        """Return the circuit and branch of a configuration.
 
         Raises InvalidInput for a configuration that is of another mechanism or at other values of the other drivers.
         """
-        return located(self.placing, self.circuits, self.period, configuration)
+        return required_place(self.placing, self.circuits, self.period, configuration)
 
     def path(self, start: Configuration | int, end: Configuration | int, poses: int = 200) -> Route:
-        """Return the shorter way along a circuit between configurations. It may start in the middle of a branch.
+        """Return the shorter route along a circuit between configurations, which may start in the middle of a branch.
 
         Raises InvalidInput where they lie on different circuits.
         """
@@ -120,11 +121,11 @@ def circuits(
     between: Sequence[float] | None = None,
     design: int = 0,
 ) -> Circuits:
-    """Return all circuits of a mechanism as one driver takes all its values.
+    """Return all circuits of a mechanism over all values of one driver.
 
-    `values` are those of the other drivers (radians or lengths; as drawn, or the first of their own, if left out),
-    `between` the range of the driver where it shall not be a full turn, or all lengths within reach. Of dimensions that
-    are arrays one `design` is taken, at its first pose.
+    `values` are those of the other drivers (radians or lengths; by default as drawn, or the first of their own),
+    `between` is the range of the driver, by default a full turn, or all lengths within reach. Of dimensions that are
+    arrays one `design` is taken, at its first pose.
 
     Raises NotDetermined where the structure cannot be solved, InvalidInput for drivers and values that do not fit and
     where there are thousands of branches, NotAssembled where the mechanism cannot be assembled at all.
@@ -140,7 +141,7 @@ def circuits(
     solving_order = solving_order_of(mechanism)
     name = _driver(solving_order, driver)
     with np.errstate(all="ignore"):
-        known = starting_values(solving_order, values or {}, name)
+        known = starting_values(solving_order, values or {})
         given = _of_design(inputs(solving_order, known, None, None, None), design)
         fixed = {other: value for other, value in known.items() if other != name}
         sweep = Sweep(solving_order, given.ends, fixed, name)
@@ -156,7 +157,7 @@ def circuits(
 
 
 def _of_design(given: Inputs, design: int) -> Inputs:
-    """Return the numbers of one design at its first pose; raises InvalidInput for one that there is not."""
+    """Return the inputs of one design at its first pose. Raises InvalidInput for an unknown design."""
     if not 0 <= design < given.designs:
         what = f"there is no design {design}"
         raise InvalidInput(Problem("design", what, f"they are 0 to {given.designs - 1}"))
@@ -177,7 +178,7 @@ def _driver(solving_order: SolvingOrder, driver: str | None) -> str:
 
 
 def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tuple[Segments, float, int, bool]:
-    """Return all segments, the driver's period, how many arcs were lost, whether the counts agree."""
+    """Return all segments, the driver's period, the number of lost arcs, and whether the counts agree."""
     start, period = driver_range(sweep, between, value)
     turns = max(1, round(period / TURN))
     for fineness in FINENESS:
@@ -189,16 +190,16 @@ def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tupl
 
 
 def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, int]:
-    """Return all groups, one after another."""
+    """Return the segments lifted over all groups, one after another, and the number of lost arcs."""
     lost = 0
     for k, solver in enumerate(sweep.solving_order.solvers):
         if not segments.rows:
             break
         if solver.is_numbered:
-            segments, missing = general_segments.lifted_by_continuation(sweep, segments, k, fineness)
+            segments, missing = lifted_by_continuation(sweep, segments, k, fineness)
             lost += missing
         elif solver.has_limits:
-            segments = closed_form_segments.lifted_by_closed_form(sweep, segments, k, fineness)
+            segments = lifted_by_closed_form(sweep, segments, k, fineness)
         if segments.rows > MOST_SEGMENTS:
             what = f"the circuits are in more than {MOST_SEGMENTS:,} pieces: the groups multiply them"
             raise InvalidInput(Problem("circuits", what, "ask for a part of the mechanism"))
@@ -206,17 +207,17 @@ def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, 
 
 
 def _with_redundant(sweep: Sweep, segments: Segments) -> Segments:
-    """Return the segments on which redundant pairs are closed too."""
+    """Return the segments on which redundant pairs are closed."""
     if not sweep.solving_order.structure.redundant or not segments.rows:
         return segments
     rows = np.arange(segments.rows)
     block = sweep.run(segments, rows, segments.at(rows, np.array(INSIDE)))
     closed = np.broadcast_to(closed_redundant(sweep.solving_order, block), (len(rows), len(INSIDE)))
-    return segments.kept(closed.all(axis=1))
+    return segments.selected(closed.all(axis=1))
 
 
 def _counts_agree(sweep: Sweep, segments: Segments, low: float, high: float) -> bool:
-    """Tell whether at fresh driver values as many segments cross as there are real configurations."""
+    """Return whether the number of segments agrees with that of real configurations at further driver values."""
     values = low + (high - low) * np.mod(GOLDEN * np.arange(1, FRESH + 1), 1.0)
     drives: dict[str, tuple[Number, ...]] = {name: (value,) for name, value in sweep.fixed.items()}
     given = Inputs((FRESH,), sweep.ends, {**drives, sweep.driver: (values[None],)})

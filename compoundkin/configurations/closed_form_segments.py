@@ -18,26 +18,25 @@ from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import BLOCK, Block
 
-# Each segment is sampled in so many cells; the curve of a margin between two samples is that of half a turn of the
-# driver or less, divided by it.
+# Cells in which each segment, half a turn of the driver or less, is sampled.
 CELLS = 72
 # A margin whose neighbours exceed it by less than this part of itself does not come near zero between them.
 SHALLOW = 0.25
 HALVINGS = 52
-# How far aside of a double zero the margin is looked at: it then has digits enough, and the last time no curvature.
+# Distances from a double zero at which the margin is evaluated: with enough digits, and at last without curvature.
 BESIDE = (1e-3, 1e-5, 1e-5)
 STEPS = 60
 
 
 class Event(NamedTuple):
-    """A zero of the margin at an angle along a segment. It is `touching` where the sign does not change."""
+    """A zero of the margin at an angle along a segment, `touching` if the sign does not change."""
 
     phi: float
     touching: bool
 
 
 class Cut(NamedTuple):
-    """A segment of the lifted curve. Its parent row, its angles there, its ends (None: the parent's), its sign."""
+    """A segment of the lifted curve: parent row, angles there, ends (None: the parent's), sign."""
 
     parent: int
     first: float
@@ -48,10 +47,7 @@ class Cut(NamedTuple):
 
 
 def lifted_by_closed_form(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> Segments:
-    """Return the segments of the first `k` groups and group `k`.
-
-    The group is of one mode or two; cells are divided by `fineness`.
-    """
+    """Return the segments lifted over group `k`, which has one mode or two; `fineness` divides the cells."""
     margins = Margins(sweep, segments, k, CELLS * fineness)
     events = events_of(margins)
     modes = (1, -1) if sweep.solving_order.solvers[k].modes == 2 else (1,)
@@ -60,9 +56,9 @@ def lifted_by_closed_form(sweep: Sweep, segments: Segments, k: int, fineness: in
 
 
 class Margins:
-    """What is negative where segments do not go on, along them.
+    """The margin of group `k` along segments, negative where they do not go on.
 
-    It is the margin of group `k`; or of something else, which a subclass knows, after all groups.
+    Without a group a subclass defines the margin, after all groups.
     """
 
     def __init__(self, sweep: Sweep, segments: Segments, k: int | None, cells: int) -> None:
@@ -80,7 +76,7 @@ class Margins:
         self.samples = np.concatenate(sampled) if sampled else np.zeros((0, cells + 1))
 
     def __call__(self, rows: Number, phi: Number) -> Number:
-        """At one angle of each of the given rows."""
+        """Return the margins at one angle of each of some rows."""
         return self._at(rows, self.segments.at(rows, phi[:, None]), None)[:, 0]
 
     def _at(self, rows: Number, s: Number, sides: Number | None) -> Number:
@@ -94,12 +90,12 @@ class Margins:
         solver = self.sweep.solving_order.solvers[self.k]
         margin = solver.margin(block)
         if margin is None:
-            # a group that tells no margin: whether it has a pose
+            # without a margin: whether the group has a pose
             margin = np.where(np.isfinite(block.world[solver.group.links[0]].z.c[0]), 1.0, -1.0)
         return margin
 
     def at_ends(self) -> Number:
-        """Return where the margin is zero at an end already, (rows, 2)."""
+        """Return whether the margin is zero at the ends, (rows, 2)."""
         return np.abs(self.samples[:, [0, -1]]) < TOUCHING
 
 
@@ -134,7 +130,7 @@ def events_of(margins: Margins) -> list[list[Event]]:
 
 
 def _dips(m: Number, good: Number) -> tuple[Number, Number]:
-    """Samples at which the margin may come to zero and back between the neighbours: rows, columns."""
+    """Return the samples (rows, columns) near which the margin may come to zero and back."""
     size, same = np.abs(m[:, 1:-1]), (good[:, 1:-1] == good[:, :-2]) & (good[:, 1:-1] == good[:, 2:])
     before, after = np.abs(m[:, :-2]) - size, np.abs(m[:, 2:]) - size
     deep = size * SHALLOW < np.maximum(before, after)
@@ -143,7 +139,7 @@ def _dips(m: Number, good: Number) -> tuple[Number, Number]:
 
 
 def _centred(margins: Margins, rows: Number, place: Number) -> Number:
-    """Double zeros to more digits than their flat minimum shows: where the root of the margin, a line, is zero."""
+    """Return double zeros to more digits than their flat minimum has: zeros of the margin's root, a line."""
     for aside in BESIDE:
         before, after = (np.sqrt(np.abs(margins(rows, place + d))) if len(rows) else place for d in (-aside, aside))
         place = place + aside * (before - after) / (before + after)
@@ -151,7 +147,7 @@ def _centred(margins: Margins, rows: Number, place: Number) -> Number:
 
 
 def _zeros(margins: Margins, rows: Number, low: Number, high: Number) -> Number:
-    """Return the zero of the margin in every bracket, from the side where the group is assembled."""
+    """Return the zero of the margin in every bracket, on the assembled side."""
     if not len(rows):
         return np.zeros(0)
     rising = margins(rows, high) >= 0
@@ -160,7 +156,7 @@ def _zeros(margins: Margins, rows: Number, low: Number, high: Number) -> Number:
 
 
 def cuts_between(margins: Margins, events: list[list[Event]], modes: tuple[int, ...]) -> Iterator[Cut]:
-    """Return the parts of segments between zeros, those that go on, in each mode."""
+    """Yield the parts of segments between zeros with a positive margin, in each mode."""
     parts = []
     for row, found in enumerate(events):
         marks = [None, *found, None]
@@ -188,7 +184,7 @@ def glued(segments: Segments, k: int | None, cuts: list[Cut], at_limit: Number) 
 
 
 class _Ends:
-    """Which of the cuts has an end at an event of a parent, or at the parent's own end."""
+    """The cuts by their ends: at an event of a parent, or at the parent's own end."""
 
     def __init__(self, segments: Segments, k: int | None, cuts: list[Cut], at_limit: Number) -> None:
         self.segments, self.k, self.at_limit = segments, k, at_limit
@@ -199,7 +195,7 @@ class _Ends:
             self.known[cut.parent, cut.ends, 1, cut.sign] = new
 
     def glue(self, cut: Cut, own: int) -> tuple[int, int, int, int]:
-        """Return the kind of an end, the group responsible, the row and the side it is glued to."""
+        """Return the kind of an end, the group responsible, the partner row and side."""
         event = cut.ends if own else cut.starts
         if event is None:
             return self._as_parent(cut, own)
@@ -215,19 +211,19 @@ class _Ends:
         parts = (self.segments.kind, self.segments.group, self.segments.partner, self.segments.side)
         kind, group, partner, side = (int(part[cut.parent, own]) for part in parts)
         if partner != NONE:
-            # a margin that is zero at the end itself is that of a change point there
+            # a margin of zero at the end itself means a change point there
             sign = -cut.sign if self.at_limit[cut.parent, own] and not self.single else cut.sign
             partner = self.known.get((partner, None, side, sign), NONE)
         return kind, group, partner, side
 
 
 def cut_at_ends(sweep: Sweep, segments: Segments, fineness: int = 1) -> Segments:
-    """Return the parts of segments on which no guide is left. All groups are lifted."""
+    """Return the parts of segments, all groups lifted, on which no block passes the end of its guide."""
     guide_ends = sweep.solving_order.guide_ends
     if not guide_ends.pairs or not segments.rows:
         return segments
     margins = _EndMargins(sweep, segments, None, CELLS * fineness)
-    # what only touches an end goes on
+    # a block that only touches an end goes on
     events = [[event for event in found if not event.touching] for found in events_of(margins)]
     found = glued(segments, None, list(cuts_between(margins, events, (1,))), margins.at_ends())
     rows, sides = np.nonzero(found.kind == END)
@@ -238,7 +234,7 @@ def cut_at_ends(sweep: Sweep, segments: Segments, fineness: int = 1) -> Segments
 
 
 class _EndMargins(Margins):
-    """How far all pairs are from the ends of their guides."""
+    """The margins of all pairs to the ends of their guides."""
 
     def of(self, block: Block) -> Number:
         return self.sweep.solving_order.guide_ends.margin(block)

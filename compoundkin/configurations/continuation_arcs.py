@@ -25,27 +25,27 @@ from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contract import Poses
 
-# Newton has converged when its correction is below this; it is quadratic, so that the next would be rounding.
+# Newton has converged when its correction is below this: the next would be rounding.
 CONVERGED = 1e-9
 CORRECTIONS = 5
-# The longest step (parts of the size and radians together), and the shortest one that is tried.
+# The longest and the shortest step (parts of the size and radians together).
 LONGEST = 0.2
 SHORTEST = 1e-9
-# A step is good where the tangent turns by less than this (its cosine) and the corrector moves less than this part.
+# A step is accepted if the tangent turns less than this (its cosine) and the corrector moves less than this part of it.
 TURNED = 0.97
 STRAYED = 0.3
 MOST_STEPS = 4000
-# A turning point is found when the tangent's last component is below this; the angle is flat there, and known to the
-# square. False position takes some eight steps.
+# A turning point is exact when the tangent's last component is below this: the angle is flat there, with the square as
+# its error. False position takes some eight steps.
 FLAT = 1e-13
 MOST_TRIALS = 40
 
 
 @dataclass
 class ContinuationArc:
-    """A path from a slice: its states from start to end. `turns` are the indices of turning points among them.
+    """The states of a path from a slice; `turns` are the indices of turning points among them.
 
-    `end` is the slice at which it arrives, None where it was lost. `changes` counts the change points passed.
+    `end` is the slice of arrival, None for a lost path; `changes` counts the change points passed.
     """
 
     nodes: list[Number]
@@ -55,7 +55,7 @@ class ContinuationArc:
 
 
 class ContinuationPaths:
-    """Paths in strips. `slices` are the angles, `at` the slice where each begins and `ahead` +1 or -1."""
+    """Paths in strips between `slices` (angles), each from slice `at` in the direction `ahead`, +1 or -1."""
 
     def __init__(self, closure: SegmentClosure, rows: Number, y: Number, at: Number, ahead: Number, slices: Number):
         self.closure, self.rows, self.slices = closure, rows, slices
@@ -77,7 +77,7 @@ class ContinuationPaths:
         return self.arcs
 
     def _step(self, i: Number, longest: Number) -> StepResult:
-        """Try one step of the paths `i`: to the next slice, or as long as may be."""
+        """Try one step of the paths `i`, to the next slice or of the given length."""
         y, t = self.y[i], self.tangent[i]
         goal = self.low[i] + (t[:, -1] > 0)
         with np.errstate(divide="ignore"):
@@ -95,14 +95,14 @@ class ContinuationPaths:
         good &= ~arriving | (along[:, -1] * t[:, -1] > 0)
         inside = (new[:, -1] > self.slices[self.low[i]]) & (new[:, -1] < self.slices[self.low[i] + 1])
         good &= inside | arriving
-        self._note_turnings(i, good, h, new, along)
-        self._take(i, good, new, along, side, np.where(arriving, goal, -1))
+        self._record_turnings(i, good, h, new, along)
+        self._accept(i, good, new, along, side, np.where(arriving, goal, -1))
         return StepResult(h, good, good & arriving)
 
     def _corrected(self, rows: Number, guess: Number, across: Number) -> NewtonResult:
         return correct_in_hyperplane(lambda y: self.closure.at(rows, y), guess, across, CONVERGED, CORRECTIONS)
 
-    def _note_turnings(self, i: Number, good: Number, h: Number, new: Number, along: Number) -> None:
+    def _record_turnings(self, i: Number, good: Number, h: Number, new: Number, along: Number) -> None:
         turned = good & (along[:, -1] * self.tangent[i, -1] < 0)
         for a in np.flatnonzero(turned).tolist():
             arc, j = self.arcs[i[a]], int(i[a])
@@ -112,8 +112,8 @@ class ContinuationPaths:
             arc.turns.append(len(arc.nodes))
             arc.nodes.append(new[a])
 
-    def _take(self, i: Number, good: Number, new: Number, along: Number, side: Number, arrived: Number) -> None:
-        """Add the good steps to their arcs; `arrived` are the slices reached, -1 between two."""
+    def _accept(self, i: Number, good: Number, new: Number, along: Number, side: Number, arrived: Number) -> None:
+        """Add the accepted steps to their arcs; `arrived` are the slices reached, -1 between two."""
         for a in np.flatnonzero(good).tolist():
             arc = self.arcs[i[a]]
             arc.nodes.append(new[a])
@@ -124,7 +124,7 @@ class ContinuationPaths:
         self.y[done], self.tangent[done], self.side[done] = new[good], along[good], side[good]
 
     def _find_turnings(self) -> None:
-        """Put the turning points in their places, all found at once."""
+        """Replace the turning points by exact ones, all at once."""
         if not self.turnings:
             return
         rows = self.rows[[one.path for one in self.turnings]]
@@ -141,7 +141,7 @@ class ContinuationPaths:
 
 
 class _TurningPoint(NamedTuple):
-    """A turning point in a step `h` along the tangent from `y`; `after` is the tangent's last component behind it."""
+    """A turning point in a step `h` along the tangent from `y`; `after` is the tangent's last component at its end."""
 
     path: int
     place: int
@@ -151,13 +151,13 @@ class _TurningPoint(NamedTuple):
     after: float
 
 
-# Nearer to an end than this, rates are taken here: at a limit position itself they are infinite.
+# Rates are taken at least this far from an end: at a limit position itself they are infinite.
 BESIDE = 1e-5
 
 
 @dataclass(frozen=True)
 class SegmentClosure:
-    """The equations of group `k` on segments of the groups before it. The group has no closed form."""
+    """The closure equations of group `k`, without a closed form, on segments of the groups before it."""
 
     sweep: Sweep
     segments: Segments
@@ -175,15 +175,12 @@ class SegmentClosure:
 
     @property
     def weights(self) -> Number:
-        """What makes x, y, theta of each body a part of a state."""
+        """The factors from x, y, theta of each body to a state."""
         size = self.sweep.solving_order.size
         return np.tile([1.0 / size, 1.0 / size, 1.0], self.own.n)
 
     def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
-        """Return the residuals and their Jacobian at states of segments.
-
-        These are (paths, 3 n) and (paths, 3 n, 3 n + 1), the states `y`, the segments `rows`.
-        """
+        """Return the residuals (paths, 3 n) and Jacobian (paths, 3 n, 3 n + 1) at states `y` of segments `rows`."""
         phi = np.clip(y[:, -1], BESIDE, np.pi - BESIDE)[:, None]
         block = self.block(rows, phi, self.segments.rate(rows, phi))
         found, by_angle, matrix = self._assembled(y, block)
@@ -198,17 +195,17 @@ class SegmentClosure:
         return found, np.concatenate([matrix * (1.0 / self.weights), by_angle[..., None]], axis=-1)
 
     def block(self, rows: Number, phi: Number, rate: Number | None, sides: Number | None = None) -> Block:
-        """Return what the group is attached to, at angles (rows, columns)."""
+        """Return the block up to the group at angles (rows, columns)."""
         return self.sweep.run(self.segments, rows, self.segments.at(rows, phi), rate, sides, self.k)
 
     def blocks(self, phi: Number) -> Block:
-        """Return what it is attached to on all segments. The angles go from one end to the other."""
+        """Return the block up to the group on all segments, at angles from one end to the other."""
         sides = np.full(len(phi), NONE)
         sides[0], sides[-1] = 0, 1
         return self.block(np.arange(self.segments.rows), phi[None], None, sides)
 
     def _assembled(self, y: Number, block: Block) -> tuple[Number, Number, Number]:
-        """Return residuals, their derivatives by the angle, and by x, y, theta of the bodies."""
+        """Return residuals and their derivatives by the angle and by x, y, theta of the bodies."""
         own = self.own
         bodies = self.bodies(y)
         count, n = len(y), 3 * own.n
@@ -253,7 +250,7 @@ def _column(value: Number) -> Number:
 
 
 def _about(part: Number, poses: Poses, side: int, body: Pose) -> Number:
-    """Derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in."""
+    """Return derivatives by a link's x, y, theta as derivatives by those of its body."""
     if poses[side] is body:
         return part
     arm = np.broadcast_to(poses[side].z.c[0] - body.z.c[0], (len(part), 1))

@@ -1,6 +1,6 @@
-"""Where the drivers are and the mechanism with them: at first, and over which values one driver is followed.
+"""The initial values of the drivers, and the range over which one driver is followed.
 
-That is a full turn, several where gears ask for them, or lengths within reach.
+The range is a full turn, several turns of gears until they repeat, or all lengths within reach.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.elements import Drive
 
-# A turn begins here: special positions lie at round angles, and none of them shall fall on the seam.
+# A turn begins here: special positions lie at round angles, and none may fall on the seam.
 BEGIN = -2.5066282746310002
-# Gears are tried for so many turns of the driver before they count as ones that never come back: what racks carry
-# away, and trains of many teeth. Then the driver is followed one turn each way.
+# Gears that do not repeat within so many turns of the driver, as with racks and trains of many teeth, count as never
+# repeating: the driver is then followed one turn each way.
 MOST_TURNS = 60
-# Orientations this near are one: rounding of angles of many turns.
+# Orientations nearer than this are equal: rounding of angles of many turns.
 SAME = 1e-9
-# Lengths are followed beyond the reach, for a limit position may lie at the reach itself.
+# Lengths are followed beyond the reach by this factor: a limit position may lie at the reach itself.
 BEYOND = 1.25
 
 
 def driver_range(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Segments, float]:
     """Return the segment of the driver alone, and its value's period.
 
-    The period is 0 where it has none; `start` is one of its values.
+    The period is 0 for a driver without one; `start` is one of its values.
 
-    Raises InvalidInput for a range that is none, and for gears whose turns cannot be told.
+    Raises InvalidInput for an invalid range, and for gears whose full turns are not determined.
     """
     if between is not None:
         low, high = _checked(between)
@@ -65,7 +65,7 @@ def _checked(between: Sequence[float]) -> tuple[float, float]:
 
 
 def greatest_reach(solving_order: SolvingOrder) -> float:
-    """Return a length that no displacement of pinned links exceeds. It is the sum of the links' extents."""
+    """Return a length that no displacement of pinned links exceeds: the sum of the links' extents."""
     points = solving_order.structure.mechanism.geometry.points.values()
     return float(sum(_extent(list(placed.values())) for placed in points)) or solving_order.size
 
@@ -79,24 +79,24 @@ def _extent(points: list[Number]) -> float:
 
 
 def _turns(sweep: Sweep) -> int | None:
-    """After how many turns of the driver gears and racks are where they were; None where they do not come back.
+    """Return the number of turns of the driver after which gears and racks repeat, None if they do not.
 
-    Raises InvalidInput where gears ride on links that groups solve, and it matters how often those have turned.
+    Raises InvalidInput where the full turns of links that groups solve matter to gears on them.
     """
     if not any(solver.counted_from for solver in sweep.solving_order.solvers):
         return 1
-    places = _geared(sweep, BEGIN + TURN * np.arange(MOST_TURNS + 1), 0.0)
+    places = _gear_poses(sweep, BEGIN + TURN * np.arange(MOST_TURNS + 1), 0.0)
     again = np.flatnonzero(_apart(sweep, places, places[:, :1])[1:] < SAME)
-    if np.max(_apart(sweep, places[:, :1], _geared(sweep, np.array([BEGIN]), TURN))) > SAME:
+    if np.max(_apart(sweep, places[:, :1], _gear_poses(sweep, np.array([BEGIN]), TURN))) > SAME:
         what = "its gears ride on links whose full turns circuits do not count"
         raise InvalidInput(Problem("circuits", what, "follow it with solve(), which counts them"))
     return int(again[0]) + 1 if len(again) else None
 
 
-def _geared(sweep: Sweep, s: Number, more: float) -> Number:
-    """Origins and orientations of all bodies that gears and racks place, (2 bodies, values).
+def _gear_poses(sweep: Sweep, s: Number, more: float) -> Number:
+    """Return origins and orientations of all bodies that gears and racks place, (2 bodies, values).
 
-    Links that groups solve have turned by `more` than their orientations show.
+    Links that groups solve have turned by `more` than their orientations.
     """
     solving_order = sweep.solving_order
     upto = min(solving_order.numbered, default=len(solving_order.solvers))
@@ -108,7 +108,7 @@ def _geared(sweep: Sweep, s: Number, more: float) -> Number:
 
 @dataclass(frozen=True)
 class _Turned:
-    """The choice of the first mode of every group, all links being turned by more than drawn."""
+    """The choice of the first mode of every group, with all links turned by more than drawn."""
 
     solving_order: SolvingOrder
     more: float
@@ -118,7 +118,7 @@ class _Turned:
         return 1.0
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
-        """Return the drawn angle of a link and more."""
+        """Return the drawn angle of a link plus `more`."""
         return drawn_angle(self.solving_order, link) + self.more
 
 
@@ -128,10 +128,10 @@ def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
     return np.max(np.nan_to_num(np.abs(one - other) / size), axis=0, initial=0.0)
 
 
-def starting_values(solving_order: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
-    """Return one value of each driver. It is that given, else where it is drawn, else the first of its own.
+def starting_values(solving_order: SolvingOrder, values: Mapping[str, Any]) -> dict[str, float]:
+    """Return one value of each driver: from `values`, else as drawn, else the first of its own.
 
-    Raises InvalidInput for names that are no driver's, and values that are no single number.
+    Raises InvalidInput for unknown drivers and values other than one number.
     """
     unknown = [name for name in values if name not in solving_order.structure.driven]
     if unknown:
@@ -158,7 +158,7 @@ def _number(name: str, value: Any) -> float:
 
 
 def _drawn(solving_order: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
-    """Return where the drivers are drawn; nothing where nothing is drawn."""
+    """Return the drawn values of the drivers, empty without a drawing."""
     mechanism = solving_order.structure.mechanism
     if not mechanism.sketch:
         return {}

@@ -5,7 +5,6 @@ For special dimensions the mechanism still moves while all drivers stand still: 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import prod
@@ -36,18 +35,18 @@ from compoundkin.structure.redundancy.constraint_equations import ConstraintEqua
 from compoundkin.structure.redundancy.diagnosis import WIDEST
 from compoundkin.structure.redundancy.finite_motion import resting_motion
 
-# A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.
+# A redundant pair counts as closed below this gap, in parts of the size: dimensions have few digits.
 CLOSED = 1e-6
-# More configurations than this of one mechanism are distinguished by nobody; those of more bodies no search finds.
+# Nobody distinguishes more configurations of one mechanism; no search finds those of groups with more bodies.
 MOST, MOST_BODIES = 4096, 24
-# Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
+# Samples of each driver for the nearest value at which the mechanism can be assembled, and halvings that refine it.
 TRIED = 721
 HALVINGS = 40
 
 
 @dataclass
 class AllModes:
-    """The choice of all modes at once. The block has a leading axis for each group with several.
+    """The choice of all modes at once: the block has a leading axis for each group with several.
 
     `modes[k]` are the names of the modes of group k, `possible[k]` their number over the complex numbers (0 unknown).
     """
@@ -58,7 +57,7 @@ class AllModes:
     modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
     possible: dict[int, int] = field(default_factory=dict)
     certified: dict[int, Number] = field(default_factory=dict)
-    is_lacking: bool = False  # of a group: dimensions are special, and there may be a curve
+    is_lacking: bool = False  # a group has fewer configurations than its count: there may be a curve
 
     @classmethod
     def of(cls, solving_order: SolvingOrder, given: Inputs) -> AllModes:
@@ -70,7 +69,7 @@ class AllModes:
         return found
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
-        """Return all modes of a group. They are along an axis of their own where there are several."""
+        """Return all modes of a group, along an axis of their own where there are several."""
         if solver.modes == 1:
             return 1.0
         if solver.is_numbered:
@@ -110,10 +109,7 @@ class AllModes:
             raise InvalidInput(Problem("configurations", what, "ask for a part of the mechanism"))
 
     def full(self, array: Number) -> Number:
-        """Return an array of any of the leading axes as (configurations, designs, poses).
-
-        The first group varies slowest.
-        """
+        """Return an array of any leading axes as (configurations, designs, poses), the first group varying slowest."""
         axes = [len(modes) for modes in self.modes.values()]
         whole = np.broadcast_to(array, self.block.shape)
         count = len(axes)
@@ -125,8 +121,8 @@ class AllModes:
         closed = closed_redundant(self.solving_order, self.block)
         return self.full((np.asarray(self.block.failed) == 0) & closed)
 
-    def kept(self, real: Number, shape: tuple[int, ...]) -> Configurations:
-        """Return the configurations that are `real` somewhere. They come with the driver values in a shape."""
+    def configurations(self, real: Number, shape: tuple[int, ...]) -> Configurations:
+        """Return the configurations that are `real` at some pose, in the shape of the driver values."""
         which = np.flatnonzero(real.any(axis=(1, 2)))
         every = [dict(zip(self.modes, names, strict=True)) for names in product(*self.modes.values())]
 
@@ -140,11 +136,11 @@ class AllModes:
             found = self.block.world[link]
             return Pose.of(shaped(found.z.c[0]), shaped(found.u.c[0]))
 
-        kept = last(real)
+        real = last(real)
         return Configurations(
             Named("link", tuple(self.block.world), pose),
-            kept,
-            kept.sum(axis=-1),
+            real,
+            real.sum(axis=-1),
             prod(self.possible.values()),
             all(bool(np.all(found)) for found in self.certified.values()),
             self.solving_order.structure,
@@ -155,19 +151,17 @@ class AllModes:
 
 
 def closed_redundant(solving_order: SolvingOrder, block: Block) -> Number:
-    """Tell where the pairs left out as redundant are closed. Not all configurations of the others close them."""
+    """Return whether the redundant pairs are closed, which not all configurations of the others close."""
     pairs = solving_order.structure.redundant
     return residual(pairs, block, solving_order.size) <= CLOSED**2 if pairs else True
 
 
 @checked
 def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Configurations:
-    """Find all configurations of a mechanism at driver values.
-
-    These are radians or lengths; arrays; those of `solve` if left out.
+    """Find all configurations of a mechanism at driver values, radians or lengths, those of `solve` by default.
 
     Groups of pins and slides give all their configurations; others those that a search finds, so that `certified` is
-    False. `curve` tells which links move though drivers stand still, where dimensions are special. Raises NotDetermined
+    False. `curve` has the links that move at special dimensions while the drivers stand still. Raises NotDetermined
     where the structure cannot be solved, InvalidInput for values that do not fit, NotAssembled where there is no
     configuration at all, naming the nearest driver value that has any.
 
@@ -187,11 +181,11 @@ def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Conf
         curve = resting_curve(solving_order.structure, given) if found.is_lacking else None
         if not real.any() and curve is None:
             raise NotAssembled(_nothing(solving_order, given))
-        return replace(found.kept(real, given.shape), curve=curve)
+        return replace(found.configurations(real, given.shape), curve=curve)
 
 
 def _nothing(solving_order: SolvingOrder, given: Inputs) -> Problem:
-    """Say why there is no configuration: where the nearest one is."""
+    """Return the problem of no configuration, with the nearest driver value that has one."""
     nearest = [(*_nearest(solving_order, given, name), name) for name in given.drives]
     found = [one for one in nearest if one[0] < np.inf]
     what = "the mechanism cannot be assembled there"
@@ -199,12 +193,12 @@ def _nothing(solving_order: SolvingOrder, given: Inputs) -> Problem:
         return Problem("values", f"{what}, nor at any other value of a single driver")
     _, value, name = min(found)
     is_angle = solving_order.structure.driven_angles[name]
-    shown = f"{degrees(value):.6g} degrees" if is_angle else f"{value:.6g}"
-    return Problem("values", what, f"the nearest value is {name} = {shown}")
+    number = f"{degrees(value):.6g} degrees" if is_angle else f"{value:.6g}"
+    return Problem("values", what, f"the nearest value is {name} = {number}")
 
 
 def _nearest(solving_order: SolvingOrder, given: Inputs, name: str) -> tuple[float, float]:
-    """The value of a driver nearest to its own with any configuration, and how far it is (of the size, or radians)."""
+    """Return the distance (parts of the size, or radians) and value of a driver nearest to its own that has one."""
     first = given.cut(slice(0, 1), slice(0, 1))
     here = float(first_entry(first.drives[name][0]))
     is_angle = solving_order.structure.driven_angles[name]
@@ -228,12 +222,12 @@ def _any(solving_order: SolvingOrder, given: Inputs, name: str, values: Number) 
     return AllModes.of(solving_order, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))
 
 
-# A link moves if its part of the motion is above this.
+# A link moves if its share of the motion is above this.
 MOVES = 1e-6
 
 
 def resting_curve(structure: Structure, given: Inputs) -> ConfigurationCurve | None:
-    """Find a curve of configurations at the first driver values. None where the search meets none."""
+    """Return a curve of configurations at the first driver values, or None."""
     equations = ConstraintEquations(structure.mechanism)
     if equations.width > WIDEST:
         return None
@@ -243,10 +237,5 @@ def resting_curve(structure: Structure, given: Inputs) -> ConfigurationCurve | N
         return None
     share = np.linalg.norm(found.along, axis=1)
     links = tuple(name for name, k in equations.column.items() if np.max(share[k : k + 3]) > MOVES)
-    return ConfigurationCurve(links, _at(structure, values, equations, found.state))
-
-
-def _at(
-    structure: Structure, values: Mapping[str, float], equations: ConstraintEquations, state: np.ndarray
-) -> Configuration:
-    return Configuration(structure, values, equations.poses(state), {}, {}, dimensions_at(structure, 0, 0))
+    dimensions = dimensions_at(structure, 0, 0)
+    return ConfigurationCurve(links, Configuration(structure, values, equations.poses(found.state), {}, {}, dimensions))

@@ -22,7 +22,7 @@ from compoundkin.kinematics.configuration_arrays import state_distance
 
 @dataclass(frozen=True)
 class CurvePiece:
-    """A part of the lifted curve, by increasing angle. It lies between turning points or ends of the parent segment.
+    """A part of the lifted curve by increasing angle, between turning points or ends of the parent segment.
 
     `y` are states with the angle last; `before` and `after` the numbers of the pieces that are glued to its ends at
     turning points, NONE at ends of the parent.
@@ -35,10 +35,7 @@ class CurvePiece:
 
 
 def lifted_by_continuation(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> tuple[Segments, int]:
-    """Return the segments up to group `k`; how many arcs were lost.
-
-    They are those of the first `k` groups and group `k`, slices `fineness` times as dense.
-    """
+    """Return the segments lifted over group `k`, with slices `fineness` times as dense, and the number of lost arcs."""
     roadmap = Roadmap(SegmentClosure(sweep, segments, k), STRIPS * fineness)
     pieces: list[CurvePiece] = []
     seen: set[tuple[int, int, int]] = set()
@@ -51,7 +48,7 @@ def lifted_by_continuation(sweep: Sweep, segments: Segments, k: int, fineness: i
 
 
 def _walked(roadmap: Roadmap, start: Port, seen: set[tuple[int, int, int]]) -> tuple[int, Number, list[int], bool]:
-    """Return the curve from a port: its row, states, the indices of turning points, and whether it is closed."""
+    """Return the curve from a port: row, states, indices of turning points, and whether it is closed."""
     states, turns = [roadmap.state(start)], list[int]()
     seen.add(start[:3])
     port = start
@@ -70,7 +67,7 @@ def _walked(roadmap: Roadmap, start: Port, seen: set[tuple[int, int, int]]) -> t
 
 
 def _whole_turns(reached: Number, known: Number) -> Number:
-    """Return what takes the angles of a known state to those with which it was reached."""
+    """Return the full turns between the angles of a known state and the same state as reached."""
     gap = reached - known
     out = np.zeros_like(gap)
     out[2:-1:3] = whole_turns(gap[2:-1:3])
@@ -78,9 +75,9 @@ def _whole_turns(reached: Number, known: Number) -> Number:
 
 
 def _add(pieces: list[CurvePiece], row: int, y: Number, turns: list[int], closed: bool) -> None:
-    """Return the pieces of a curve; those of a closed one from its first turning point on."""
+    """Add the pieces of a curve, of a closed one from its first turning point on."""
     if len(y) < 2:
-        return  # both arcs of a configuration were lost: there is no curve
+        return  # both arcs of the configuration were lost
     first = len(pieces)
     if closed and turns:
         around = _whole_turns(y[-1], y[0])
@@ -122,13 +119,13 @@ def _glued(closure: SegmentClosure, pieces: list[CurvePiece]) -> Segments:
 
 
 def _is_inside(piece: CurvePiece, side: int) -> bool:
-    """Tell whether it ends where its parent does not: an arc was lost there."""
+    """Return whether a piece ends inside its parent: an arc was lost there."""
     phi = piece.y[-side, -1]
     return bool(phi != (np.pi if side else 0.0))
 
 
 def _nearest(pieces: list[CurvePiece], piece: CurvePiece, own: int, row: int, side: int) -> int:
-    """Return the piece of the partner's segment that begins or ends with the same state."""
+    """Return the piece of the partner's segment that begins or ends nearest to the same state."""
     found, least = NONE, np.inf
     for i, other in enumerate(pieces):
         if other.row == row and not _is_inside(other, side) and (other.before, other.after)[side] == NONE:
@@ -148,18 +145,18 @@ def _curve(closure: SegmentClosure, piece: CurvePiece, low: float, high: float) 
     return SegmentCurve(low, high, nodes[kept], piece.y[kept, :-1] / closure.weights)
 
 
-# Every segment is cut by so many slices.
+# Slices of every segment.
 STRIPS = 48
 # An arc arrives at a configuration within this (parts of the size, radians).
 MATCHED = 1e-5
-# Where two arcs arrive at one port, both are followed again with steps this much shorter.
+# Arcs that arrive at one port are followed again with steps shorter by this factor.
 FINER = 0.1
-# Arcs arrive at configurations that the slices lacked, whose ports are new; where they are not isolated, without end.
+# Rounds of new ports at configurations that the slices lacked; unlimited where these are not isolated.
 ROUNDS = 6
 
 
 class Port(NamedTuple):
-    """A way out of a configuration. The row of the segment, the slice, the number there, +1 ahead or -1 back."""
+    """A port of a configuration: row of the segment, slice, number there, +1 ahead or -1 back."""
 
     row: int
     slice: int
@@ -173,7 +170,7 @@ class Port(NamedTuple):
 
 
 class Roadmap:
-    """The configurations at all slices and the arcs between them. `lost` counts arcs that ended nowhere."""
+    """The configurations at all slices and the arcs between them; `lost` counts arcs that did not arrive."""
 
     def __init__(self, closure: SegmentClosure, strips: int) -> None:
         self.closure = closure
@@ -195,11 +192,11 @@ class Roadmap:
         return np.append(state * self.closure.weights, self.slices[j])
 
     def is_outer(self, port: Port) -> bool:
-        """Tell whether it leads out of the segment."""
+        """Return whether a port leads out of the segment."""
         return port.slice == (len(self.slices) - 1 if port.ahead > 0 else 0)
 
     def ports(self, ahead: int) -> list[Port]:
-        """Return all ports in one direction that lead to no arc yet."""
+        """Return all ports in one direction without an arc."""
         every = (Port(row, j, c, ahead) for (row, j), found in self.known.items() for c in range(len(found)))
         return [port for port in every if port not in self.ends and not self.is_outer(port)]
 
@@ -208,7 +205,7 @@ class Roadmap:
         return self.known[port.row, port.slice][port.number]
 
     def _join(self) -> None:
-        """Follow every port with long steps, then with short ones those that still lead to no arc."""
+        """Follow every port with long steps, then those without an arc with short ones."""
         for longest in (LONGEST, LONGEST * FINER):
             tried: set[Port] = set()
             for _ in range(ROUNDS):
@@ -237,11 +234,11 @@ class Roadmap:
     def _arrive(self, port: Port, arc: ContinuationArc) -> None:
         assert arc.end is not None
         number = self._number(port.row, arc.end, arc.nodes[-1])
-        # an even number of turning points is passed, or the arc comes back
+        # after an odd number of turning points the arc runs back
         ahead = -port.ahead if len(arc.turns) % 2 == 0 else port.ahead
         goal = Port(port.row, arc.end, number, ahead)
         if goal in self.ends or goal == port:
-            # two arcs at one port: one of them has left its curve
+            # two arcs at one port: one of them jumped to another curve
             other = self.ends.pop(goal, None)
             self.arcs.pop(goal, None)
             if other is not None:
@@ -252,7 +249,7 @@ class Roadmap:
         self.arcs[port], self.arcs[goal] = (arc, False), (arc, True)
 
     def _number(self, row: int, j: int, y: Number) -> int:
-        """Return which configuration of a slice a state is; a new one where none is near."""
+        """Return the number of a state among the configurations of a slice, which gains it if none is near."""
         found = self.known[row, j]
         if found:
             gaps = state_distance(np.array(found)[:, :-1], y[:-1], 1.0)

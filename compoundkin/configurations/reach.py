@@ -21,46 +21,46 @@ from compoundkin.kinematics.limits import EDGE
 from compoundkin.kinematics.solving_order import run
 from compoundkin.structure.kinematic_structure import Structure
 
-# So many configurations of places are assembled at once: their arrays stay in the caches.
+# Configurations assembled at once: their arrays stay in the caches.
 BLOCK = 65536
-# An angle of the point's link is tried at so many places of a turn; then a step to both sides of the best few, or so
-# far about those at two neighbours; in so many parts at once, each time finer.
+# Samples of the link's angle over a turn; then a step to both sides of the best few, or BETWEEN around those at two
+# neighbours, in so many parts at once, each time finer.
 ANGLES, PEAKS, PARTS, FINE = 60, 3, 12, 1e-9
 STEP, BETWEEN = TURN / ANGLES, TURN / 24.0
-# A place of the boundary is found to a margin of this part, or in so many trials; less where angles are looked for.
+# Margin and number of trials of a place of the boundary; coarser where the angle is searched too.
 FLAT, TRIALS = 1e-12, 60
 FLAT_BY_ANGLES, TRIALS_BY_ANGLES = 1e-10, 16
-# Groups without margins tell no more than whether they close, and take long: to a millionth of a step.
+# Groups without margins only close or not, and take long: bisection to a millionth of a step.
 HALVINGS = 20
 
 
 @dataclass(frozen=True)
 class Reach:
-    """What tells where a led point gets to, by configurations of the led mechanism.
+    """The margins by which places are inside the reach of a point, over the configurations of its inverse mechanism.
 
-    `ranges` of drivers are from where to where; `signs` are the modes of the driven mechanism's groups that count.
-    `live` are the configurations that occur, by groups of the led mechanism; all without any. `angle` is that of the
-    point's link where it is fixed.
+    `ranges` are those of the drivers, `modes` the modes of the driven mechanism's groups that count. `live` has the
+    signs of the configurations that occur, by groups of the inverse mechanism; without any all count. `angle` is that
+    of the point's link where it is fixed.
     """
 
-    led: PrescribedPoint
+    prescribed: PrescribedPoint
     ranges: Mapping[str, tuple[float, float]]
-    signs: GroupModes
+    modes: GroupModes
     live: Mapping[int, Number] | None = None
     angle: float | None = None
 
     @property
     def seeks_angle(self) -> bool:
-        """Whether any angle of the point's link will do."""
-        return self.led.turns and self.angle is None
+        """Whether the point's link may have any angle."""
+        return self.prescribed.turns and self.angle is None
 
     def margins(self, z: Number, angle: Number, own: bool = True) -> Number:
-        """Return the margins (configurations, n) of places and angles. Only those in the modes that count, if `own`."""
+        """Return the margins (configurations, n) of places and angles, with `own` only in the modes that count."""
         parts = [self._margins(z[k], angle[k], own) for k in self._parts(len(z))]
         return np.concatenate(parts, axis=1)
 
     def at(self, z: Number) -> Depths:
-        """Return how far places (n,) are inside, by the best configuration and angle."""
+        """Return the depths of places (n,) in the best configuration and at the best angle."""
         fixed = np.full(len(z), 0.0 if self.angle is None else self.angle)
         if not self.seeks_angle:
             return self._best(z, fixed)
@@ -75,7 +75,7 @@ class Reach:
         return tried
 
     def near(self, z: Number, angles: Number, half: float) -> Depths:
-        """Return the same by the best angle near to one of some (m, n)."""
+        """Return the depths at the best angle near one of some (m, n)."""
         if not self.seeks_angle:
             return self._best(z, angles[0])
         many, turned = np.tile(z, len(angles)), angles.ravel()
@@ -93,14 +93,14 @@ class Reach:
         return self._best(np.broadcast_to(z, angles.shape).ravel(), angles.ravel()).margin.reshape(angles.shape)
 
     def boundary(self, inside: Number, outside: Number, angles: Number) -> Number:
-        """Return where between pairs of places the reach ends. Angles are near those of both (2, n)."""
+        """Return the places between pairs where the reach ends, at angles near those of both (2, n)."""
         way = outside - inside
 
         def margin(part: Number) -> Number:
             return self.near(inside + part * way, angles, BETWEEN).margin
 
         zero, one = np.zeros(len(way)), np.ones(len(way))
-        if self.led.led.numbered:
+        if self.prescribed.inverse.numbered:
             part, _ = bisect_brackets(lambda part: margin(part) >= 0.0, zero, one, HALVINGS)
             return inside + part * way
         exact = (FLAT_BY_ANGLES, TRIALS_BY_ANGLES) if self.seeks_angle else (FLAT, TRIALS)
@@ -108,15 +108,15 @@ class Reach:
         return inside + np.where(np.isfinite(part), part, 0.0) * way
 
     def meets(self, z: Number, angle: Number) -> Number:
-        """Tell which places and angles are inside, but for rounding."""
+        """Return whether places are inside at angles, within rounding."""
         return np.any(self.margins(z, angle) >= -ROUNDING, axis=0)
 
     def occurring(self, z: Number, angle: Number) -> Reach:
-        """Return the same for the configurations only that occur at some places. They are signs of all groups."""
-        if self.led.led.numbered:
+        """Return the reach of the configurations alone that occur at some places."""
+        if self.prescribed.inverse.numbered:
             return self
         which = np.flatnonzero(np.any(self.margins(z, angle) >= -ROUNDING, axis=1))
-        signed = [solver.index for solver in self.led.led.solvers if solver.modes == 2]
+        signed = [solver.index for solver in self.prescribed.inverse.solvers if solver.modes == 2]
         table = np.array(np.unravel_index(which, (2,) * max(len(signed), 1)))
         # the last group has the first axis
         return replace(self, live={k: 1 - 2 * table[len(signed) - 1 - n] for n, k in enumerate(signed)})
@@ -127,38 +127,38 @@ class Reach:
         return Depths(np.take_along_axis(found, number[None], axis=0)[0], angle, number)
 
     def _parts(self, count: int) -> list[slice]:
-        signed = sum(solver.modes == 2 for solver in self.led.led.solvers)
+        signed = sum(solver.modes == 2 for solver in self.prescribed.inverse.solvers)
         many = 2**signed if self.live is None else len(next(iter(self.live.values()), (1,)))
         wide = max(1, BLOCK // max(many, 1))
         return [slice(k, k + wide) for k in range(0, count, wide)] or [slice(0, 0)]
 
     def _margins(self, z: Number, angle: Number, own: bool) -> Number:
-        block, given = self.led.block(z, angle)
+        block, given = self.prescribed.block(z, angle)
         block.limits = EDGE
         with np.errstate(all="ignore"):
             if self.live is None:
-                run(self.led.led, block, AllModes(self.led.led, given, block))
+                run(self.prescribed.inverse, block, AllModes(self.prescribed.inverse, given, block))
             else:
                 count = len(next(iter(self.live.values()), (1,)))
                 block.shape = (count, *block.shape)
-                run(self.led.led, block, ModeSigns({k: v[:, None, None] for k, v in self.live.items()}))
-            closed = closed_redundant(self.led.led, block)
+                run(self.prescribed.inverse, block, ModeSigns({k: v[:, None, None] for k, v in self.live.items()}))
+            closed = closed_redundant(self.prescribed.inverse, block)
             found = np.broadcast_to(np.where(closed, self._least(block), -1.0), block.shape).reshape(-1, len(z))
-            held = self.signs.held(self.led, block, found) if own and self.signs.signs else found
-            return np.where(np.isnan(held), -1.0, held)
+            margins = self.modes.limited(self.prescribed, block, found) if own and self.modes.signs else found
+            return np.where(np.isnan(margins), -1.0, margins)
 
     def _least(self, block: Block) -> Number:
-        """Return the least of all margins: of groups, of ends of guides, of the drivers' ranges."""
+        """Return the least margin of groups, ends of guides and the drivers' ranges."""
         total: Number = np.ones((1, 1))
-        for solver in self.led.led.solvers:
+        for solver in self.prescribed.inverse.solvers:
             margin = solver.margin(block)
             if margin is None:
                 place = block.world[solver.group.bodies[0].links[0]].z.c[0]
                 margin = np.where(np.isfinite(place), 1.0, -1.0)
             total = np.minimum(total, margin)
-        if self.led.led.guide_ends.pairs:
-            total = np.minimum(total, self.led.led.guide_ends.margin(block))
-        for name, value in self.led.coordinates(block).items() if self.ranges else ():
+        if self.prescribed.inverse.guide_ends.pairs:
+            total = np.minimum(total, self.prescribed.inverse.guide_ends.margin(block))
+        for name, value in self.prescribed.coordinates(block).items() if self.ranges else ():
             if name in self.ranges:
                 total = np.minimum(total, self._inside(name, value.c[0]))
         return total
@@ -166,10 +166,10 @@ class Reach:
     def _inside(self, name: str, value: Number) -> Number:
         """Return how far a driver is inside its range, in radians or parts of the size."""
         low, high = self.ranges[name]
-        is_angle = self.led.driven.structure.driven_angles[name]
+        is_angle = self.prescribed.driven.structure.driven_angles[name]
         off = value - (low + high) / 2.0
         half = (high - low) / 2.0
-        return half - np.abs(wrapped(off)) if is_angle else (half - np.abs(off)) / self.led.driven.size
+        return half - np.abs(wrapped(off)) if is_angle else (half - np.abs(off)) / self.prescribed.driven.size
 
 
 def _peaks(values: Number) -> Number:
@@ -178,26 +178,27 @@ def _peaks(values: Number) -> Number:
     return np.argsort(np.where(high, values, -np.inf), axis=0)[-PEAKS:]
 
 
-# A group is in its own mode where it is the same within this part of the size (or radians).
+# A group is in a mode where its poses agree within this part of the size (or radians).
 SAME = 1e-7
-# A configuration found by driving is at its own place within this margin: rounding at ends of ranges.
+# Margins above this count as inside: rounding at ends of ranges.
 ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
 class GroupModes:
-    """The modes that count, by groups of the driven mechanism. Of other groups any does."""
+    """The modes that count, by groups of the driven mechanism; other groups may have any."""
 
     signs: Mapping[int, int]
 
-    def held(self, led: PrescribedPoint, block: Block, found: Number) -> Number:
-        """Return margins (configurations, n) of a led block, negative in another mode.
+    def limited(self, prescribed: PrescribedPoint, block: Block, found: Number) -> Number:
+        """Return the margins (configurations, n) of an inverse block, negative in another mode of the driven mechanism.
 
-        That of the driven mechanism. Also those beyond the ends of a range, so that margins have no jumps.
+        Those beyond the ends of a range are included, so that margins have no jumps.
         """
-        driven = led.driven
-        drives = {**led.given.drives, **{name: (one.c[0],) for name, one in led.coordinates(block).items()}}
-        other = driven.start(led.given.ends, led.given.driven(drives).series(0), 0, block.shape)
+        driven = prescribed.driven
+        solved = {name: (one.c[0],) for name, one in prescribed.coordinates(block).items()}
+        drives = {**prescribed.inputs.drives, **solved}
+        other = driven.start(prescribed.inputs.ends, prescribed.inputs.driven(drives).series(0), 0, block.shape)
         for name in (name for group in driven.structure.groups for name in group.links):
             other.world[name] = block.world[name]
         for k, sign in self.signs.items():
@@ -207,7 +208,7 @@ class GroupModes:
 
 
 def _in_mode(block: Block, solver: GroupSolver, sign: int, size: float) -> Number:
-    """Return the margin of a group of the driven mechanism, negative where it is not in a mode."""
+    """Return the margin of a group of the driven mechanism, negative where it is in another mode."""
     trial = block.copy()
     trial.limits = EDGE
     solver.close(trial, float(sign))
@@ -220,7 +221,7 @@ def _in_mode(block: Block, solver: GroupSolver, sign: int, size: float) -> Numbe
 
 
 def value_in_range(value: float, span: tuple[float, float] | None) -> float:
-    """Return where a driver stands. At its own value, or in the middle of its range.
+    """Return a driver's value if its range includes it, else the middle of the range.
 
     >>> value_in_range(1.0, (0.0, 2.0)), value_in_range(5.0, (0.0, 2.0)), value_in_range(5.0, None)
     (1.0, 1.0, 5.0)
@@ -229,12 +230,12 @@ def value_in_range(value: float, span: tuple[float, float] | None) -> float:
 
 
 def reference_pose(structure: Structure, values: Mapping[str, float], modes: Mapping[str, int] | str | None) -> Motion:
-    """Return one pose of a mechanism, from which its modes are taken."""
+    """Return one pose of a mechanism, which defines its modes."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
         return solve(structure, {name: [value] for name, value in values.items()}, order=0, modes=modes)
 
 
 def signs_of_pose(pose: Motion) -> dict[int, int]:
-    """Return the modes that a pose is in, by the groups with signs."""
+    """Return the modes of a pose, by the groups with signs."""
     return {solver.index: pose.sign(solver.index, 0) for solver in pose.solving_order.solvers if solver.modes == 2}

@@ -1,7 +1,7 @@
-"""The boundary of a region of the plane that a margin tells: a lattice refined beside it, crossings found exactly.
+"""The boundary of a region of the plane where a margin is zero: a lattice refined beside it, with exact crossings.
 
-Source of the tracing: W. Lorensen and H. Cline, Marching cubes (1987), in the plane; two corners that face each
-other across a cell are joined where the margin in its middle says so.
+Source of the tracing: W. Lorensen and H. Cline, Marching cubes (1987), in the plane; opposite inside
+corners of a cell are joined where the margin in its middle is positive.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, cross
 
-# The lattice begins with cells so many times as wide as those beside the boundary.
+# Width of the first cells in widths of those beside the boundary.
 COARSE = 4
-# Lattices that the region runs out of grow by this part of their size, at most so often.
+# A lattice grows by this part of its size on the sides that the region crosses, at most so often.
 GROWTH, GROWN = 0.3, 12
-# A closed curve around less than so many cells is none of its own.
+# A closed curve around fewer cells is dropped.
 TIP = 4.0
-# Nothing special lies on a line of the lattice: it stands off the box by these parts of a cell.
+# Offsets of the lattice from the box, in cells: special places do not lie on its lines.
 OFF = (0.6180339887, 0.4142135624)
 
 
 class Depths(NamedTuple):
-    """How far places are inside, negative outside. By which angle of a link and configuration."""
+    """How far places are inside (negative outside), with the angle of the link and the configuration."""
 
     margin: Number
     angle: Number
@@ -38,7 +38,7 @@ class Region(Protocol):
         """Return how far places (n,) are inside, negative outside."""
 
     def boundary(self, inside: Number, outside: Number, angles: Number) -> Number:
-        """Return where between pairs of places it ends. The angles (2, n) are those found at both."""
+        """Return the places between pairs where it ends. `angles` (2, n) are those at both."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def _lattice(region: Region, low: complex, high: complex, cells: int) -> Lattice
 
 
 def _beside(inside: Number, wide: int) -> Number:
-    """Return the places in and next to coarse cells whose corners differ."""
+    """Return whether places are in or next to coarse cells whose corners differ."""
     corners = inside[::wide, ::wide]
     cells = _corner_sum(corners)
     mixed = np.pad((cells > 0) & (cells < 4), 1)
@@ -124,7 +124,7 @@ def _corner_sum(inside: Number) -> Number:
 
 
 def _spread(arrays: tuple[Number, ...], known: Number, wide: int) -> None:
-    """Give places that are not known what the coarse place below and to the left of them has."""
+    """Copy the values of the coarse place below and to the left to places without values."""
     rows, columns = (np.arange(n) // wide * wide for n in known.shape)
     for array in arrays:
         coarse = array[rows][:, columns]
@@ -151,12 +151,12 @@ def boundaries(region: Region, lattice: Lattice) -> list[Number]:
     curves = []
     while onward:
         at = next(iter(onward))
-        way = [at]
+        curve = [at]
         while at in onward:
             at = onward.pop(at)
-            way.append(at)
-        curves.append(np.array([points[k] for k in way]))
-    # what is smaller than the cells is a tip that they cut off, if there is anything larger
+            curve.append(at)
+        curves.append(np.array([points[k] for k in curve]))
+    # a curve smaller than the cells is a cut-off tip, if there is a larger one
     areas = [abs(signed_area(curve)) for curve in curves]
     return [c for c, area in zip(curves, areas, strict=True) if area > TIP * lattice.step**2 or area == max(areas)]
 
@@ -164,11 +164,11 @@ def boundaries(region: Region, lattice: Lattice) -> list[Number]:
 # The sides of a cell are counted: below, right, above, left. By which corners are inside (1 below left, 2 below right,
 # 4 above right, 8 above left), from which side to which its boundary runs, the inside on its left.
 BELOW, RIGHT, ABOVE, LEFT = range(4)
-WAYS = {
+CELL_EDGES = {
     1: ((BELOW, LEFT),), 2: ((RIGHT, BELOW),), 3: ((RIGHT, LEFT),), 4: ((ABOVE, RIGHT),), 6: ((ABOVE, BELOW),),
     7: ((ABOVE, LEFT),), 8: ((LEFT, ABOVE),), 9: ((BELOW, ABOVE),), 11: ((RIGHT, ABOVE),), 12: ((LEFT, RIGHT),),
     13: ((BELOW, RIGHT),), 14: ((LEFT, BELOW),),
-    # two corners that face each other: apart, or joined through the middle
+    # opposite corners: apart, or joined through the middle
     5: ((BELOW, LEFT), (ABOVE, RIGHT)), 10: ((RIGHT, BELOW), (LEFT, ABOVE)),
 }  # fmt: skip
 JOINED = {5: ((BELOW, RIGHT), (ABOVE, LEFT)), 10: ((RIGHT, ABOVE), (LEFT, BELOW))}
@@ -179,7 +179,7 @@ def _links(region: Region, lattice: Lattice) -> dict[tuple[int, int], tuple[tupl
     on = lattice.inside.astype(int)
     case = on[:-1, :-1] + 2 * on[:-1, 1:] + 4 * on[1:, 1:] + 8 * on[1:, :-1]
     cells = np.argwhere((case > 0) & (case < 15))
-    found = {(int(i), int(j)): WAYS[int(case[i, j])] for i, j in cells}
+    found = {(int(i), int(j)): CELL_EDGES[int(case[i, j])] for i, j in cells}
     facing = [at for at in found if case[at] in JOINED]
     if facing:
         middles = np.array([(lattice.places[at] + lattice.places[at[0] + 1, at[1] + 1]) / 2.0 for at in facing])

@@ -1,4 +1,4 @@
-"""Places on circuits: where a configuration lies, and the way along a circuit from one to another."""
+"""Places of configurations on circuits, and routes along a circuit from one to another."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from compoundkin.configurations.segment_poses import SegmentPoses, gap_between
 from compoundkin.configurations.segments import NONE, Visit
 from compoundkin.kinematics.configuration import Configuration, dimensions_at
 
-# A configuration lies on a segment within this: it may be at a limit position, where poses are known to the square
-# root of rounding, or read off a drawing that was drawn exactly.
+# A configuration lies on a segment within this distance: limit positions are known to the square root of rounding, and
+# it may come from an exact drawing.
 MATCHED = 1e-5
-# The other drivers stand where they stood when the circuits were found, within this.
+# The other drivers have the values of the circuits within this.
 STANDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """Poses in order along a circuit. `values` of the driver (poses,), `links` the poses of all links.
+    """Poses in order along a circuit: `values` of the driver (poses,), `links` the poses of all links.
 
     `along` is the arc length travelled at each pose: of all links, parts of the mechanism's size and radians together.
     `branches` are the numbers of the branches passed, in order.
@@ -37,7 +37,7 @@ class Route:
     dimensions: Mapping[str, Mapping[str, complex]] = field(repr=False)
 
     def point(self, name: str) -> Number:
-        """Return where a point is, complex (poses,); raises UnknownName."""
+        """Return the places of a point, complex (poses,). Raises UnknownName."""
         for link, points in self.dimensions.items():
             if name in points:
                 return np.broadcast_to(self.links[link].at(points[name]).c[0], self.values.shape)
@@ -46,7 +46,7 @@ class Route:
 
 @dataclass(frozen=True)
 class RouteLeg:
-    """A segment passed from one angle to another. Of the angles, 0 is the low end, pi the high one."""
+    """The part of a segment between two angles, 0 at its low end, pi at the high one."""
 
     visit: Visit
     start: float
@@ -56,17 +56,16 @@ class RouteLeg:
 def route(
     placing: SegmentPoses, circuit: Circuit, period: float, first: CircuitPlace, last: CircuitPlace, poses: int
 ) -> Route:
-    """Return the shorter of both ways around."""
-    ways = [way for sense in (1, -1) if (way := _legs(placing, circuit, first, last, sense)) is not None]
-    count = max(2, poses)
-    found = [_sampled(placing, circuit, period, way, count) for way in ways]
-    return min(found, key=lambda one: float(one.along[-1]))
+    """Return the shorter of the routes in both directions."""
+    both = (_legs(placing, circuit, first, last, sense) for sense in (1, -1))
+    routes = [_sampled(placing, circuit, period, legs, max(2, poses)) for legs in both if legs is not None]
+    return min(routes, key=lambda one: float(one.along[-1]))
 
 
 def _legs(
     placing: SegmentPoses, circuit: Circuit, first: CircuitPlace, last: CircuitPlace, sense: int
 ) -> list[RouteLeg] | None:
-    """The segments from one place to another in one direction around the circuit; None where the chain ends before."""
+    """Return the legs from one place to another in one direction, None where the chain ends before."""
     visits = [v if sense > 0 else Visit(v.row, -v.sense, v.periods) for b in circuit.branches for v in b.visits]
     visits = visits[::sense]
     here = next(i for i, v in enumerate(visits) if v.row == first.visit.row)
@@ -101,20 +100,20 @@ def _sampled(placing: SegmentPoses, circuit: Circuit, period: float, legs: list[
     values = np.concatenate([values for values, _ in parts])
     names = list(parts[0][1])
     links = {name: (_joined(parts, name, 0), _joined(parts, name, 1)) for name in names}
-    kept = np.append(True, _steps(links, placing.sweep.solving_order.size) > 0)
-    kept = kept | np.append(True, np.diff(values) != 0)
-    links = {name: (z[kept], u[kept]) for name, (z, u) in links.items()}
+    distinct = np.append(True, _steps(links, placing.sweep.solving_order.size) > 0)
+    distinct = distinct | np.append(True, np.diff(values) != 0)
+    links = {name: (z[distinct], u[distinct]) for name, (z, u) in links.items()}
     along = np.append(0.0, np.cumsum(_steps(links, placing.sweep.solving_order.size)))
-    shown = np.unwrap(values[kept], period=period) if period else values[kept]
+    values = np.unwrap(values[distinct], period=period) if period else values[distinct]
     numbers = [next(b.number for b in circuit.branches for v in b.visits if v.row == leg.visit.row) for leg in legs]
     passed = tuple(n for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1])
     poses_of = {name: Pose.of(z, u) for name, (z, u) in links.items()}
     dimensions = dimensions_at(placing.sweep.solving_order.structure, placing.design, 0)
-    return Route(shown, poses_of, along, passed, dimensions)
+    return Route(values, poses_of, along, passed, dimensions)
 
 
 def _leg(placing: SegmentPoses, leg: RouteLeg, count: int) -> tuple[Number, dict[str, tuple[Number, Number]]]:
-    """Return driver values along a leg, and the origin and orientation of every link."""
+    """Return driver values along a leg, and origins and orientations of all links."""
     phi = np.linspace(leg.start, leg.end, count)
     rows = np.array([leg.visit.row])
     sides = np.where(phi == 0.0, 0, np.where(phi == np.pi, 1, NONE))
@@ -130,13 +129,15 @@ def _joined(parts: list[tuple[Number, dict[str, tuple[Number, Number]]]], name: 
 
 
 def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
-    """Return how far all links move from pose to pose."""
+    """Return the distances that all links move from pose to pose."""
     squares = [np.abs(np.diff(z) / size) ** 2 + np.abs(np.angle(u[1:] / u[:-1])) ** 2 for z, u in links.values()]
     return np.sqrt(np.sum(squares, axis=0))
 
 
-def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration) -> CircuitPlace:
-    """Return the place of a configuration. Raises InvalidInput where it lies on none of the circuits."""
+def required_place(
+    placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration
+) -> CircuitPlace:
+    """Return the place of a configuration. Raises InvalidInput for one on none of the circuits."""
     sweep = placing.sweep
     if one.structure.mechanism != sweep.solving_order.structure.mechanism:
         raise InvalidInput(Problem("configuration", "it is one of another mechanism"))
@@ -155,7 +156,7 @@ def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float,
 def place_of(
     placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration
 ) -> CircuitPlace | None:
-    """Return the place of a configuration of the same mechanism. It is None where it lies on none of the circuits."""
+    """Return the place of a configuration of the same mechanism, None for one on none of the circuits."""
     sweep, segments = placing.sweep, placing.segments
     value = one.values[sweep.driver]
     shift = period * np.floor((value - np.min(segments.low)) / period) if period else 0.0

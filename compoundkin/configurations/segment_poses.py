@@ -1,4 +1,4 @@
-"""A solving order run at any place of any segment, and the poses there as configurations with their names."""
+"""The solving order run at places of segments, and the poses there as configurations with their names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from compoundkin.model.pairs.contract import Ends
 
 @dataclass(frozen=True, repr=False)
 class Sweep(ShortRepr):
-    """A solving order with one design and all driver values but one. The design gives the dimensions."""
+    """A solving order for one design with all driver values fixed but one."""
 
     solving_order: SolvingOrder
     ends: Mapping[str, Ends]
@@ -31,10 +31,7 @@ class Sweep(ShortRepr):
     driver: str
 
     def start(self, s: Number, rate: Number | None = None) -> Block:
-        """Return the frame and the driven links at driver values.
-
-        Their derivatives are by whatever `rate` is taken by.
-        """
+        """Return the frame and the driven links at driver values; derivatives are by the variable of `rate`."""
         moving = constant(s) if rate is None else Series((s, rate))
         drives = {name: constant(value) for name, value in self.fixed.items()}
         drives[self.driver] = moving
@@ -49,10 +46,7 @@ class Sweep(ShortRepr):
         sides: Number | None = None,
         upto: int | None = None,
     ) -> Block:
-        """Return segments `rows` at driver values, up to a group.
-
-        The values are `s` (rows, columns); `sides` says which columns are ends.
-        """
+        """Return segments `rows` at driver values `s` (rows, columns), up to a group; `sides` marks columns at ends."""
         return run(
             self.solving_order, self.start(s, rate), _OnSegments(self.solving_order, segments, rows, s, sides), upto
         )
@@ -60,7 +54,7 @@ class Sweep(ShortRepr):
 
 @dataclass(frozen=True)
 class _OnSegments:
-    """The choice on segments: each has its modes and its states."""
+    """The choice of modes and states on segments."""
 
     solving_order: SolvingOrder
     segments: Segments
@@ -82,25 +76,25 @@ class _OnSegments:
 
 
 def drawn_angle(solving_order: SolvingOrder, link: str) -> Number:
-    """Return the drawn angle of a link, from which its full turns count. It is 0 where the link is not drawn."""
+    """Return the drawn angle of a link, from which its full turns count, or 0."""
     drawn = solving_order.structure.mechanism.drawn_poses.get(link)
     return 0.0 if drawn is None else drawn.angle.c[0]
 
 
 @dataclass(frozen=True, repr=False)
 class SegmentPoses(ShortRepr):
-    """All segments of a mechanism, and what makes poses of them."""
+    """All segments of a mechanism with the solving order that gives their poses."""
 
     sweep: Sweep
     segments: Segments
     design: int
 
     def run(self, rows: Number, s: Number, sides: Number | None = None) -> Block:
-        """Return segments at one driver value each. It is their low (0) or high (1) end where `sides` say so."""
+        """Return segments at one driver value each, at their low (0) or high (1) end by `sides`."""
         return self.sweep.run(self.segments, rows, s[:, None], sides=None if sides is None else sides[:, None])
 
     def configurations(self, rows: Number, s: Number, sides: Number | None = None) -> list[Configuration]:
-        """Return each segment's configuration at one driver value each."""
+        """Return the configuration of each segment at one driver value each."""
         if not len(rows):
             return []
         sides = np.full(len(rows), NONE) if sides is None else sides
@@ -124,7 +118,7 @@ class SegmentPoses(ShortRepr):
                 texts = self._numbers(k, solver, rows, s, sides)
             elif k in self.segments.signs and solver.modes == 2:
                 sign = self.segments.sign(k, rows, sides[:, None])[:, 0]
-                # a second group may be at its limit there, as in a pantograph that is stretched
+                # a second group may be at its limit too, as in a stretched pantograph
                 at_limit = np.abs(column(block.margins.get(k, 1.0), len(rows))) < TOUCHING
                 texts = [SIGNS[int(one)] for one in np.where(at_limit & (sides != NONE), 0.0, sign)]
             else:
@@ -134,7 +128,7 @@ class SegmentPoses(ShortRepr):
         return found
 
     def _numbers(self, k: int, solver: GroupSolver, rows: Number, s: Number, sides: Number) -> list[str]:
-        """Return the number of a group's configuration among all that are real there."""
+        """Return the number of a group's configuration among all real ones."""
         size = self.sweep.solving_order.size
         block = self.sweep.run(self.segments, rows, s[:, None], sides=sides[:, None], upto=k)
         every = solver.every(block).states
@@ -147,10 +141,7 @@ class SegmentPoses(ShortRepr):
 
 
 def gap_between(one: Configuration, block: Block, rows: int, size: float) -> Number:
-    """Return how far each of `rows` segments is from a configuration.
-
-    It is in parts of the size, radians; the farthest link counts.
-    """
+    """Return the distances of `rows` segments from a configuration (size, radians), those of the farthest link."""
     found = np.zeros(rows)
     for name, pose in one.poses.items():
         z = column(block.world[name].z.c[0] - pose.z.c[0], rows)

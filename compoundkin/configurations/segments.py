@@ -1,6 +1,6 @@
-"""Segments: pieces of the curve of all configurations on which no group passes a limit position, many in arrays.
+"""Segments: parts of the configuration curve on which no group passes a limit position, many in arrays.
 
-A segment is an interval of the driver's value and what each group does on it. Its ends are glued to those of other
+A segment is an interval of the driver's value with the mode of each group. Its ends are glued to those of other
 segments; where both leave the common end in the same direction of the driver, that end is a limit position.
 """
 
@@ -14,20 +14,20 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 
-# What the end of a segment is: a limit position of a group; a change point of a group, where its modes meet and the
-# motion goes on; the seam where a full turn begins again; the end of the range that was asked for; a place where a
-# link goes to infinity; the end of a guide, where the `group` is the index of its pair.
+# Kinds of ends: a limit position of a group; a change point of a group, where its modes meet and the motion goes on;
+# the seam where a full turn begins again; the end of the requested range; a place where a link goes to infinity; the
+# end of a guide, where `group` is the index of its pair.
 LIMIT, CHANGE, SEAM, RANGE, AWAY, END = range(6)
 NONE = -1
-# A margin (a squared sine, or a length) that is below this at its least touches zero: rounding times its curvature.
+# A margin (a squared sine, or a length) whose least value is below this touches zero: rounding times its curvature.
 TOUCHING = 1e-12
 
 
 @dataclass(frozen=True)
 class SegmentCurve:
-    """The states of a group's bodies along a segment. They are x, y, theta of each at `nodes`, angles from 0 to pi.
+    """The states x, y, theta of a group's bodies along a segment at `nodes`, angles from 0 to pi.
 
-    By that angle `low` and `high` are the ends of a half circle, so that states are smooth at limit positions.
+    `low` and `high` are the ends of a half circle of that angle, so that states are smooth at limit positions.
     """
 
     low: float
@@ -36,7 +36,7 @@ class SegmentCurve:
     states: Number
 
     def seeds(self, s: Number) -> Number:
-        """Return, nearly, the states at driver values `s` (any shape): cubic between the nodes."""
+        """Return approximate states at driver values `s` of any shape, by cubics between the nodes."""
         middle, half = (self.low + self.high) / 2.0, (self.high - self.low) / 2.0
         phi = np.arccos(np.clip((middle - s) / half, -1.0, 1.0))
         i = np.clip(np.searchsorted(self.nodes, phi, side="right") - 1, 0, len(self.nodes) - 2)
@@ -57,9 +57,9 @@ class SegmentCurve:
 class Segments:
     """Segments as arrays over rows.
 
-    `low` and `high` bound the driver's value; `signs[k]` is the mode of a group with modes, `curves[k]` for each row
-    the curve of a group without. Of both ends (rows, 2): `kind`, the `group` responsible, and the `partner` (row) and
-    `side` it is glued to, NONE where it ends.
+    `low` and `high` bound the driver's value; `signs[k]` is the mode of a group with a closed form, `curves[k]` for
+    each row the curve of a group without. For both ends (rows, 2): `kind`, the `group` responsible, and the `partner`
+    (row) and `side` it is glued to, NONE where it is free.
     """
 
     low: Number
@@ -73,7 +73,7 @@ class Segments:
 
     @property
     def rows(self) -> int:
-        """How many there are."""
+        """The number of segments."""
         return len(self.low)
 
     def at(self, rows: Number, phi: Number) -> Number:
@@ -87,9 +87,9 @@ class Segments:
         return ((self.high - self.low)[rows][:, None]) * np.sin(phi) / 2.0
 
     def sign(self, k: int, rows: Number, sides: Number | None) -> Number:
-        """Return a group's mode, a column. Zero: by `sides` (0 low, 1 high, NONE inside) its limit is meant.
+        """Return a group's mode, a column; zero at its limits.
 
-        They are those of the columns (columns,), or of every place (rows, columns).
+        `sides` (0 low, 1 high, NONE inside) are those of the columns (columns,), or of every place (rows, columns).
         """
         sign = self.signs[k][rows][:, None]
         if sides is None:
@@ -97,13 +97,13 @@ class Segments:
         return np.where(self.is_limit(k, rows, sides), 0.0, sign)
 
     def is_limit(self, k: int, rows: Number, sides: Number) -> Number:
-        """Return where the given sides are limit positions or change points of a group."""
+        """Return whether sides are limit positions or change points of a group."""
         own = (self.group[rows] == k) & np.isin(self.kind[rows], (LIMIT, CHANGE))
         wide = np.broadcast_to(sides, (len(rows), np.shape(sides)[-1]))
         return (wide != NONE) & np.take_along_axis(own, np.maximum(wide, 0), axis=1)
 
-    def kept(self, good: Number) -> Segments:
-        """Return those rows only; ends glued to others end there."""
+    def selected(self, good: Number) -> Segments:
+        """Return the rows with `good`; ends glued to other rows become free."""
         rows = np.flatnonzero(good)
         new = np.full(self.rows + 1, NONE)
         new[rows] = np.arange(len(rows))
@@ -113,7 +113,7 @@ class Segments:
                        new[self.partner[rows]], self.side[rows])  # fmt: skip
 
     def seeds(self, k: int, rows: Number, s: Number) -> Number:
-        """Return, nearly, the states of a group without modes, (rows, columns, 3 n)."""
+        """Return approximate states of a group without a closed form, (rows, columns, 3 n)."""
         return np.stack([self.curves[k][row].seeds(values) for row, values in zip(rows, s, strict=True)])
 
 
@@ -127,7 +127,7 @@ def driver_segment(low: float, high: float, periodic: bool) -> Segments:
 
 @dataclass(frozen=True)
 class Visit:
-    """A segment as passed: its row, direction (+1 low to high), periods added."""
+    """A passage through a segment: its row, direction (+1 low to high) and added periods."""
 
     row: int
     sense: int
@@ -135,23 +135,22 @@ class Visit:
 
     @property
     def entered(self) -> int:
-        """The side at which it is entered, 0 low or 1 high."""
+        """The side of entry, 0 low or 1 high."""
         return 0 if self.sense > 0 else 1
 
     @property
     def left(self) -> int:
-        """The side at which it is left."""
+        """The side of exit."""
         return 1 - self.entered
 
 
 @dataclass(frozen=True)
 class SegmentChain:
-    """The segments of a circuit in order. `closed` where the last one leads to the first."""
+    """The segments of a circuit in order, `closed` if the last leads to the first."""
 
     visits: tuple[Visit, ...]
     closed: bool
-    # how many periods once around
-    periods: int = 0
+    periods: int = 0  # once around
 
     def branches(self) -> tuple[tuple[Visit, ...], ...]:
         """Return the visits between turning points, each branch in the order of the chain."""
@@ -163,11 +162,11 @@ class SegmentChain:
             cuts = [-1, *cuts, n - 1]
         bounds = zip(cuts, [*cuts[1:], cuts[0] + n] if self.closed else cuts[1:], strict=False)
         parts = [tuple(self._visit(k) for k in range(a + 1, b + 1)) for a, b in bounds]
-        # that of the first segment comes first
+        # the branch of the first segment comes first
         return tuple([parts[-1], *parts[:-1]] if self.closed else parts)
 
     def _visit(self, k: int) -> Visit:
-        """Return the k-th visit, counted on around the circuit."""
+        """Return the k-th visit, counting around the circuit."""
         around, k = divmod(k, len(self.visits))
         visit = self.visits[k]
         return replace(visit, periods=visit.periods + around * self.periods)
@@ -190,7 +189,7 @@ def segment_chains(segments: Segments) -> tuple[SegmentChain, ...]:
 
 
 def _around(segments: Segments, row: int) -> SegmentChain:
-    """Return the chain through a segment: forward; where that ends, backward too, and then from there."""
+    """Return the chain through a segment; an open one from its backward end on."""
     ahead, after = _walk(segments, Visit(row, 1, 0))
     if after is not None:
         return SegmentChain(tuple(ahead), True, after.periods)
@@ -201,7 +200,7 @@ def _around(segments: Segments, row: int) -> SegmentChain:
 
 
 def _walk(segments: Segments, start: Visit) -> tuple[list[Visit], Visit | None]:
-    """Return the visits from one on, and the one with which they begin again; None where they end."""
+    """Return the visits from one on, and the one with which they repeat, None at a free end."""
     visits = [start]
     while True:
         here = visits[-1]
@@ -212,7 +211,7 @@ def _walk(segments: Segments, start: Visit) -> tuple[list[Visit], Visit | None]:
 
 
 def following(segments: Segments, visit: Visit) -> Visit | None:
-    """Return the visit after one, None where its segment ends."""
+    """Return the visit after one, None at a free end."""
     partner, side = int(segments.partner[visit.row, visit.left]), int(segments.side[visit.row, visit.left])
     if partner == NONE:
         return None

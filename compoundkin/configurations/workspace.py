@@ -35,17 +35,17 @@ from compoundkin.model.pairs.travel_limits import as_travel_limited
 from compoundkin.structure.kinematic_structure import Structure
 
 # Cells along the longer side, beside the boundary: with two drivers each takes a microsecond, with three the angle of
-# the point's link is looked for at each, and groups without a closed form take milliseconds.
+# the point's link is searched at each, and groups without a closed form take milliseconds.
 CELLS, CELLS_OF_THREE, CELLS_OF_NUMBERED = 320, 128, 48
 FEWEST, MOST = 8, 4096
-# The region is looked for within the places that driving reaches, and this part of their extent around.
+# The search covers the places that driving reaches, and this part of their extent around them.
 AROUND = 0.06
 EVERY_MODE = "all"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Workspace(CopiesFields):
-    """The region of the plane that a point reaches, to the mechanism's length unit.
+    """The region of the plane that a point reaches, in the mechanism's unit of length.
 
     `outer` and `inner` are the closed curves (complex, the last point the first) around it and around its holes. Their
     points are on the boundary to rounding, the straight lines between them within `step`. `ranges` are those of the
@@ -66,22 +66,22 @@ class Workspace(CopiesFields):
 
     @property
     def mechanism(self) -> Mechanism:
-        """The mechanism whose point it is."""
+        """The mechanism."""
         return self.pose.mechanism
 
     @property
     def link(self) -> str:
-        """The link whose angle counts, the first that carries the point."""
-        return self.reach.led.carrier
+        """The link whose angle is the orientation: the first that carries the point."""
+        return self.reach.prescribed.carrier
 
     @property
     def step(self) -> float:
-        """The width of the cells beside the boundary. Details below it, and holes below four of it, are not seen."""
+        """The width of the cells beside the boundary. Smaller details, and holes below four cells, may be missed."""
         return self.lattice.step
 
     @property
     def area(self) -> float:
-        """The area of the region, less its holes. It is that of the polygons."""
+        """The area of the region without its holes, from the polygons."""
         return sum(signed_area(curve) for curve in (*self.outer, *self.inner))
 
     @property
@@ -91,15 +91,15 @@ class Workspace(CopiesFields):
 
     @property
     def inside(self) -> Number:
-        """Which of the `places` are reached."""
+        """Whether the point reaches each of the `places`."""
         return self.lattice.inside
 
     @cached_property
     def condition(self) -> Number:
         """The condition number of the Jacobian to the point, at the `places`.
 
-        Lengths are parts of the size. The least of the configurations that lead there, by a dozen angles where the
-        orientation is free; NaN outside, where none of these leads, and where groups have no closed form.
+        Lengths are parts of the size. It is the least of the configurations that lead there, over a dozen angles where
+        the orientation is free; NaN outside, and where groups have no closed form.
         """
         found = np.full(self.inside.shape, np.nan)
         if self.reach.live is not None:
@@ -110,13 +110,13 @@ class Workspace(CopiesFields):
     def determinants(self) -> Number:
         """The determinants of the inverse Jacobian over the `places`, (configurations, rows, columns).
 
-        Zero where the drivers lose their hold (singular of the second kind, parallel). Of every configuration that
-        leads there, NaN elsewhere; none with three drivers where the orientation is free.
+        Zero where the drivers do not determine the point's velocity (singular of the second kind, parallel). NaN where
+        a configuration does not lead there; empty with three drivers and a free orientation.
         """
         return rate_determinants(self.reach, self.lattice)
 
     def contains(self, points: Any) -> Number:
-        """Tell which places the point reaches, complex or an array of them. Asked of the mechanism, not of the curves.
+        """Return whether the point reaches places, complex, by solving the mechanism there.
 
         >>> from compoundkin.files import load
         >>> workspace(load("five-bar"), "P").contains([59 + 158j, 300 + 0j]).tolist()
@@ -128,15 +128,15 @@ class Workspace(CopiesFields):
         return (self.reach.at(z.astype(complex).ravel()).margin >= -ROUNDING).reshape(z.shape)
 
     def plot(self, **options: Any) -> Any:
-        """Draw the region with its boundary, and the mechanism in one pose. `compoundkin.plots.workspace` of it."""
+        """Draw the region with its boundary, and the mechanism in one pose, by `compoundkin.plots.workspace`."""
         return display_function("workspace")(self, **options)
 
     def __repr__(self) -> str:
         holes = f", {len(self.inner)} of them holes" if self.inner else ""
         parts = len(self.outer) + len(self.inner)
         unit = f" {self.mechanism.unit}^2" if self.mechanism.unit else ""
-        told = f"{self.area:.6g}{unit}, {parts} boundary curve{'s' if parts > 1 else ''}{holes}"
-        return f"Workspace({self.point} by {', '.join(self.drivers)}: {told}; {self.modes})"
+        region = f"{self.area:.6g}{unit}, {parts} boundary curve{'s' if parts > 1 else ''}{holes}"
+        return f"Workspace({self.point} by {', '.join(self.drivers)}: {region}; {self.modes})"
 
 
 @checked
@@ -157,11 +157,11 @@ def workspace(
     solution of the inverse problem; of groups without signs, and with ``modes="all"`` of all, any mode counts. `cells`
     go along the longer side of the region. Dimensions are those of the first design.
 
-    Each place is asked of the mechanism led there: reached where all its groups close within the ranges. So the
-    boundary is exact; only what is finer than a cell may be missed.
+    A place is reached where all groups of the mechanism driven there close within the ranges. So the boundary is exact;
+    only details finer than a cell may be missed.
 
-    Raises UnknownName for a point that is not there; InvalidInput for one driver, four, ranges that lack, and where the
-    drivers do not follow from the place; NotAssembled where nothing is reached.
+    Raises UnknownName for an unknown point; InvalidInput for one driver or four, for missing ranges, and where the
+    drivers do not follow from the place; NotAssembled where the point reaches no place.
 
     >>> from compoundkin.model.elements import drive, link
     >>> arm = Mechanism("Arm", link("frame", A=0), link("upper", A=0, B=2), link("fore", B=0, P=1), drive("upper"),
@@ -175,23 +175,23 @@ def workspace(
     structure = solving_order_of(mechanism).structure
     known = driver_ranges(structure, ranges)
     free = free_drivers(structure, point, orientation)
-    started = starting_values(solving_order_of(structure), {}, "")
+    started = starting_values(solving_order_of(structure), {})
     values = {name: value_in_range(value, known.get(name)) for name, value in started.items()}
-    led = PrescribedPoint.of(
+    prescribed = PrescribedPoint.of(
         structure.mechanism, point, free, {name: v for name, v in values.items() if name not in free}
     )
     pose = reference_pose(structure, values, None if modes == EVERY_MODE else modes)
     own = GroupModes({} if modes == EVERY_MODE else signs_of_pose(pose))
-    reach = Reach(led, {name: known[name] for name in free if name in known}, own, None, orientation)
-    z, angle = reached_by_driving(led, known)
+    reach = Reach(prescribed, {name: known[name] for name in free if name in known}, own, None, orientation)
+    z, angle = reached_by_driving(prescribed, known)
     met = reach.meets(z, angle) if len(z) else np.zeros(0, dtype=bool)
     if not met.any():
         raise _nothing(reach)
     lattice = _lattice(reach := reach.occurring(z[met], angle[met]), z[met], cells)
     curves = boundaries(reach, lattice)
     outer, inner = (tuple(c for c in curves if (signed_area(c) > 0.0) == is_outer) for is_outer in (True, False))
-    told = "the assembly modes of solve" if own.signs else "every assembly mode"
-    return Workspace(point, free, dict(known), orientation, told, outer, inner, lattice, reach, pose)
+    counted = "the assembly modes of solve" if own.signs else "every assembly mode"
+    return Workspace(point, free, dict(known), orientation, counted, outer, inner, lattice, reach, pose)
 
 
 def _lattice(reach: Reach, z: Number, cells: int | None) -> Lattice:
@@ -200,9 +200,9 @@ def _lattice(reach: Reach, z: Number, cells: int | None) -> Lattice:
     wide = usual if cells is None else cells
     if not FEWEST <= wide <= MOST:
         raise InvalidInput(Problem("cells", f"{wide} cells are no lattice", f"give {FEWEST} to {MOST}"))
-    size = reach.led.driven.size
+    size = reach.prescribed.driven.size
     if reach.angle is not None:
-        # of all angles the drivers reach more: the region is looked for first
+        # the sampled places have any angle: find the region of this one first
         first = lattice_of(reach, _box(z, size), CELLS_OF_THREE)
         z = first.places[first.inside]
         if not len(z):
@@ -211,7 +211,7 @@ def _lattice(reach: Reach, z: Number, cells: int | None) -> Lattice:
 
 
 def _nothing(reach: Reach) -> NotAssembled:
-    what = f"{reach.led.point} reaches no region: the mechanism cannot be assembled in it within the ranges"
+    what = f"{reach.prescribed.point} reaches no region: the mechanism cannot be assembled in it within the ranges"
     return NotAssembled(Problem("workspace", what, 'widen the ranges, leave orientation out, or try modes="all"'))
 
 
@@ -221,16 +221,16 @@ def _box(z: Number, size: float) -> tuple[complex, complex]:
     return low - complex(wide, wide), high + complex(wide, wide)
 
 
-# So many values of each driver are tried to see about where the point gets, with two drivers and with three.
+# Samples of each driver for the extent of the region, with two drivers and with three.
 TRIED = {2: 40, 3: 12}
 # A full turn is not tried at round angles, where poses are special.
 SEAM = 0.123
-# So many of the places that they reach are enough to tell configurations and extent.
+# So many places suffice for configurations and extent.
 ENOUGH = 3000
 
 
 def driver_ranges(structure: Structure, ranges: Mapping[str, Any] | None) -> dict[str, tuple[float, float]]:
-    """Return the ranges of the drivers that have one. By a call, or by the ends of guides."""
+    """Return the ranges of the drivers that have one, from the call or the ends of guides."""
     problems = [
         Problem(f"ranges.{name}", f"there is no driver {name!r}", suggestion(name, list(structure.driven)))
         for name in ranges or {}
@@ -288,15 +288,15 @@ def free_drivers(structure: Structure, point: str, orientation: float | None) ->
             raise InvalidInput(Problem("orientation", what, "leave it out"))
         return free
     if len(free) < 2:
-        told = f"one driver ({free[0]}) moves {point}, on a curve" if free else f"no driver moves {point}"
+        fault = f"one driver ({free[0]}) moves {point}, on a curve" if free else f"no driver moves {point}"
         how = f'a curve is drawn by compoundkin.plots.paths(motion, "{point}"); name a point that more drivers move'
-        raise InvalidInput(Problem("workspace", f"{told}: that is no region", how))
-    what = f"{len(free)} drivers ({', '.join(free)}) move {point}, and a place and an angle are led by three at most"
+        raise InvalidInput(Problem("workspace", f"{fault}: that is no region", how))
+    what = f"{len(free)} drivers ({', '.join(free)}) move {point}, but a place and an angle determine three at most"
     raise InvalidInput(Problem("workspace", what, "hold some: replace their drives by links of one piece"))
 
 
 def _drivers_of(structure: Structure, link: str) -> Iterator[str]:
-    """Yield the drivers that may move a link, some of them again."""
+    """Yield the drivers that may move a link, possibly repeated."""
     group = next((group for group in structure.groups if link in group.links), None)
     if group is not None:
         yield from (step.drive.name for body in group.bodies for step in body.driven if not step.is_passive)
@@ -310,58 +310,58 @@ def _drivers_of(structure: Structure, link: str) -> Iterator[str]:
             yield from _drivers_of(structure, step.parent)
 
 
-def reached_by_driving(led: PrescribedPoint, ranges: Mapping[str, tuple[float, float]]) -> tuple[Number, Number]:
-    """Return places (n,) that the point is driven to in any mode. The angles of its link too."""
-    count = TRIED[len(led.free)]
+def reached_by_driving(prescribed: PrescribedPoint, ranges: Mapping[str, tuple[float, float]]) -> tuple[Number, Number]:
+    """Return places (n,) of the point in any mode over the drivers' ranges, and the angles of its link."""
+    count = TRIED[len(prescribed.free)]
     axes = [
         np.linspace(*ranges[name], count) if name in ranges else SEAM + TURN * np.arange(count) / count
-        for name in led.free
+        for name in prescribed.free
     ]
     grid = [axis.ravel() for axis in np.meshgrid(*axes)]
-    drives = {**led.given.drives, **{name: (values[None],) for name, values in zip(led.free, grid, strict=True)}}
-    given = led.given.of_poses(grid[0].size).driven(drives)
+    sampled = {name: (values[None],) for name, values in zip(prescribed.free, grid, strict=True)}
+    drives = {**prescribed.inputs.drives, **sampled}
+    given = prescribed.inputs.of_poses(grid[0].size).driven(drives)
     with np.errstate(all="ignore"):
-        found = AllModes.of(led.driven, given)
+        found = AllModes.of(prescribed.driven, given)
         closed = np.asarray(found.block.failed) == 0
-        z, angle, real = (found.full(array).ravel() for array in (*led.placed(found.block), closed))
+        z, angle, real = (found.full(array).ravel() for array in (*prescribed.placed(found.block), closed))
     z, angle = z[real], angle[real]
     thin = slice(None, None, max(1, z.size // ENOUGH))
     return z[thin], angle[thin]
 
 
-# So many angles of the point's link are tried where any will do.
+# Samples of the link's angle where the orientation is free.
 ANGLES = 12
 
 
 def inverse_rates(reach: Reach, z: Number, angle: Number, number: Number) -> Number:
-    """Return the rates (n, drivers, coordinates) of drivers as the point is led.
+    """Return the rates (n, drivers, coordinates) of drivers by the coordinates of the prescribed point, without units.
 
-    They are free of units. Its coordinates are x, y and, where it is led, the angle of its link; `number` is the
-    configuration of each place.
+    The coordinates are x, y and, where it is prescribed, the angle of the point's link; `number` is the configuration
+    of each place.
     """
     cuts = [slice(k, k + BLOCK) for k in range(0, max(len(z), 1), BLOCK)]
     return np.concatenate([_rates(reach, z[k], angle[k], number[k]) for k in cuts])
 
 
 def _rates(reach: Reach, z: Number, angle: Number, number: Number) -> Number:
-    led, size = reach.led, reach.led.driven.size
+    prescribed, size = reach.prescribed, reach.prescribed.driven.size
     signs = ModeSigns({k: v[number][None] for k, v in (reach.live or {}).items()})
     columns = []
-    for moved, unit in ((ALONG, size), (ACROSS, size), *([(TURN_OF, 1.0)] if led.turns else [])):
-        block, _ = led.block(z, angle, 1, moved)
+    for moved, unit in ((ALONG, size), (ACROSS, size), *([(TURN_OF, 1.0)] if prescribed.turns else [])):
+        block, _ = prescribed.block(z, angle, 1, moved)
         with np.errstate(all="ignore"):
-            run(led.led, block, signs)
-            rates = {name: one.derivative(1) for name, one in led.coordinates(block).items()}
-        units = {name: 1.0 if led.driven.structure.driven_angles[name] else size for name in rates}
+            run(prescribed.inverse, block, signs)
+            rates = {name: one.derivative(1) for name, one in prescribed.coordinates(block).items()}
+        units = {name: 1.0 if prescribed.driven.structure.driven_angles[name] else size for name in rates}
         columns.append([np.broadcast_to(one, (1, len(z)))[0] * unit / units[name] for name, one in rates.items()])
     return np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
 
 
 def least_condition_numbers(reach: Reach, lattice: Lattice) -> Number:
-    """Return the least condition numbers (n,) at the inner places of a lattice.
+    """Return the least condition numbers (n,) of the Jacobian to the point at the inner places of a lattice.
 
-    They are of the Jacobian to the point alone, over the configurations that lead there; where the point's link may
-    have any angle, over some angles too.
+    They are the least over the configurations that lead there; with a free orientation, over some angles too.
     """
     z = lattice.places[lattice.inside]
     least = np.full(len(z), np.nan)
@@ -374,18 +374,18 @@ def least_condition_numbers(reach: Reach, lattice: Lattice) -> Number:
 
 
 def _condition(rates: Number) -> Number:
-    """Return the condition numbers of the place by the drivers, from the drivers' rates."""
+    """Return the condition numbers of the point's Jacobian by the drivers, from the drivers' rates."""
     unit = np.eye(rates.shape[1])
     safe = np.where(np.isfinite(rates).all(axis=(1, 2))[:, None, None], rates, 0.0 * unit)
-    held = np.abs(np.linalg.det(safe)) > 0.0
-    values = np.linalg.svd(np.linalg.inv(np.where(held[:, None, None], safe, unit))[:, :2], compute_uv=False)
-    return np.where(held, values[:, 0] / values[:, -1], np.inf)
+    regular = np.abs(np.linalg.det(safe)) > 0.0
+    values = np.linalg.svd(np.linalg.inv(np.where(regular[:, None, None], safe, unit))[:, :2], compute_uv=False)
+    return np.where(regular, values[:, 0] / values[:, -1], np.inf)
 
 
 def rate_determinants(reach: Reach, lattice: Lattice) -> Number:
     """Return the determinants of the drivers' rates over a lattice, (configurations, rows, columns).
 
-    Of the configurations that occur, NaN where each is none; none where the point's link may have any angle.
+    NaN where a configuration does not occur; empty with a free orientation.
     """
     if reach.live is None or reach.seeks_angle:
         return np.empty((0, *lattice.places.shape))

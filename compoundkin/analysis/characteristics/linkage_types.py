@@ -23,7 +23,6 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
-from compoundkin.structure.kinematic_structure import Structure as Structure_of_kinematic_structure
 
 
 @dataclass(frozen=True)
@@ -307,7 +306,7 @@ class FourLinks:
     driven: str
 
 
-def loops_of_four(structure: Structure_of_kinematic_structure) -> tuple[FourLinks, ...]:
+def loops_of_four(structure: Structure) -> tuple[FourLinks, ...]:
     """Return all loops of four links, those with the frame first.
 
     >>> import compoundkin as ck
@@ -324,7 +323,7 @@ def loops_of_four(structure: Structure_of_kinematic_structure) -> tuple[FourLink
                                                  [rank[name] for name in loop.links])))  # fmt: skip
 
 
-def _solved_in(structure: Structure_of_kinematic_structure) -> dict[str, int]:
+def _solved_in(structure: Structure) -> dict[str, int]:
     """Tell when each link is solved: the frame and its driven links one by one, then the groups."""
     order = {link: k for k, link in enumerate(structure.ground.links)}
     for group in structure.groups:

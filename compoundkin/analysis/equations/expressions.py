@@ -10,7 +10,7 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from compoundkin.analysis.equations.notation import LATEX, TEXT, Notation, joined_terms, six_digits, sum_written
+from compoundkin.analysis.equations.notation import LATEX, TEXT, EquationNotation, joined_terms, six_digits, sum_written
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.series import Series
 from compoundkin.model.pairs.loop_terms import Implicit, ProfileVector, Sum, Unknown, Values, rotated
@@ -30,8 +30,8 @@ class Product:
         """Return its value."""
         return reduce(mul, (factor.at(values) for factor in self.factors), self.number)
 
-    def written(self, how: Notation) -> tuple[int, str]:
-        """Write it. Its sign, and the rest."""
+    def written(self, how: EquationNotation) -> tuple[int, str]:
+        """Return the sign and the rest."""
         number = float(first_entry(self.number))
         size = [] if abs(number) == 1.0 and self.factors else [six_digits(abs(number))]
         ordered = sorted(self.factors, key=lambda factor: factor.place)
@@ -77,7 +77,7 @@ class Expression:
 
 
 def total(*parts: Expression | Product) -> Expression:
-    """Return the sum. What is zero is left out, and numbers alone are added up."""
+    """Return the sum, without zeros, numbers alone added up."""
     products = [own for part in parts for own in (part.products if isinstance(part, Expression) else (part,))]
     number = sum(own.number for own in products if not own.factors)
     found = [own for own in products if own.factors and np.any(own.number != 0.0)]
@@ -85,7 +85,7 @@ def total(*parts: Expression | Product) -> Expression:
 
 
 def turn_product(number: Number, factors: tuple[Factor, ...], angle: Sum, is_sine: bool) -> Product:
-    """Return a product with the sine or cosine of an angle. Right angles are taken out of it.
+    """Return a product with the sine or cosine of an angle, reduced by right angles.
 
     >>> from compoundkin.model.pairs.loop_terms import Unknown
     >>> right = Sum(np.pi / 2, ((1.0, Unknown("angle", "yoke")),))
@@ -115,7 +115,7 @@ class Length:
         """Return its value."""
         return self.sum.at(values)
 
-    def written(self, how: Notation) -> str:
+    def written(self, how: EquationNotation) -> str:
         """Write it; a sum in brackets."""
         if self.symbol:
             return how.known(self.symbol)
@@ -135,7 +135,7 @@ class TurnFactor:
         """Return its value."""
         return (np.sin if self.is_sine else np.cos)(self.angle.at(values))
 
-    def written(self, how: Notation) -> str:
+    def written(self, how: EquationNotation) -> str:
         """Write it."""
         return how.turn(self.is_sine, sum_written(self.angle, how, how.angle))
 
@@ -154,7 +154,7 @@ class Rate:
         found = sum(factor * values[unknown.rate_key(self.order)] for factor, unknown in self.sum.parts)
         return found**2 if self.is_squared else found
 
-    def written(self, how: Notation) -> str:
+    def written(self, how: EquationNotation) -> str:
         """Write it; a sum of several in brackets."""
         found = sum_written(self.sum, how, six_digits, self.order)
         if self.is_squared:
@@ -178,7 +178,7 @@ class ProfilePart:
         found = rotated(self.of.angle.at(values), self.of.place(moving).derivative(self.order))
         return found.imag if self.is_imaginary else found.real
 
-    def written(self, how: Notation) -> str:
+    def written(self, how: EquationNotation) -> str:
         """Write it."""
         angle = sum_written(self.of.angle, how, how.angle)
         profile = how.profile(self.of.symbol, self.order)
@@ -187,9 +187,9 @@ class ProfilePart:
 
 @dataclass(frozen=True, eq=False)
 class Partial:
-    """The derivative of a function by an unknown, found by series. Only its value is known.
+    """The derivative of a function by an unknown, by a truncated Taylor series.
 
-    `sums` are the unknowns of the function in terms of those that are left.
+    `sums` are the unknowns of the function in terms of the remaining ones.
     """
 
     place: ClassVar[int] = 2
@@ -206,14 +206,14 @@ class Partial:
         }
         return self.of.series(moving).derivative(1)
 
-    def written(self, how: Notation) -> str:
+    def written(self, how: EquationNotation) -> str:
         """Write it."""
         return how.partial(self.of, self.by)
 
 
 @dataclass(frozen=True, eq=False)
 class SecondRate:
-    """The second rate of a function at constant rates, found by series."""
+    """The second rate of a function at constant rates, by a truncated Taylor series."""
 
     place: ClassVar[int] = 2
     of: Implicit
@@ -227,9 +227,9 @@ class SecondRate:
             found[unknown.key] = Series((value, rate, np.zeros_like(rate)))
         return self.of.series(found).derivative(2)
 
-    def written(self, how: Notation) -> str:
+    def written(self, how: EquationNotation) -> str:
         """Write it."""
-        return how.bend(self.of)
+        return how.second_rate(self.of)
 
 
 Factor: TypeAlias = Length | TurnFactor | Rate | ProfilePart | Partial | SecondRate

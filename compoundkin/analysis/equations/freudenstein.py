@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.notation import LATEX, TEXT, Notation, six_digits, sum_written
+from compoundkin.analysis.equations.notation import LATEX, TEXT, EquationNotation, six_digits, sum_written
 from compoundkin.analysis.equations.reduced_system import substituted
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, wrapped
@@ -41,7 +41,7 @@ def freudenstein(mechanism: Mechanism | Structure) -> tuple[FourBarConstants | S
 
 
 def constants_of(equations: LoopEquations) -> Iterator[FourBarConstants | SliderCrankConstants]:
-    """Return those of all loops of equations that are known already."""
+    """Yield the constants of all loops that have such an equation."""
     for loop in equations.loops:
         terms = list(substituted(loop.terms, equations.system.sums))
         found = _four_bar(loop.loop, terms, equations) or _slider_crank(loop.loop, terms, equations)
@@ -50,7 +50,7 @@ def constants_of(equations: LoopEquations) -> Iterator[FourBarConstants | Slider
 
 
 def _four_bar(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -> FourBarConstants | None:
-    """Of three vectors that turn, one after another, and the frame's."""
+    """Return the constants of three successive turning vectors and the frame's; None for any other loop."""
     still, moving = _around(terms)
     if len(moving) != 3 or any(own.length.parts for own in still):
         return None
@@ -67,7 +67,7 @@ def _four_bar(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -> Fo
 
 
 def _slider_crank(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -> SliderCrankConstants | None:
-    """Of a crank on the frame, a rod, and a displacement in a fixed direction."""
+    """Return the constants of a crank on the frame, a rod and a displacement in a fixed direction, else None."""
     still, moving = _around(terms)
     sliding = [own for own in still if own.length.parts]
     pins = (pair for pair in equations.structure.pairs if pair.is_simple and pair.free_is_angle)
@@ -88,7 +88,7 @@ def _slider_crank(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -
 
 
 def _around(terms: Sequence[Term]) -> tuple[list[Vector], list[Vector]]:
-    """Vectors that do not turn, and those that do, in the order in which they follow; none where there are others."""
+    """Return the fixed and the turning vectors of a loop in order; none where it has other terms."""
     vectors = [own for own in terms if isinstance(own, Vector)]
     still = [not own.angle.parts for own in vectors]
     turning = [own for own in vectors if own.angle.parts]
@@ -112,7 +112,7 @@ def _owner(own: Vector) -> Unknown:
 
 
 def _direction(own: Vector, base: Number) -> Sum:
-    """The angle of a vector, counted from a base."""
+    """Return the angle of a vector from a base line."""
     constant = wrapped(own.angle.constant + (np.pi if own.sign < 0 else 0.0) - np.angle(base))
     return Sum(np.where(np.abs(constant) < STRAIGHT, 0.0, constant)[()], own.angle.parts)
 
@@ -151,7 +151,7 @@ class FourBarConstants(ShortRepr):
         }
 
     def at(self, values: Values) -> tuple[Number, Number]:
-        """Return what is to be zero, from values of the unknowns by keys."""
+        """Return the residuals from values of the unknowns by keys."""
         one, three, four = (angle.at(values) for angle in self.angles)
         k = self.constants
         output = k["K1"] * np.cos(four) - k["K2"] * np.cos(one) + k["K3"] - np.cos(one - four)
@@ -167,7 +167,7 @@ class FourBarConstants(ShortRepr):
         """Written as LaTeX."""
         return self.written(LATEX)
 
-    def written(self, how: Notation) -> tuple[str, str]:
+    def written(self, how: EquationNotation) -> tuple[str, str]:
         """Write both equations."""
         one, three, four = self.angles
         k, times = _names(how), how.between
@@ -179,7 +179,7 @@ class FourBarConstants(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SliderCrankConstants(ShortRepr):
-    """The like of Freudenstein's equation for a slider-crank, of crank angle and displacement.
+    """The counterpart of Freudenstein's equation for a slider-crank, in crank angle and displacement.
 
     `lengths` are a (crank), b (rod) and e (offset of the guide, to its left); the angle is counted from the guide, the
     displacement from the foot of the crank's pin. K1 = 2a, K2 = 2ae, K3 = a^2 - b^2 + e^2.
@@ -197,7 +197,7 @@ class SliderCrankConstants(ShortRepr):
         return {"K1": 2.0 * a, "K2": 2.0 * a * e, "K3": a**2 - b**2 + e**2}
 
     def at(self, values: Values) -> tuple[Number]:
-        """Return what is to be zero, from values of the unknowns by keys."""
+        """Return the residuals from values of the unknowns by keys."""
         angle, x, k = self.angle.at(values), self.displacement.at(values), self.constants
         return (k["K1"] * x * np.cos(angle) + k["K2"] * np.sin(angle) - k["K3"] - x**2,)
 
@@ -211,7 +211,7 @@ class SliderCrankConstants(ShortRepr):
         """Written as LaTeX."""
         return self.written(LATEX)
 
-    def written(self, how: Notation) -> tuple[str]:
+    def written(self, how: EquationNotation) -> tuple[str]:
         """Write the equation."""
         x = sum_written(self.displacement, how, six_digits)
         x = f"({x})" if " " in x or x.startswith("-") else x
@@ -222,15 +222,15 @@ class SliderCrankConstants(ShortRepr):
 
 
 def _between(first: Sum, second: Sum) -> Sum:
-    """The second angle less the first, within half a turn."""
+    """Return the first angle minus the second, within half a turn."""
     found = difference(first, second)
     constant = wrapped(found.constant)
     return Sum(np.where(np.abs(constant) < STRAIGHT, 0.0, constant)[()], found.parts)
 
 
-def _names(how: Notation) -> list[str]:
+def _names(how: EquationNotation) -> list[str]:
     return [f"K_{{{k}}}" if how is LATEX else f"K{k}" for k in range(1, 6)]
 
 
-def _cos(angle: Sum, how: Notation) -> str:
+def _cos(angle: Sum, how: EquationNotation) -> str:
     return how.turn(False, sum_written(angle, how, how.angle))

@@ -22,9 +22,9 @@ from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms, S
 from compoundkin.structure import Structure, decompose
 from compoundkin.structure.graph import loops_through
 
-# A vector shorter than this part of the mechanism is the rounding of none.
+# A vector shorter than this part of the size is rounding.
 NO_LENGTH = 1e-12
-# More loops than this would be read by nobody, and take long to write.
+# Nobody would read more loops than this, and they take long to write.
 MOST_LOOPS = 200
 # Equations of positions, velocities and accelerations.
 ORDERS = (0, 1, 2)
@@ -32,10 +32,10 @@ ORDERS = (0, 1, 2)
 
 @dataclass(frozen=True, eq=False)
 class LoopEquations:
-    """All equations of a mechanism, their unknowns and known lengths. The lengths go by their symbols.
+    """All equations of a mechanism with their unknowns, and the known lengths by their symbols.
 
-    `system` has the same equations row by row, with all put in that is plainly known; `rates` are those of velocities
-    and accelerations, as far as they were asked for.
+    `system` has the same equations row by row after substitution; `rates` are those of velocities and accelerations up
+    to the order of the call.
     """
 
     structure: Structure
@@ -59,12 +59,12 @@ class LoopEquations:
 
     @property
     def velocity(self) -> RateEquations:
-        """The equations of velocities. Raises InvalidInput where they were not asked for."""
+        """The equations of velocities. Raises InvalidInput for equations of order 0."""
         return self._of_order(1)
 
     @property
     def acceleration(self) -> RateEquations:
-        """The equations of accelerations. Raises InvalidInput where they were not asked for."""
+        """The equations of accelerations. Raises InvalidInput for equations below order 2."""
         return self._of_order(2)
 
     def _of_order(self, order: int) -> RateEquations:
@@ -80,14 +80,14 @@ class LoopEquations:
 
 @checked
 def loop_equations(mechanism: Mechanism | Structure, order: int = 0) -> LoopEquations:
-    """Return the vector-loop equations of a mechanism, those of rates too if asked for.
+    """Return the vector-loop equations of a mechanism, those of rates too above order 0.
 
     Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and
-    ties the angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that
-    stands for them; a profile by its parameter. Gears, belts and racks close no loop: they add one equation each.
+    ties the angles of block and guide. A loop crosses a pin in a slot, a disc cam and the like by their equivalent
+    block or bar, a profile by its parameter. Gears, belts and racks close no loop: they add one equation each.
 
     Order 1 adds the equations of velocities, order 2 those of accelerations: `velocity` and `acceleration`, with one
-    matrix. Unknowns that an equation plainly gives are put in there (`system`): driven ones, angles that slides tie.
+    matrix. Driven unknowns and angles that slides tie are substituted there (`system`).
 
     Raises InvalidInput for more than `MOST_LOOPS` loops and for other orders.
 
@@ -125,7 +125,7 @@ def loop_equations(mechanism: Mechanism | Structure, order: int = 0) -> LoopEqua
 
 
 def _beside(structure: Structure, pairs: Sequence[Pair], walk: LoopWalk) -> Iterator[Auxiliary | Implicit]:
-    """The equations of pairs that no loop runs through; those that ask for vectors have them through other pairs."""
+    """Yield the equations of pairs that no loop crosses; their vectors run through other pairs."""
     others = [pair for pair in structure.pairs if not walk.terms[pair.name].is_crossed]
     found = [(pair, equation) for pair in others for equation in walk.terms[pair.name].equations]
     yield from (own for _, own in found if isinstance(own, Auxiliary) and own.along is None)

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.rate_equations import rate_equations
-from compoundkin.analysis.equations.reduced_system import condition_number, least_squares, pose_values, unknown_values
+from compoundkin.analysis.equations.rate_equations import condition_number, least_squares, rate_equations
+from compoundkin.analysis.equations.reduced_system import pose_values, unknown_values
 from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
@@ -31,11 +31,11 @@ from compoundkin.structure import Structure
 
 # Iterations stop when no correction is larger (radians, or parts of the size): the next one would be its square.
 CONVERGED = 1e-9
-# Residuals below this (parts of the size, or radians) are rounding: nothing is left to correct.
+# Residuals below this (parts of the size, or radians) are rounding.
 ROUNDING = 1e-15
-# Where the digits double, so many steps are enough from any estimate that leads anywhere.
+# Digits double at each step: so many steps suffice from any estimate that converges.
 STEPS = 20
-# A matrix of pure numbers with a greater condition leads nowhere.
+# A matrix of pure numbers with a greater condition number gives no useful step.
 SINGULAR = 1e12
 
 
@@ -57,7 +57,7 @@ class NewtonIterations(ShortRepr):
 
     @property
     def converged(self) -> bool:
-        """Whether the corrections came down to rounding."""
+        """Whether the corrections fell to rounding."""
         return not self.failure
 
     @property
@@ -73,7 +73,7 @@ def newton_iterations(
     """Return Newton's iterations of a pose, at one value of every driver.
 
     Values are radians and lengths, by drivers; `start` has estimates by the keys of unknowns (`loop_equations`). The
-    others are taken from the drawing, or where it does not tell all links from the first pose that is solved.
+    others come from the drawing, or where it does not place all links, from the first assembled pose.
 
     Raises InvalidInput for values that are missing and for mechanisms of several designs, UnknownName for other names,
     NotDetermined for a structure that cannot be solved.
@@ -85,7 +85,7 @@ def newton_iterations(
     """
     equations = loop_equations(mechanism)
     structure, system = equations.structure, equations.system
-    solving_order_of(structure)  # which raises what keeps it from being solved
+    solving_order_of(structure)  # raises NotDetermined
     if any(np.size(v) > 1 for own in structure.mechanism.geometry.points.values() for v in own.values()):
         raise InvalidInput(Problem("dimensions", "they are arrays of several designs", "iterate one of them"))
     values = _numbers("values", values, list(structure.driven))
@@ -93,7 +93,7 @@ def newton_iterations(
     missing = [own.driver for own in equations.drivers if own.driver not in values]
     if missing:
         raise InvalidInput(Problem("values", f"the driver {missing[0]!r} has no value", "give one for every driver"))
-    given = {own.key: system.given_by(own, values[by.driver]) for own, by in system.given.items()}
+    given = {own.key: system.prescribed_value(own, values[by.driver]) for own, by in system.given.items()}
     known = all(own.key in estimates for own in system.unknowns)
     first = estimates if known else {**_drawn(equations), **estimates}
     x = np.array([float(np.ravel(first[own.key])[0]) for own in system.unknowns])
@@ -101,7 +101,7 @@ def newton_iterations(
 
 
 def _numbers(where: str, given: Mapping[str, Any], known: Sequence[str]) -> dict[str, float]:
-    """One finite number by each name."""
+    """Return one finite number for each name."""
     found = {}
     for name, value in given.items():
         if name not in known:
@@ -138,7 +138,7 @@ def _iterated(equations: LoopEquations, x: Number, given: Mapping[str, Number]) 
 
 
 def _failure(steps: int, pure: Number) -> str:
-    """Why there is no further step; "" where there is one."""
+    """Return why there is no further step, or an empty text."""
     if not np.isfinite(pure).all():
         return f"after {steps} steps the estimates are no numbers"
     if condition_number(pure) > SINGULAR:
@@ -147,7 +147,7 @@ def _failure(steps: int, pure: Number) -> str:
 
 
 def _drawn(equations: LoopEquations) -> Mapping[str, Number]:
-    """The unknowns as they are drawn; else those of the first pose that is assembled."""
+    """Return the drawn unknowns, else those of the first assembled pose."""
     structure = equations.structure
     mechanism = structure.mechanism
     poses: dict[str, Pose] = {FRAME: FIXED, **mechanism.drawn_poses}
@@ -163,7 +163,7 @@ def _drawn(equations: LoopEquations) -> Mapping[str, Number]:
 
 
 def _first_assembled(structure: Structure) -> Mapping[str, Number]:
-    """The unknowns at the first pose of the drivers' own ranges that is assembled."""
+    """Return the unknowns at the first assembled pose of the drivers' own ranges."""
     ranges = {drive.name: FULL_TURN for drive in structure.mechanism.drives if drive.values is None and not drive.law}
     turning = {name: values for name, values in ranges.items() if structure.driven_angles[name]}
     with warnings.catch_warnings():

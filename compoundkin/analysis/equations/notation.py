@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,7 +31,7 @@ def latex(equation: Equation) -> str:
     return _equation(equation, LATEX)
 
 
-def _equation(equation: Equation, how: Notation) -> str:
+def _equation(equation: Equation, how: EquationNotation) -> str:
     if isinstance(equation, VectorLoop):
         return f"{_vectors(equation.terms, how)} = 0"
     if isinstance(equation, DriverEquation):
@@ -40,9 +40,8 @@ def _equation(equation: Equation, how: Notation) -> str:
     if isinstance(equation, Implicit):
         result = "0" if equation.result is None else how.unknown(equation.result)
         return f"{how.function(equation)} = {result}"
-    constant = (
-        how.angle if all(unknown.kind in ("angle", "direction") for _, unknown in equation.sum.parts) else six_digits
-    )
+    is_angle = all(unknown.kind in ("angle", "direction") for _, unknown in equation.sum.parts)
+    constant = how.angle if is_angle else six_digits
     if equation.along is not None:
         moved = how.part(_vectors(equation.path, how), sum_written(equation.along, how, how.angle))
         rest = sum_written(equation.sum, how, six_digits)
@@ -50,11 +49,11 @@ def _equation(equation: Equation, how: Notation) -> str:
     return f"{sum_written(equation.sum, how, constant)} = 0"
 
 
-def _vectors(terms: Sequence[Term], how: Notation) -> str:
+def _vectors(terms: Sequence[Term], how: EquationNotation) -> str:
     return joined_terms([(term.sign, _vector(term, how)) for term in terms])
 
 
-def _vector(term: Term, how: Notation) -> str:
+def _vector(term: Term, how: EquationNotation) -> str:
     angle = sum_written(term.angle, how, how.angle)
     if isinstance(term, ProfileVector):
         return how.turned(how.known(term.symbol), angle if angle != "0" else "")
@@ -66,164 +65,97 @@ def _vector(term: Term, how: Notation) -> str:
 ROUNDING = 1e-9
 _LETTERS = {**LETTERS, "direction": r"\varphi"}
 _DOTS = ("", r"\dot", r"\ddot")
-_PRIMES = ("", "'", "''")
 
 
-class TextNotation:
-    """How the parts are written in a text."""
+@dataclass(frozen=True)
+class EquationNotation:
+    """How the parts of equations are written: as LaTeX or as text. `between` separates factors."""
 
-    between = " "
+    is_latex: bool
+    between: str
 
-    @staticmethod
-    def unknown(of: Unknown, order: int = 0) -> str:
+    def unknown(self, of: Unknown, order: int = 0) -> str:
         """Write an unknown, or a rate of it."""
-        return of.rate_key(order)
-
-    @staticmethod
-    def known(symbol: str) -> str:
-        """Write the symbol of a length that is known."""
-        return symbol
-
-    @staticmethod
-    def angle(value: float) -> str:
-        """Write an angle in degrees."""
-        return f"{np.degrees(value):.6g} deg"
-
-    @staticmethod
-    def turned(length: str, angle: str) -> str:
-        """Write a vector of a length, turned by an angle."""
-        inside = f"({angle})" if " " in angle else angle
-        return f"{length} e^(i {inside})" if angle else length
-
-    @staticmethod
-    def part(vector: str, angle: str) -> str:
-        """Write the part of a vector along a direction."""
-        return f"Re[({vector}) e^(-i ({angle or '0'}))]"
-
-    @staticmethod
-    def function(of: Implicit) -> str:
-        """Write a function of which only the value is known."""
-        return f"F{of.number}[{of.pair}]({', '.join(unknown.key for unknown in of.unknowns)})"
-
-    @staticmethod
-    def value(driver: str) -> str:
-        """Write the value that a driver gives."""
-        return f"value of {driver}"
-
-    @staticmethod
-    def turn(is_sine: bool, angle: str) -> str:
-        """Write the sine or cosine of an angle."""
-        return f"{'sin' if is_sine else 'cos'}({angle})"
-
-    @staticmethod
-    def squared(of: str) -> str:
-        """Write the square of a rate."""
-        return f"({of})^2" if " " in of else f"{of}^2"
-
-    @staticmethod
-    def profile(symbol: str, order: int) -> str:
-        """Write a profile's vector, or a derivative of it by its argument."""
-        return symbol.replace("(", f"{_PRIMES[order]}(", 1)
-
-    @staticmethod
-    def component(is_imaginary: bool, vector: str) -> str:
-        """Write the real or imaginary part of a vector."""
-        return f"{'Im' if is_imaginary else 'Re'}[{vector}]"
-
-    @staticmethod
-    def partial(of: Implicit, by: Unknown) -> str:
-        """Write the derivative of a function by an unknown."""
-        return f"dF{of.number}[{of.pair}]/d({by.key})"
-
-    @staticmethod
-    def bend(of: Implicit) -> str:
-        """Write the second rate of a function at constant rates of the unknowns."""
-        return f"F{of.number}''[{of.pair}]"
-
-
-class LatexNotation:
-    """How the parts are written in LaTeX."""
-
-    between = r"\,"
-
-    @staticmethod
-    def unknown(of: Unknown, order: int = 0) -> str:
-        """Write an unknown, or a rate of it."""
+        if not self.is_latex:
+            return of.rate_key(order)
         letter = r"\theta" if of.kind == "angle" else _LETTERS[of.kind]
         dotted = f"{_DOTS[order]}{{{letter}}}" if order else letter
         return rf"{dotted}_{{\text{{{escaped_latex(of.owner)}}}}}"
 
-    @staticmethod
-    def known(symbol: str) -> str:
-        """Write the symbol of a length that is known."""
-        return rf"\overline{{\text{{{escaped_latex(symbol)}}}}}"
+    def known(self, symbol: str) -> str:
+        """Write the symbol of a known length."""
+        return rf"\overline{{\text{{{escaped_latex(symbol)}}}}}" if self.is_latex else symbol
 
-    @staticmethod
-    def angle(value: float) -> str:
+    def angle(self, value: float) -> str:
         """Write an angle in degrees."""
-        return rf"{np.degrees(value):.6g}^\circ"
+        return rf"{np.degrees(value):.6g}^\circ" if self.is_latex else f"{np.degrees(value):.6g} deg"
 
-    @staticmethod
-    def turned(length: str, angle: str) -> str:
+    def turned(self, length: str, angle: str) -> str:
         """Write a vector of a length, turned by an angle."""
-        if "+" in angle or "-" in angle[1:]:
-            return rf"{length}\,e^{{i({angle})}}"
-        return rf"{length}\,e^{{i{angle}}}" if angle else length
+        if not angle:
+            return length
+        if self.is_latex:
+            inside = f"({angle})" if "+" in angle or "-" in angle[1:] else angle
+            return rf"{length}\,e^{{i{inside}}}"
+        return f"{length} e^(i {f'({angle})' if ' ' in angle else angle})"
 
-    @staticmethod
-    def part(vector: str, angle: str) -> str:
-        """Write the part of a vector along a direction."""
-        return rf"\operatorname{{Re}}\left[\left({vector}\right)e^{{-i({angle or '0'})}}\right]"
+    def part(self, vector: str, angle: str) -> str:
+        """Write the component of a vector along a direction."""
+        if self.is_latex:
+            return rf"\operatorname{{Re}}\left[\left({vector}\right)e^{{-i({angle or '0'})}}\right]"
+        return f"Re[({vector}) e^(-i ({angle or '0'}))]"
 
-    @staticmethod
-    def function(of: Implicit) -> str:
+    def function(self, of: Implicit) -> str:
         """Write a function of which only the value is known."""
-        arguments = r",\,".join(map(LatexNotation.unknown, of.unknowns))
-        return f"{_function(of)}({arguments})"
+        if self.is_latex:
+            arguments = r",\,".join(map(self.unknown, of.unknowns))
+            return f"{_function(of)}({arguments})"
+        return f"F{of.number}[{of.pair}]({', '.join(unknown.key for unknown in of.unknowns)})"
 
-    @staticmethod
-    def value(driver: str) -> str:
-        """Write the value that a driver gives."""
-        return rf"q_{{\text{{{escaped_latex(driver)}}}}}"
+    def value(self, driver: str) -> str:
+        """Write the value that a driver prescribes."""
+        return rf"q_{{\text{{{escaped_latex(driver)}}}}}" if self.is_latex else f"value of {driver}"
 
-    @staticmethod
-    def turn(is_sine: bool, angle: str) -> str:
+    def turn(self, is_sine: bool, angle: str) -> str:
         """Write the sine or cosine of an angle."""
-        name = r"\sin" if is_sine else r"\cos"
-        return f"{name}({angle})" if "+" in angle or "-" in angle or angle[:1].isdigit() else f"{name} {angle}"
+        name = "sin" if is_sine else "cos"
+        if not self.is_latex:
+            return f"{name}({angle})"
+        return rf"\{name}({angle})" if "+" in angle or "-" in angle or angle[:1].isdigit() else rf"\{name} {angle}"
 
-    @staticmethod
-    def squared(of: str) -> str:
+    def squared(self, of: str) -> str:
         """Write the square of a rate."""
-        return f"({of})^{{2}}" if "+" in of or "-" in of else f"{of}^{{2}}"
+        if self.is_latex:
+            return f"({of})^{{2}}" if "+" in of or "-" in of else f"{of}^{{2}}"
+        return f"({of})^2" if " " in of else f"{of}^2"
 
-    @staticmethod
-    def profile(symbol: str, order: int) -> str:
+    def profile(self, symbol: str, order: int) -> str:
         """Write a profile's vector, or a derivative of it by its argument."""
-        primes = r"\prime" * order
-        return f"{LatexNotation.known(symbol)}^{{{primes}}}" if order else LatexNotation.known(symbol)
+        if self.is_latex:
+            primes = r"\prime" * order
+            return f"{self.known(symbol)}^{{{primes}}}" if order else self.known(symbol)
+        return symbol.replace("(", "'" * order + "(", 1)
 
-    @staticmethod
-    def component(is_imaginary: bool, vector: str) -> str:
+    def component(self, is_imaginary: bool, vector: str) -> str:
         """Write the real or imaginary part of a vector."""
-        return rf"\operatorname{{{'Im' if is_imaginary else 'Re'}}}\left[{vector}\right]"
+        name = "Im" if is_imaginary else "Re"
+        return rf"\operatorname{{{name}}}\left[{vector}\right]" if self.is_latex else f"{name}[{vector}]"
 
-    @staticmethod
-    def partial(of: Implicit, by: Unknown) -> str:
+    def partial(self, of: Implicit, by: Unknown) -> str:
         """Write the derivative of a function by an unknown."""
-        return rf"\partial {_function(of)}/\partial {LatexNotation.unknown(by)}"
+        if self.is_latex:
+            return rf"\partial {_function(of)}/\partial {self.unknown(by)}"
+        return f"dF{of.number}[{of.pair}]/d({by.key})"
 
-    @staticmethod
-    def bend(of: Implicit) -> str:
+    def second_rate(self, of: Implicit) -> str:
         """Write the second rate of a function at constant rates of the unknowns."""
-        return _function(of, r"\ddot{F}")
+        return _function(of, r"\ddot{F}") if self.is_latex else f"F{of.number}''[{of.pair}]"
 
 
-Notation: TypeAlias = type[TextNotation] | type[LatexNotation]
-TEXT, LATEX = TextNotation, LatexNotation
+TEXT, LATEX = EquationNotation(False, " "), EquationNotation(True, r"\,")
 
 
-def sum_written(of: Sum, how: Notation, constant: Callable[[float], str], order: int = 0) -> str:
+def sum_written(of: Sum, how: EquationNotation, constant: Callable[[float], str], order: int = 0) -> str:
     """Write a sum of unknowns, or of their rates; `constant` writes its constant."""
     parts = []
     for factor, unknown in of.parts:

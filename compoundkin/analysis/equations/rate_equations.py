@@ -29,16 +29,14 @@ from compoundkin.analysis.equations.expressions import (
 from compoundkin.analysis.equations.reduced_system import (
     EquationRow,
     EquationScales,
-    RateSolution,
     ReducedSystem,
     pose_values,
     prescribed_values,
-    solution_of,
 )
 from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.moving_lines import shape_of
 from compoundkin.model.pairs.loop_terms import ProfileVector, Sum, Unknown, Values, Vector
@@ -60,7 +58,7 @@ class SymbolArray(ShortRepr):
 
     @property
     def rows(self) -> tuple[str, ...]:
-        """Each row's entries as text, but those that are zero."""
+        """The entries of each row as text, without zeros."""
         return tuple(
             ", ".join(f"[{k}] {one.text}" for k, one in enumerate(row, 1) if not one.is_zero) for row in self.entries
         )
@@ -82,20 +80,53 @@ class SymbolArray(ShortRepr):
 
     @checked
     def at(self, values: Mapping[str, Any]) -> Number:
-        """Return the numbers, (..., rows, columns). Those of unknowns and rates go by their keys.
+        """Return the numbers, (..., rows, columns), from values of unknowns and rates by their keys.
 
-        Raises InvalidInput for what has no value.
+        Raises InvalidInput for a missing value.
         """
         entries = {(k, j): own for k, row in enumerate(self.entries) for j, own in enumerate(row) if not own.is_zero}
         try:
             numbers = {place: own.at(values) for place, own in entries.items()}
         except KeyError as error:
-            raise InvalidInput(Problem("values", f"{error.args[0]} has none", "give all that is in it")) from None
+            raise InvalidInput(
+                Problem("values", f"{error.args[0]} has none", "give a value of every unknown and rate in it")
+            ) from None
         shape = np.broadcast_shapes(*map(np.shape, numbers.values()))
         found = np.zeros((*shape, len(self.entries), len(self.entries[0]) if self.entries else 0))
         for (k, j), number in numbers.items():
             found[..., k, j] = number
         return found
+
+
+# A matrix of pure numbers with a greater condition number is singular: an angle at a limit position is known to 1e-8,
+# the square root of rounding, and rates would have less than three digits.
+SINGULAR = 1e6
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RateSolution(ShortRepr):
+    """The numbers of rate equations at all poses.
+
+    `matrix` is (..., rows, columns), `right_side` (..., rows), `solution` (..., columns). `condition` is that of the
+    matrix with all lengths in parts of the mechanism's size. Where it is beyond 1e6 the matrix is `singular` and the
+    solution NaN: a limit position. A matrix with more rows than columns has no determinant (NaN); its solution fits all
+    rows in the sense of least squares, exactly where they agree.
+    """
+
+    unknowns: tuple[Unknown, ...]
+    matrix: Number
+    right_side: Number
+    solution: Number
+    determinant: Number
+    condition: Number
+    singular: Number
+
+    def rate(self, key: str) -> Number:
+        """Return the rate of one unknown by its key. Raises UnknownName for one that is not among the unknowns."""
+        keys = [unknown.key for unknown in self.unknowns]
+        if key not in keys:
+            raise UnknownName(Problem(key, "there is no such unknown", suggestion(key, keys)))
+        return self.solution[..., keys.index(key)]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -119,7 +150,7 @@ class RateEquations(ShortRepr):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each row is: a loop's x or y, a pair, a driver."""
+        """The name of each row: a loop's x or y, a pair, a driver."""
         return tuple(row.name for row in self.system.rows)
 
     @property
@@ -129,12 +160,12 @@ class RateEquations(ShortRepr):
 
     @property
     def scales(self) -> EquationScales:
-        """What makes pure numbers of rows and columns."""
+        """The divisors that make rows and columns pure numbers."""
         return self.system.scales(self.structure.mechanism.geometry.size)
 
     @property
     def rows(self) -> tuple[str, ...]:
-        """The equations one by one, as text."""
+        """The equations as text, one each."""
         return tuple(
             f"{_row(self.system.unknowns, row, self.order).text} = {right.text}"
             for row, (right,) in zip(self.matrix.entries, self.right_side.entries, strict=True)
@@ -145,7 +176,7 @@ class RateEquations(ShortRepr):
         """Return matrix, right-hand side and solution in numbers, at all poses of a motion.
 
         Arrays are of the motion's shape, with axes for rows and columns at the end; NaN where a pose is not assembled.
-        Instead of a motion it may be the values of all unknowns and the rates of those given, by their keys.
+        Instead of a motion `where` may be the values of all unknowns and the rates of the driven ones, by their keys.
         Raises InvalidInput for a motion that was not solved to the order of the equations or is of another mechanism,
         and for values left out or that do not broadcast.
 
@@ -178,7 +209,7 @@ class RateEquations(ShortRepr):
         if missing:
             raise InvalidInput(Problem("values", f"{missing[0]} has none", "give all unknowns, and the rates given"))
         found = {key: real_numbers(key, value) for key, value in values.items()}
-        # what is infinite is nowhere
+        # an infinite value marks a pose that is not assembled
         return {key: np.where(np.isinf(value), np.nan, value) for key, value in found.items()}
 
     def _solved(self, shape: tuple[int, ...], values: Values) -> RateSolution:
@@ -196,8 +227,8 @@ class RateEquations(ShortRepr):
 def rate_equations(structure: Structure, system: ReducedSystem, order: int) -> RateEquations:
     """Return the equations of velocities or accelerations of a system of rows.
 
-    What is known goes to the right: the rates of given unknowns, and for accelerations the second derivative that is
-    left where all rates are constant.
+    The right-hand side has the rates of the driven unknowns, and for accelerations the second derivative at constant
+    rates.
     """
     matrix = tuple(tuple(row_derivative(row, unknown) for unknown in system.unknowns) for row in system.rows)
     right = []
@@ -208,8 +239,44 @@ def rate_equations(structure: Structure, system: ReducedSystem, order: int) -> R
 
 
 def _row(unknowns: Sequence[Unknown], row: Sequence[Expression], order: int) -> Expression:
-    pairs = zip(unknowns, row, strict=True)
-    return total(*(entry.times(1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own, entry in pairs))
+    entries = zip(unknowns, row, strict=True)
+    return total(*(entry.times(1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own, entry in entries))
+
+
+def solution_of(unknowns: Sequence[Unknown], matrix: Number, right: Number, scale: EquationScales) -> RateSolution:
+    """Solve the equations at all poses."""
+    rows, columns = matrix.shape[-2:]
+    known = np.isfinite(matrix).all(axis=(-2, -1))
+    pure = matrix * scale.columns / scale.rows[:, None]
+    condition = np.full(known.shape, np.nan)
+    condition[known] = condition_number(pure[known])
+    singular = known & ~(condition <= SINGULAR)
+    fine = known & ~singular & np.isfinite(right).all(axis=-1)
+    solution, determinant = np.full((*known.shape, columns), np.nan), np.full(known.shape, np.nan)
+    if rows >= columns:
+        solution[fine] = scale.columns * least_squares(pure[fine], right[fine] / scale.rows)
+    if rows == columns:
+        determinant[known] = np.linalg.det(matrix[known])
+    return RateSolution(tuple(unknowns), matrix, right, solution, determinant, condition, singular)
+
+
+def least_squares(matrix: Number, right: Number) -> Number:
+    """Return the solutions of linear systems, those of least squares where there are more rows than columns."""
+    if matrix.shape[-2] == matrix.shape[-1]:
+        return np.linalg.solve(matrix, right[..., None])[..., 0]
+    return np.einsum("...ij,...j->...i", np.linalg.pinv(matrix), right)
+
+
+def condition_number(matrix: Number) -> Number:
+    """Return the greatest singular value over the least; infinite for fewer rows than columns."""
+    rows, columns = matrix.shape[-2:]
+    if not columns:
+        return np.ones(matrix.shape[:-2])
+    if rows < columns:
+        return np.full(matrix.shape[:-2], np.inf)
+    values = np.linalg.svd(matrix, compute_uv=False)
+    with np.errstate(divide="ignore"):
+        return values[..., 0] / values[..., -1]
 
 
 # A number and a rate that it multiplies.
@@ -223,18 +290,18 @@ def row_derivative(row: EquationRow, unknown: Unknown) -> Expression:
     if row.function is not None:
         function, sums = row.function, row.sums
         return total(*(Product(own.slope(unknown), (Partial(function, by, sums),)) for by, own in sums.items()))
-    parts = [part for term in row.terms for part in _slope(term, unknown, row.is_imaginary)]
+    parts = [part for term in row.terms for part in _derivative_terms(term, unknown, row.is_imaginary)]
     return total(Product(row.sum.slope(unknown)), *parts)
 
 
 def second_row_derivative(row: EquationRow) -> Expression:
-    """Return the second derivative of a row by time. All unknowns have constant rates."""
+    """Return the second derivative of a row by time at constant rates of all unknowns."""
     if row.function is not None:
         return total(Product(1.0, (SecondRate(row.function, row.sums),)))
-    return total(*(part for term in row.terms for part in _bend(term, row.is_imaginary)))
+    return total(*(part for term in row.terms for part in _constant_rate_terms(term, row.is_imaginary)))
 
 
-def _slope(term: Vector | ProfileVector, unknown: Unknown, is_imaginary: bool) -> Iterator[Product]:
+def _derivative_terms(term: Vector | ProfileVector, unknown: Unknown, is_imaginary: bool) -> Iterator[Product]:
     turning = term.angle.slope(unknown)
     if isinstance(term, ProfileVector):
         yield _profile(term, 1, is_imaginary, 0, term.argument.slope(unknown))
@@ -244,7 +311,7 @@ def _slope(term: Vector | ProfileVector, unknown: Unknown, is_imaginary: bool) -
     yield _across(term, term.sign * turning, is_imaginary, (Length(term.symbol, term.length),))
 
 
-def _bend(term: Vector | ProfileVector, is_imaginary: bool) -> Iterator[Product]:
+def _constant_rate_terms(term: Vector | ProfileVector, is_imaginary: bool) -> Iterator[Product]:
     sign, turning = term.sign, _rate(term.angle)
     if isinstance(term, ProfileVector):
         passing = _rate(term.argument)
@@ -264,14 +331,14 @@ def _bend(term: Vector | ProfileVector, is_imaginary: bool) -> Iterator[Product]
 
 
 def _rate(of: Sum) -> Rated | None:
-    """The rate of a sum, as a number and what it multiplies; nothing for a constant."""
+    """Return the rate of a sum as a number times a rate; None for a constant."""
     if len(of.parts) == 1:
         return of.parts[0][0], Rate(Sum(0.0, ((1.0, of.parts[0][1]),)))
     return (1.0, Rate(Sum(0.0, of.parts))) if of.parts else None
 
 
 def _times(number: float, one: Rated, other: Rated) -> tuple[Number, tuple[Rate, ...]]:
-    """A number times two rates, which are a square if they are of one unknown."""
+    """Return a number times two rates, which are a square if they are of one unknown."""
     factor = number * one[0] * other[0]
     if len(one[1].sum.parts) == 1 and one[1].sum.parts == other[1].sum.parts:
         return factor, (replace(one[1], is_squared=True),)
@@ -283,14 +350,14 @@ def _squared(of: Rated) -> Rated:
 
 
 def _across(term: Vector, number: float, is_imaginary: bool, factors: tuple[Length | Rate, ...]) -> Product:
-    """A part of i e^(i a): minus the sine, or the cosine."""
+    """Return the real or imaginary part of i e^(i a): minus the sine, or the cosine."""
     return turn_product(number if is_imaginary else -number, factors, term.angle, not is_imaginary)
 
 
 def _profile(
     term: ProfileVector, order: int, is_imaginary: bool, quarters: int, number: float, *rates: Rate
 ) -> Product:
-    """A part of a profile's derivative turned by quarters: of i z the real part is minus the imaginary one of z."""
+    """Return a part of a profile's derivative turned by quarters: Re(i z) = -Im(z)."""
     for _ in range(quarters):
         number = number if is_imaginary else -number
         is_imaginary = not is_imaginary

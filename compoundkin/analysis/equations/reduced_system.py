@@ -1,8 +1,8 @@
-"""The position equations row by row, in the unknowns that are left after substitution, with values of the unknowns.
+"""The position equations row by row, in the unknowns that remain after substitution, with values of the unknowns.
 
-Substituted is what an equation plainly says: an unknown that is a driver's value, the angle of a block on a guide,
-whether that stands still or moves. What is left is what textbooks write: two rows a loop, and as many unknowns; gears,
-belts, and drivers between two moving links keep their rows.
+Ties of one or two unknowns are substituted: an unknown that is a driver's value, the angle of a block on a guide,
+whether that stands still or moves. Textbooks write the rest: two rows a loop, and as many unknowns; gears, belts, and
+drivers between two moving links keep their rows.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import numpy as np
 from compoundkin.analysis.equations.vector_loops import DriverEquation, VectorLoop, pair_terms
 from compoundkin.base.arrays import Number, cross, unwrapped, wrapped
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.loop_terms import (
@@ -35,16 +34,23 @@ from compoundkin.model.pairs.loop_terms import (
 )
 from compoundkin.structure import Structure
 
-# A factor nearer to one than this is one: of angles that a slide ties, factors are one and nothing else.
+# A factor nearer to one than this is one: the angles that a slide ties have the factors 1 and -1 alone.
 ONE = 1e-12
 NOTHING = Sum()
 
 
+class EquationScales(NamedTuple):
+    """Divisors that make rows and columns pure numbers: the size for lengths, else one."""
+
+    rows: Number
+    columns: Number
+
+
 @dataclass(frozen=True, eq=False)
 class EquationRow:
-    """One scalar equation. A sum, parts of vectors, or a function is to be zero.
+    """One scalar equation: a sum, the real or imaginary part of a sum of vectors, or a function is zero.
 
-    Of vectors it is the real part, or the imaginary one. `sums` are the unknowns of a function in terms of those left.
+    `sums` are the unknowns of a function in terms of the remaining ones.
     """
 
     name: str
@@ -56,7 +62,7 @@ class EquationRow:
     is_angle: bool = False
 
     def at(self, values: Values) -> Number:
-        """Return what is to be zero. Whole turns are left out where they are not counted."""
+        """Return the residual, within half a turn where full turns are not counted."""
         if self.function is not None:
             return self.function.at({unknown.key: own.at(values) for unknown, own in self.sums.items()})
         vector = sum((term.at(values) for term in self.terms), 0j)
@@ -65,7 +71,7 @@ class EquationRow:
 
     @cached_property
     def unknowns(self) -> frozenset[Unknown]:
-        """All that it depends on."""
+        """All unknowns that it depends on."""
         sums = [self.sum, *self.sums.values()]
         for term in self.terms:
             sums += [term.angle, term.argument if isinstance(term, ProfileVector) else term.length]
@@ -73,7 +79,7 @@ class EquationRow:
 
     @property
     def is_length(self) -> bool:
-        """Whether what is to be zero is a length."""
+        """Whether the residual is a length."""
         if self.function is not None:
             return not self.function.is_angle
         return bool(self.terms) or any(unknown.is_length for _, unknown in self.sum.parts)
@@ -81,10 +87,10 @@ class EquationRow:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReducedSystem(ShortRepr):
-    """Rows, and the unknowns that are left in them.
+    """Rows, and the unknowns that remain in them.
 
-    `given` are those whose values and rates drivers give, each with its driver's equation; `sums` has all unknowns in
-    terms of those left and those given.
+    `given` are those whose values and rates drivers prescribe, each with its driver's equation; `sums` has all unknowns
+    in terms of the remaining and the prescribed ones.
     """
 
     rows: tuple[EquationRow, ...]
@@ -94,19 +100,19 @@ class ReducedSystem(ShortRepr):
 
     @property
     def tied(self) -> tuple[tuple[Unknown, Sum], ...]:
-        """What was put in besides drivers: an unknown, and what it is."""
+        """The substituted unknowns, each with its sum."""
         return tuple((unknown, own) for unknown, own in self.sums.items() if own.parts != ((1.0, unknown),))
 
     def scales(self, size: float) -> EquationScales:
-        """Return what makes pure numbers of rows and columns."""
+        """Return the divisors that make rows and columns pure numbers."""
         profiles = [term for row in self.rows for term in row.terms if isinstance(term, ProfileVector)]
         known = {unknown: own.scale for own in profiles for _, unknown in own.argument.parts}
         rows = [size if row.is_length else 1.0 for row in self.rows]
         columns = [size if unknown.is_length else known.get(unknown, 1.0) for unknown in self.unknowns]
         return EquationScales(np.array(rows), np.array(columns))
 
-    def given_by(self, unknown: Unknown, value: Number, order: int = 0) -> Number:
-        """Return a given unknown, or a rate of it, from that of its driver."""
+    def prescribed_value(self, unknown: Unknown, value: Number, order: int = 0) -> Number:
+        """Return a driven unknown, or a rate of it, from that of its driver."""
         if unknown.kind == "given":
             return value
         own = _sum_substituted(self.given[unknown].sum, self.sums)
@@ -119,17 +125,17 @@ def reduced_system(
     drivers: Sequence[DriverEquation],
     unknowns: Sequence[Unknown],
 ) -> ReducedSystem:
-    """Return the rows in the unknowns that are left."""
+    """Return the rows in the remaining unknowns."""
     ties = [own for own in auxiliary if isinstance(own, Auxiliary) and own.along is None and not own.counts_turns]
     sums: dict[Unknown, Sum] = {unknown: Sum(0.0, ((1.0, unknown),)) for unknown in unknowns}
-    used = {id(own) for own in ties if _tie(own.sum, sums)}
+    used = {id(own) for own in ties if _substitute_tie(own.sum, sums)}
     given = {}
     for own in drivers:
         plain = _sum_substituted(own.sum, sums).parts
         if len(plain) == 1 and _is_one(plain[0][0]) and plain[0][1] not in given:
             given[plain[0][1]] = own
             used.add(id(own))
-    # a row of which nothing is left is one of two ties that say the same
+    # a row without unknowns repeats another tie
     rows = [row for k, loop in enumerate(loops, 1) for row in _of_loop(loop, k, sums)]
     rows += [_of_auxiliary(own, sums) for own in auxiliary if id(own) not in used]
     for own in drivers:
@@ -141,8 +147,8 @@ def reduced_system(
     return ReducedSystem(tuple(row for row in rows if row.unknowns), left, given, sums)
 
 
-def _tie(of: Sum, sums: dict[Unknown, Sum]) -> bool:
-    """Put in the first unknown of a tie of one or two, wherever it is; False where it is none."""
+def _substitute_tie(of: Sum, sums: dict[Unknown, Sum]) -> bool:
+    """Substitute the first unknown of a tie of one or two everywhere; return False where the sum is no such tie."""
     found = _sum_substituted(of, sums)
     if not found.parts or len(found.parts) > 2 or not all(_is_one(factor) for factor, _ in found.parts):
         return False
@@ -160,7 +166,7 @@ def _is_one(factor: Number) -> bool:
 
 
 def _sum_substituted(of: Sum, sums: Mapping[Unknown, Sum]) -> Sum:
-    """A sum with unknowns put in; factors that cancel are left out."""
+    """Return a sum after substitution, without unknowns whose factors cancel."""
     constant, parts = of.constant, dict[Unknown, Number]()
     for factor, unknown in of.parts:
         own = sums.get(unknown, Sum(0.0, ((1.0, unknown),)))
@@ -171,7 +177,7 @@ def _sum_substituted(of: Sum, sums: Mapping[Unknown, Sum]) -> Sum:
 
 
 def substituted(terms: Iterable[Term], sums: Mapping[Unknown, Sum], along: Sum | None = None) -> Iterator[Term]:
-    """Return vectors with unknowns put in. A direction, if any, turns them back."""
+    """Yield vectors after substitution, as seen from the direction `along` if it is given."""
     for term in terms:
         angle = _sum_substituted(term.angle if along is None else difference(along, term.angle), sums)
         if isinstance(term, ProfileVector):
@@ -217,8 +223,8 @@ def unknown_values(
 ) -> dict[str, Number]:
     """Return the values of all unknowns by their keys.
 
-    They come from the angles of links, the places of their points, and coordinates of pairs. What pairs leave free is
-    what the places of their points leave of their vectors.
+    They come from the angles of links, the places of their points, and coordinates of pairs. A pair's unknowns close
+    its vectors between the places of its points.
     """
     values = dict(angles)
     geometry = structure.mechanism.geometry
@@ -226,21 +232,23 @@ def unknown_values(
         terms = pair_terms(pair, pair.ends(geometry))
         if terms.unknowns:
             first, second = (place(name, p) for name, p in zip(pair.members, terms.points, strict=False))
-            values.update(_left_free(terms, values, second - first, partial(coordinate, pair)))
+            values.update(_free_unknowns(terms, values, second - first, partial(coordinate, pair)))
     return values
 
 
 def prescribed_values(motion: Motion, system: ReducedSystem, order: int) -> dict[str, Number]:
-    """Return the rates that drivers give, or at order 0 the values. They go by their keys."""
+    """Return the rates that drivers prescribe, or at order 0 the values, by their keys."""
     found = {}
     for unknown, equation in system.given.items():
         value = motion.drives[equation.driver].derivative(order)
-        found[unknown.rate_key(order)] = system.given_by(unknown, value, order)
+        found[unknown.rate_key(order)] = system.prescribed_value(unknown, value, order)
     return found
 
 
-def _left_free(terms: LoopTerms, angles: Values, gap: Number, coordinate: Callable[[], Number]) -> Mapping[str, Number]:
-    """The unknowns of a pair between whose points is a gap."""
+def _free_unknowns(
+    terms: LoopTerms, angles: Values, gap: Number, coordinate: Callable[[], Number]
+) -> Mapping[str, Number]:
+    """Return the unknowns of a pair from the vector between its points."""
     arms = [arm for arm in terms.arms if isinstance(arm, Vector) and not arm.symbol]
     moved = {unknown for arm in arms for _, unknown in arm.length.parts}
     turning = [own for own in terms.unknowns if own.kind == "direction" and any(_turns(arm, own) for arm in terms.arms)]
@@ -260,84 +268,10 @@ def _turns(arm: object, unknown: Unknown) -> bool:
 
 
 def _lengths(arms: list[Vector], values: Values, rest: Number) -> dict[str, Number]:
-    """The lengths of one vector or two of known directions that make up the rest."""
+    """Return the lengths of one or two vectors of known directions whose sum is the rest."""
     along = [rotated(arm.angle.at(values), float(arm.sign)) for arm in arms]
     keys = [unknown.key for arm in arms for _, unknown in arm.length.parts]
     if len(arms) == 1:
         return {keys[0]: (rest * np.conj(along[0])).real}
     determinant = cross(along[0], along[1])
     return {keys[0]: cross(rest, along[1]) / determinant, keys[1]: cross(along[0], rest) / determinant}
-
-
-# A matrix of pure numbers with a greater condition is singular: an angle at a limit position is known to 1e-8, the
-# root of what rounding leaves, and rates would have less than three digits.
-SINGULAR = 1e6
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class RateSolution(ShortRepr):
-    """The numbers of rate equations at all poses.
-
-    `matrix` is (..., rows, columns), `right_side` (..., rows), `solution` (..., columns). `condition` is that of the
-    matrix with all lengths in parts of the mechanism's size. Where it is beyond 1e6 the matrix is `singular` and the
-    solution NaN: a limit position. A matrix with more rows than columns has no determinant (NaN); its solution fits all
-    rows in the sense of least squares, exactly where they agree.
-    """
-
-    unknowns: tuple[Unknown, ...]
-    matrix: Number
-    right_side: Number
-    solution: Number
-    determinant: Number
-    condition: Number
-    singular: Number
-
-    def rate(self, key: str) -> Number:
-        """Return the rate of one unknown by its key. Raises UnknownName for one that is not among the unknowns."""
-        keys = [unknown.key for unknown in self.unknowns]
-        if key not in keys:
-            raise UnknownName(Problem(key, "there is no such unknown", suggestion(key, keys)))
-        return self.solution[..., keys.index(key)]
-
-
-class EquationScales(NamedTuple):
-    """What makes pure numbers of rows and columns. It is the size for lengths, else one."""
-
-    rows: Number
-    columns: Number
-
-
-def solution_of(unknowns: Sequence[Unknown], matrix: Number, right: Number, scale: EquationScales) -> RateSolution:
-    """Solve the equations at all poses."""
-    rows, columns = matrix.shape[-2:]
-    known = np.isfinite(matrix).all(axis=(-2, -1))
-    pure = matrix * scale.columns / scale.rows[:, None]
-    condition = np.full(known.shape, np.nan)
-    condition[known] = condition_number(pure[known])
-    singular = known & ~(condition <= SINGULAR)
-    fine = known & ~singular & np.isfinite(right).all(axis=-1)
-    solution, determinant = np.full((*known.shape, columns), np.nan), np.full(known.shape, np.nan)
-    if rows >= columns:
-        solution[fine] = scale.columns * least_squares(pure[fine], right[fine] / scale.rows)
-    if rows == columns:
-        determinant[known] = np.linalg.det(matrix[known])
-    return RateSolution(tuple(unknowns), matrix, right, solution, determinant, condition, singular)
-
-
-def least_squares(matrix: Number, right: Number) -> Number:
-    """Return the solutions of systems. Of more rows than columns it is that of least squares."""
-    if matrix.shape[-2] == matrix.shape[-1]:
-        return np.linalg.solve(matrix, right[..., None])[..., 0]
-    return np.einsum("...ij,...j->...i", np.linalg.pinv(matrix), right)
-
-
-def condition_number(matrix: Number) -> Number:
-    """Return the greatest singular value over the least; infinite for fewer rows than columns."""
-    rows, columns = matrix.shape[-2:]
-    if not columns:
-        return np.ones(matrix.shape[:-2])
-    if rows < columns:
-        return np.full(matrix.shape[:-2], np.inf)
-    values = np.linalg.svd(matrix, compute_uv=False)
-    with np.errstate(divide="ignore"):
-        return values[..., 0] / values[..., -1]

@@ -1,6 +1,6 @@
-"""Closed loops of vectors and the equations of drivers: the walk around a loop, and what each pair adds to it.
+"""Closed loops of vectors and the equations of drivers: the walk around a loop, and the vectors of each pair.
 
-A pair adds vectors as its kind says, by the lower pairs that stand for it, or from its closure.
+A pair's vectors come from its kind, from its lower equivalent, or from its closure.
 """
 
 from __future__ import annotations
@@ -36,39 +36,39 @@ from compoundkin.structure import Loop
 
 @dataclass(frozen=True, eq=False, repr=False)
 class VectorLoop(ShortRepr):
-    """A closed loop of links, whose vectors have the sum zero. The sum is so in x and in y."""
+    """A closed loop of links: the sum of its vectors is zero in x and in y."""
 
     loop: Loop
     terms: tuple[Term, ...]
 
     def at(self, values: Values) -> Number:
-        """Return what is to be zero, complex."""
+        """Return the residual, complex."""
         return sum((term.at(values) for term in self.terms), 0j)
 
 
 @dataclass(frozen=True, eq=False)
 class DriverEquation:
-    """The equation of a driver: a sum of unknowns has its given value."""
+    """The equation of a driver: a sum of unknowns has the prescribed value."""
 
     driver: str
     sum: Sum
     is_angle: bool
 
     def at(self, values: Values, given: Number) -> Number:
-        """Return what is to be zero; angles but for whole turns."""
+        """Return the residual; of an angle it is within half a turn."""
         gap = self.sum.at(values) - given
         return wrapped(gap) if self.is_angle else gap
 
 
 Equation: TypeAlias = VectorLoop | Auxiliary | Implicit | DriverEquation
-# A point of a pair on a link, and what it is called.
+# A point of a pair on a link, and its label.
 Side: TypeAlias = tuple[Number, str]
 # An angle nearer than this to 0 or a half turn is one.
 STRAIGHT = 1e-9
 
 
 class LoopWalk:
-    """Walks from pair to pair and writes down the vectors, naming each length once."""
+    """The vectors from pair to pair, each length under a symbol of its own."""
 
     def __init__(self, terms: Mapping[str, LoopTerms], nothing: float) -> None:
         self.terms, self.nothing = terms, nothing
@@ -79,12 +79,12 @@ class LoopWalk:
         yield from self._through(loop.links, loop.pairs, self._side(loop.pairs[-1], loop.links[0]))
 
     def along(self, links: Sequence[str], pairs: Sequence[Pair], start: Side, end: Side) -> Iterator[Term]:
-        """Return the vectors of an open way. It runs from a point of its first link to one of its last."""
+        """Return the vectors of an open path from a point of its first link to one of its last."""
         last = yield from self._through(links, pairs, start)
         yield from self._on(links[-1], *last, *end)
 
     def _through(self, links: Sequence[str], pairs: Sequence[Pair], side: Side) -> Generator[Term, None, Side]:
-        """The vectors through pairs one after another; the side at which the last one is left."""
+        """Yield the vectors through successive pairs; return the far side of the last one."""
         for link, pair in zip(links, pairs, strict=False):
             yield from self._on(link, *side, *self._side(pair, link))
             first = link == pair.members[0]
@@ -105,21 +105,21 @@ class LoopWalk:
             yield arm
 
     def _on(self, link: str, start: Number, first: str, end: Number, last: str) -> Iterator[Vector]:
-        """The vector on a link between two of its points; none where they are one."""
+        """Yield the vector on a link between two of its points, none where they coincide."""
         line = end - start
         if np.all(np.abs(line) <= self.nothing):
             return
         angle = np.angle(line)
         sign, symbol = 1, _symbol(first, last)
         if np.all(np.abs(np.abs(angle) - np.pi) < STRAIGHT):
-            # against the link's axis: the vector between the points named the other way round, taken away
+            # against the link's axis: minus the vector from the second point to the first
             sign, angle, symbol = -1, 0.0 * angle, _symbol(last, first)
         symbol = self._named(symbol, link, np.abs(line))
         turned = angle_of(link).plus(np.where(np.abs(angle) < STRAIGHT, 0.0, angle))
         yield Vector(symbol, Sum(np.abs(line)), turned, sign)
 
     def _named(self, symbol: str, link: str, length: Number) -> str:
-        """A symbol that means one length."""
+        """Return a symbol that means this length alone."""
         known: Number = self.lengths.setdefault(symbol, length)
         if np.shape(known) == np.shape(length) and np.all(np.abs(known - length) <= self.nothing):
             return symbol
@@ -133,20 +133,20 @@ def _symbol(first: str, last: str) -> str:
 
 
 def pair_terms(pair: Pair, ends: Ends) -> LoopTerms:
-    """Return what a pair adds to vector loops.
+    """Return the vectors, unknowns and equations that a pair adds to vector loops.
 
-    A kind that does not say it has it from its lower equivalent. Where there is none, a loop crosses the pair by an
-    unknown vector, and what the pair holds are equations of which only the value is known.
+    Without terms of its kind they come from its lower equivalent. Without that too, a loop crosses the pair by an
+    unknown vector, and its closure gives equations of which only the value is known.
     """
-    said = pair.loop_terms(ends)
-    if said is not None:
-        return said
+    terms = pair.loop_terms(ends)
+    if terms is not None:
+        return terms
     lower = lower_equivalent(pair, ends)
     return _by_closure(pair, ends) if lower is None else _by_lower_pairs(pair, lower)
 
 
 def _by_lower_pairs(pair: Pair, lower: Equivalent) -> LoopTerms:
-    """A pin in a slot, a disc: a block that slides has its guide's angle, a bar one of its own.
+    """Return the terms of a lower equivalent: a sliding block has its guide's angle, a bar one of its own.
 
     Where both lower pairs slide, the block has the angle of the first guide, which ties that of the second.
     """
@@ -163,13 +163,13 @@ def _by_lower_pairs(pair: Pair, lower: Equivalent) -> LoopTerms:
 
 
 def _block_angle(slide: Pair, lower: Equivalent) -> Sum:
-    """The angle of the link between, by that of the link on which it slides."""
+    """Return the angle of the block from that of the link on which it slides."""
     k, ends = slide.members.index(lower.link), lower.ends[slide.name]
     return angle_of(slide.members[1 - k]).plus(end_angle(ends[1 - k]) - end_angle(ends[k]))
 
 
 def _sliding(own: Pair, lower: Equivalent, block: Sum, free: Mapping[str, Unknown]) -> Iterator[Vector]:
-    """The displacement in a lower pair that slides, backward where the guide is on the farther link."""
+    """Yield the displacement in a sliding lower pair, backward where the guide is on the farther link."""
     if own.name in free:
         inside = own.members[0] == lower.link
         guide = block if inside else angle_of(own.members[0])
@@ -178,14 +178,14 @@ def _sliding(own: Pair, lower: Equivalent, block: Sum, free: Mapping[str, Unknow
 
 
 def _across(pair: Pair, lower: Equivalent, block: Sum) -> Iterator[Vector]:
-    """The vector on the link between, from its first pair to its second."""
+    """Yield the vector on the block or bar from its first pair to its second."""
     start, stop = (_place(lower.ends[own.name][own.members.index(lower.link)]) for own in lower.pairs)
     if np.any(stop != start):
         yield Vector(f"r({pair.name})", Sum(np.abs(stop - start)), block.plus(np.angle(stop - start)))
 
 
 def _outside(own: Pair, lower: Equivalent) -> tuple[Number, str]:
-    """The point of a lower pair on the member that it joins, and its label."""
+    """Return the point of a lower pair on its member, and its label."""
     k = 1 - own.members.index(lower.link)
     is_guide = k == 0 and not own.free_is_angle
     return _place(lower.ends[own.name][k]), f"{own.letters[1]}'" if is_guide else own.letters[0]
@@ -197,7 +197,7 @@ def _place(end: End) -> Number:
 
 
 def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
-    """By the components of the vector across, unknown; with a carrier by the ways through other pairs."""
+    """Return terms with the unknown components of the vector across; with a carrier, the paths through other pairs."""
     x, y = Unknown("x", pair.name), Unknown("y", pair.name)
     first = angle_of(pair.members[0])
     across = Vector("", Sum(0.0, ((1.0, x),)), first), Vector("", Sum(0.0, ((1.0, y),)), first.plus(np.pi / 2.0))
@@ -215,7 +215,7 @@ def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
 def _functions(
     pair: Pair, ends: Ends, driven: tuple[Unknown, ...]
 ) -> Iterator[tuple[Callable[[tuple[Pose, ...]], Series], Unknown | None, bool]]:
-    """What the pair holds, as functions of poses, and whether it is an angle; the coordinate where it may be driven."""
+    """Yield the closures as functions of poses, with whether each is an angle; the coordinate where it is driven."""
 
     def residual(k: int) -> Callable[[tuple[Pose, ...]], Series]:
         return lambda poses: pair.closure(ends, poses)[k]
@@ -225,7 +225,7 @@ def _functions(
 
 
 def shortest_path(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:
-    """Return the links and pairs of a shortest way from a link to another."""
+    """Return the links and pairs of a shortest path from a link to another."""
     came: dict[str, tuple[str, Pair]] = {}
     queue = deque([start])
     while queue and end not in came:

@@ -13,8 +13,8 @@ from compoundkin.analysis.equations.freudenstein import FourBarConstants, consta
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations
 from compoundkin.analysis.equations.notation import LATEX, TEXT, latex, six_digits, sum_written, text
-from compoundkin.analysis.equations.rate_equations import RateEquations
-from compoundkin.analysis.equations.reduced_system import RateSolution, pose_values, prescribed_values
+from compoundkin.analysis.equations.rate_equations import RateEquations, RateSolution
+from compoundkin.analysis.equations.reduced_system import pose_values, prescribed_values
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
