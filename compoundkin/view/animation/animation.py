@@ -61,12 +61,12 @@ class Animation(Savable):
     size: float | None = None
 
     def __len__(self) -> int:
-        """How many frames there are."""
+        """The number of frames."""
         return len(self.timeline.frames)
 
     @property
     def seconds(self) -> float:
-        """How long it takes."""
+        """Its duration, seconds."""
         return self.timeline.seconds
 
     def frame(self, k: int) -> Picture:

@@ -130,7 +130,7 @@ def part_lines(writer: Writer, sketch: MovingSketch, part: MovingPart) -> list[s
 def _carried_round_fixed_points(
     writer: Writer, sketch: MovingSketch, part: MovingPart, angles: Number | None, inside: list[str]
 ) -> Iterator[list[str]]:
-    """The same part led round fixed points by links that turn about these, as a coupler by a crank, and turned back."""
+    """The same part carried round pivots by links that turn about these, as a coupler by a crank, and turned back."""
     scene, poses = sketch.scene, writer.timeline.poses
     for link, at in _carriers(sketch, part):
         pivot = _about_calm_point(sketch, MovingPart(link, at, ()))
@@ -172,7 +172,7 @@ def _reach(part: MovingPart) -> float:
 
 
 def _turned_angles(sketch: MovingSketch, link: str) -> Number:
-    """By how much a link is turned on the picture, clockwise there, radians counted over full turns, (poses,)."""
+    """The angles of a link on the picture from the pose shown, clockwise, unwrapped, (poses,)."""
     whole, here = sketch.scene.whole[link].theta, sketch.scene.here[link].theta
     if whole is None or here is None:
         return np.unwrap(np.angle(sketch.turns(link)))
@@ -185,7 +185,7 @@ def are_far_apart(timeline: Timeline, values: Number) -> bool:
 
 
 def _off(values: Number) -> float:
-    """By how much a smooth line through values is off between them, but where that is worst.
+    """The deviation of a smooth line through values between them, without the worst places.
 
     Each value is compared with the line through every second one of its neighbours, which is sixteen times as far off
     as that through all. At a limit position any line is off.
@@ -254,7 +254,7 @@ def _joined(runs: list[tuple[Number, Number]]) -> tuple[Number, Number]:
 
 
 def _run(times: Number, values: Number, seen: bool, away: complex) -> tuple[Number, Number]:
-    """Times and values with those between them; of what is not seen, the first and the last time."""
+    """Times and values with those between them; of hidden values the first and the last time."""
     return _smoothed(times, values) if seen else (times[[0, -1]], np.full((2, values.shape[1]), away))
 
 

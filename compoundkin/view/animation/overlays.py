@@ -223,7 +223,7 @@ class Caption(ShortRepr):
 
     @property
     def description(self) -> str:
-        """What is shown, in a sentence for those who do not see it."""
+        """A sentence that describes the animation."""
         mechanism = self.sketch.scene.mechanism
         return f"Motion of {mechanism.title}: {mechanism.in_numbers}"
 
@@ -275,7 +275,7 @@ class Caption(ShortRepr):
         return int(max(0, DIGITS - 1 - np.floor(np.log10(span))))
 
     def _gauged(self) -> Iterator[tuple[str, Number]]:
-        """What a gauge shows, with its values over the assembled poses."""
+        """The texts of gauges with their values over the assembled poses."""
         scene, motion = self.sketch.scene, self.sketch.motion
         if motion.time is not None:
             low, high = self._times.min(), self._times.max()
@@ -289,7 +289,7 @@ class Caption(ShortRepr):
             yield f"{name}, {shown.min():.5g} to {shown.max():.5g}{unit}", np.asarray(values, dtype=float)
 
     def _still(self, gauged: Sequence[tuple[str, Number]]) -> list[str]:
-        """The notes of what does not change."""
+        """The notes that do not change."""
         notes = self.notes(0)
         return [note for note, (_, values) in zip(notes, gauged, strict=True) if np.ptp(values) == 0]
 

@@ -53,7 +53,7 @@ class Timeline(ShortRepr):
 
     @property
     def hold(self) -> float:
-        """For how long a frame is shown, seconds."""
+        """The duration of a frame, seconds."""
         return self.seconds / len(self.frames)
 
     @cached_property
@@ -63,17 +63,17 @@ class Timeline(ShortRepr):
 
     @cached_property
     def times(self) -> Number:
-        """When they are shown, from 0 to 1."""
+        """Their times, from 0 to 1."""
         return np.concatenate([leg.times for leg in self.legs])
 
     @cached_property
     def directions(self) -> Number:
-        """For all of them whether the motion goes on, 1, or back, -1."""
+        """Their directions: 1 forward, -1 back."""
         return np.concatenate([np.full(len(leg.poses), leg.way) for leg in self.legs])
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:
-        """Where each leg is among all of them."""
+        """The slices of the legs among all poses."""
         ends = np.cumsum([0, *(len(leg.poses) for leg in self.legs)])
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
@@ -121,7 +121,7 @@ def timeline_of(
 
 
 def _lasting(wished: float | None, usual: float, count: int, rate: float) -> float:
-    """How long so many frames are shown: the given duration; else about the usual one, with frames of one length.
+    """The duration of some frames: the given duration; else about the usual one, with frames of one length.
 
     A GIF knows whole hundredths of a second only.
     """
@@ -146,7 +146,7 @@ def _clock(motion: Motion, design: int) -> Number:
 
 
 def _turns(motion: Motion) -> float:
-    """How many full turns the driver makes that makes the most."""
+    """The greatest number of full turns of a driver."""
     return max((float(np.max(np.ptp(row[0], axis=-1))) / (2.0 * np.pi) for row in _angles(motion)), default=0.0)
 
 

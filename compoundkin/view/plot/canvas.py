@@ -106,6 +106,15 @@ def constant_limits(values: Number, scale: float) -> tuple[float, float] | None:
     return middle - half, middle + half
 
 
+def set_vertical_margins(axes: Any, values: Number, scale: float, margin: float) -> None:
+    """Set the vertical limits: around values constant but for rounding, else with margins, parts of their range."""
+    still = constant_limits(values, scale)
+    if still is not None:
+        axes.set_ylim(*still)
+    else:
+        axes.margins(y=margin)
+
+
 def write_empty(axes: Any) -> None:
     """Write that there are no values, and leave out the ticks."""
     axes.text(0.5, 0.5, "no values", transform=axes.transAxes, ha="center", va="center", color=GREY)
@@ -227,7 +236,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class AxisScales:
-    """The ends of both axes, and which are logarithmic. An end is None where it follows from the curves."""
+    """The limits of both axes, and which are logarithmic. Limits are None where they follow from the curves."""
 
     xlim: tuple[float, float] | None = None
     ylim: tuple[float, float] | None = None
@@ -319,7 +328,7 @@ HEADROOM = 0.16
 def set_range(
     axes: Any, curves: Sequence[Plotted], lines: Sequence[tuple[Number, Number]], scales: AxisScales, near_limits: bool
 ) -> tuple[float, float] | None:
-    """Set the vertical range of curves. It is returned where values lie outside of it."""
+    """Set the vertical range of curves, and return it where values lie outside."""
     if scales.ylim is not None:
         axes.set_ylim(*scales.ylim)
         return None
@@ -381,7 +390,7 @@ MANY_DIGITS, POWER_OF_TEN = 1e4, 1e6
 
 @dataclass(frozen=True, eq=False)
 class PointLabel:
-    """A text that belongs to a point of an axes' plot. `towards` is the direction (complex) it is best put in."""
+    """A text that belongs to a point of an axes' plot. `towards` is its preferred direction, complex."""
 
     axes: Any
     x: float
@@ -430,7 +439,7 @@ def place_labels(figure: Any, labels: Sequence[PointLabel]) -> None:
 
 
 def _distinct(labels: Sequence[PointLabel]) -> list[PointLabel]:
-    """The labels without those that say the same of the same place: of a component that is the whole length."""
+    """The labels without repetitions at one place, as of a component that is the whole length."""
     found: list[PointLabel] = []
     for label in labels:
         place = label.axes.transData.transform((label.x, label.y))
@@ -463,7 +472,7 @@ def _written(label: PointLabel) -> Any:
 def _free(
     anchor: Number, half: Number, towards: complex, scale: float, curves: Number, taken: list[Number], inside: Number
 ) -> Number | None:
-    """The middle of the place that covers least of the curves, and nothing else; None where there is none."""
+    """The middle of the free place that covers least of the curves; None without a free place."""
     best, least = None, np.inf
     for farther in FARTHER:
         for turn in TURNS:
@@ -486,7 +495,7 @@ def _overlap(low: Number, high: Number, box: Number) -> bool:
 
 
 def _pixels(axes: Any) -> Number:
-    """Places of all curves of an axes on the canvas, close to each other."""
+    """Pixels of all curves of an axes, close to each other."""
     found = [np.zeros((0, 2))]
     for line in axes.get_lines():
         if line.get_transform() != axes.transData or len(line.get_xdata()) < 2:

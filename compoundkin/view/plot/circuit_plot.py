@@ -135,7 +135,7 @@ def _title(positions: Positions) -> str:
 
 
 def _default(found: Circuits) -> tuple[str, ...]:
-    """What is drawn where no quantity is named."""
+    """The quantities that are drawn where none is named."""
     outputs = tuple(name for name in found.structure.mechanism.outputs if not derivative_order(name))
     if outputs:
         return outputs
@@ -154,7 +154,7 @@ def _group_output(group: Group) -> str:
 
 
 def _legends(drawn: BranchDrawing, figure: Any) -> None:
-    """Which line is which branch, and what the marks mean."""
+    """Draw the legends of branches and of marks."""
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], **look, label=text) for text, look in _entries(drawn)]
@@ -166,7 +166,7 @@ def _legends(drawn: BranchDrawing, figure: Any) -> None:
 
 
 def _entries(drawn: BranchDrawing) -> list[tuple[str, dict[str, Any]]]:
-    """The branches; of many of them the circuits, of many circuits that on which solving begins."""
+    """The entries of the legend: branches; of many the circuits; of many of these the one where solving begins."""
     shown = drawn.circuits.circuits
     if len(drawn.circuits.branches) <= MOST_ENTRIES:
         return [(_branch_names(c, (b,)), drawn.look(c, b)) for c in shown for b in c.branches]
@@ -193,7 +193,7 @@ def _meanings(drawn: BranchDrawing) -> list[tuple[str, dict[str, Any]]]:
 
 
 def _branch_names(circuit: Circuit, branches: Sequence[Branch]) -> str:
-    """What some branches of a circuit are called."""
+    """The name of some branches of a circuit."""
     first, last = branches[0].number, branches[-1].number
     return f"circuit {circuit.number}, " + (f"branch {first}" if first == last else f"branches {first} to {last}")
 
@@ -214,7 +214,7 @@ START: Mapping[str, Any] = MappingProxyType({"linestyle": "none", "marker": "D",
 
 @dataclass(frozen=True, eq=False)
 class BranchDrawing:
-    """What all panels share. The circuits, the horizontal axis, and where the one turn of a periodic driver begins."""
+    """The data of all panels: circuits, the horizontal axis, and where the turn of a periodic driver begins."""
 
     positions: Positions
     across: Plotted
@@ -284,7 +284,7 @@ class BranchDrawing:
             labels += self._names(axes, curves, low)
 
     def _cut(self, x: Number, y: Number, low: float | None) -> tuple[Number, Number]:
-        """A curve brought into one turn of what is an angle, both ways."""
+        """A curve with its angles in one turn, along both axes."""
         if self.low is not None:
             x, y = wrapped_curve(x, y, self.low)
         return (x, y) if low is None else wrapped_curve(y, x, low)[::-1]
@@ -308,7 +308,7 @@ class BranchDrawing:
         return [np.where(known, v, np.nan) for v, known in both if np.any(known)]
 
     def _at(self, x: Number, y: Number, low: float | None) -> tuple[Number, Number]:
-        """A place as it is shown."""
+        """A place within the turns that are shown."""
         x = x if self.low is None else x - turns_above(x, self.low, TURN)
         return x, (y if low is None else y - turns_above(y, low, TURN))
 
@@ -343,13 +343,11 @@ class BranchDrawing:
             axes.set_xlim(self.low, self.low + TURN)
         else:
             axes.margins(x=BESIDE if self.are_named else BRANCH_MARGIN)
-        still = canvas.constant_limits(np.concatenate([curve.y for curve in curves]), quantity.scale)
         if low is not None and any(np.ptp(turns_above(curve.y, low, TURN)) for curve in curves):
             axes.set_ylim(low, low + TURN)
-        elif still is not None:
-            axes.set_ylim(*still)
         else:
-            axes.margins(y=NAME_MARGIN)
+            values = np.concatenate([curve.y for curve in curves])
+            canvas.set_vertical_margins(axes, values, quantity.scale, NAME_MARGIN)
 
 
 # Where the one turn begins in which angles are shown, degrees; of equally good ones the first is taken.
@@ -444,7 +442,7 @@ def wrapped_curve(first: Number, second: Number, low: float) -> tuple[Number, Nu
 
 
 def _cuts(away: Number) -> Number:
-    """After which places a curve goes into another turn."""
+    """The places after which a curve goes into another turn."""
     return np.flatnonzero(np.isfinite(away[1:] - away[:-1]) & (away[1:] != away[:-1]))
 
 
@@ -466,7 +464,7 @@ class _CoordinateValues:
 
 
 class _PointCoordinates(_CoordinateValues):
-    """Where a point is at all places."""
+    """A point at all places."""
 
     @property
     def x(self) -> Number:
@@ -481,7 +479,7 @@ class _PointCoordinates(_CoordinateValues):
 
 @dataclass(frozen=True, eq=False)
 class Positions:
-    """All that has a position on segments. `values` of the driver (rows, places), and the poses of the links there."""
+    """The positions on all segments: `values` of the driver (rows, places), and the poses of the links there."""
 
     circuits: Circuits
     values: Number
@@ -494,7 +492,7 @@ class Positions:
 
     @property
     def solving_order(self) -> SolvingOrder:
-        """What solves it."""
+        """The order in which its groups are solved."""
         return self.circuits.placing.sweep.solving_order
 
     @property

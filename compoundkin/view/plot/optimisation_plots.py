@@ -34,7 +34,7 @@ NUMBERED = 24
 
 @dataclass(frozen=True, eq=False)
 class ImprovementPanel:
-    """A panel: a quantity before and after, of a point with the target points."""
+    """A panel: a quantity before and after; of a point, also its target points."""
 
     name: str
     is_path: bool
@@ -50,11 +50,11 @@ class ImprovementPanel:
 def improvement(
     optimum: Optimum, *names: str, title: str | None = None, size: tuple[float, float] | None = None
 ) -> Plot:
-    """Draw what a search of better dimensions made better, before and after.
+    """Draw paths and quantities before and after an optimisation.
 
-    `names` are quantities; without any, those that the goals ask. Of points the paths are drawn, through a whole turn
-    of a driver that turns far, with the places that goals want, numbered in their order; of all else the courses over
-    the driver or time. Before is the mechanism as it stood, dashed.
+    `names` are quantities; without any, those of the goals. Of points the paths are drawn, through a whole turn
+    of a driver that turns far, with their target points, numbered in their order; of all else the courses over
+    the driver or time. The mechanism before is dashed.
 
     Raises UnknownName for quantities that are unknown, InvalidInput without Matplotlib.
 
@@ -92,12 +92,12 @@ def objective_summary(optimum: Optimum) -> str:
 
 
 def _target_points(optimum: Optimum) -> dict[str, Number]:
-    """The places that points are to be at."""
+    """The target points of the goals, by point."""
     return {point: places for goal in optimum.goals for point, places in goal.places.items()}
 
 
 def _goal_quantities(optimum: Optimum) -> list[str]:
-    """The quantities that goals ask, of figures the courses that they are of."""
+    """The quantities of the goals; for a figure the quantity that it is taken from."""
     names = [name for goal in optimum.goals for name in goal.outputs(optimum.before)]
     return list(dict.fromkeys(motion_figure(name)[0] for name in names))
 
@@ -163,11 +163,7 @@ def _course(axes: Any, panel: ImprovementPanel, motions: Sequence[Motion]) -> No
         last = found.parts[-1]
         axes.plot(x.values[0], last.values[0], **look)
     values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
-    still = canvas.constant_limits(values, last.scale)
-    if still is not None:
-        axes.set_ylim(*still)
-    else:
-        axes.margins(y=HEADROOM)
+    canvas.set_vertical_margins(axes, values, last.scale, HEADROOM)
     if np.ptp(x.values) > 0:
         axes.set_xlim(x.values.min(), x.values.max())
     canvas.axis_labels(axes, x, last, canvas.PANEL)

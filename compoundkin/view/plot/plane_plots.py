@@ -282,9 +282,7 @@ def hodograph(
     for one in vectors:
         if not one.is_vector:
             raise InvalidInput(Problem(one.name, "it is not a vector", "a hodograph takes vectors such as G.velocity"))
-        if one.unit != vectors[0].unit:
-            what = f"its unit is {one.unit}, that of {vectors[0].name} {vectors[0].unit}"
-            raise InvalidInput(Problem(one.name, what, "draw them one by one"))
+    _check_one_unit(vectors)
     shared = shared_curves_of(motion, designs, every)
     with plot_style.styled():
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or HODOGRAPH)
@@ -319,7 +317,9 @@ def polar(
     motion = motion_of(motion)
     radii = tuple(one.part(LENGTH) if one.is_vector else one for one in plotted_quantities(motion, names))
     angle = moving_driver(motion) if around is None else plotted_quantity(motion, around)
-    _check_radii(radii, angle)
+    if not angle.is_angle:
+        raise InvalidInput(Problem(angle.name, "it is not an angle", 'name one: around="crank.angle"'))
+    _check_one_unit(radii)
     shared = shared_curves_of(motion, designs, None)
     with plot_style.styled():
         text = motion.mechanism.title if title is None else title
@@ -336,12 +336,11 @@ def polar(
         return canvas.finished(figure, [])
 
 
-def _check_radii(radii: Sequence[Plotted], angle: Plotted) -> None:
-    if not angle.is_angle:
-        raise InvalidInput(Problem(angle.name, "it is not an angle", 'name one: around="crank.angle"'))
-    for one in radii:
-        if one.unit != radii[0].unit:
-            what = f"its unit is {one.unit}, that of {radii[0].name} {radii[0].unit}"
+def _check_one_unit(quantities: Sequence[Plotted]) -> None:
+    first = quantities[0]
+    for one in quantities:
+        if one.unit != first.unit:
+            what = f"its unit is {one.unit}, that of {first.name} {first.unit}"
             raise InvalidInput(Problem(one.name, what, "draw them one by one"))
 
 
@@ -438,7 +437,7 @@ def bearing_loads(
 
 
 def _panels(forces: Forces, pairs: Sequence[str]) -> list[tuple[str, list[Number]]]:
-    """What each panel is called, and its curves, (designs, poses)."""
+    """The titles of the panels with their curves, (designs, poses)."""
     rows = [_rows(forces, forces.pairs[name].force) for name in pairs]
     found = [("in the frame", rows)]
     if len(pairs) > 1:
@@ -463,7 +462,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class SharedCurves:
-    """What all curves of a plot share. The driver or time, events, names of designs, labels to be placed."""
+    """The data that all curves of a plot share: driver or time, events, names of designs, labels to be placed."""
 
     x: Plotted
     events: Events
@@ -473,7 +472,7 @@ class SharedCurves:
 
     @property
     def designs(self) -> int:
-        """How many designs there are."""
+        """The number of designs."""
         return len(self.x.values)
 
 

@@ -79,7 +79,7 @@ class Plotted(Quantity):
 
     @property
     def parts(self) -> tuple[Self, ...]:
-        """The components and the length of a vector. What is no vector, as it is."""
+        """The components and the length of a vector. A scalar is its own part."""
         return tuple(self.part(name) for name in PARTS) if self.is_vector else (self,)
 
 
@@ -187,7 +187,7 @@ def _rows(motion: Motion, found: Quantity) -> Plotted:
 
 
 def _pace(motion: Motion) -> float:
-    """How fast the drivers are, in lengths of the mechanism or radians a second."""
+    """The greatest speed of the drivers, in sizes of the mechanism or radians a second."""
     if not motion.order:
         return 0.0
     rates = [np.abs(drive.rate) / (1.0 if drive.is_angle else motion.size) for drive in motion.drives.values()]
@@ -219,7 +219,7 @@ class Blank:
 
 @dataclass(frozen=True)
 class Events:
-    """All that is marked in plots of a motion, in places along it."""
+    """The gaps and change points of a motion, at places along it."""
 
     blanks: tuple[Blank, ...]
     changes: tuple[tuple[int, float], ...]  # design and place of every change point

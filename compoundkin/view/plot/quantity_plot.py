@@ -123,7 +123,7 @@ class DrawnCurve:
 
 @dataclass(frozen=True, eq=False)
 class QuantityPanel:
-    """How the panel of a number is drawn: the same quantities of all motions. `extremes` tells whether to mark them."""
+    """One panel: the same quantities of all motions. With `extremes` they are marked."""
 
     motions: tuple[PlottedMotion, ...]
     number: int
@@ -132,18 +132,18 @@ class QuantityPanel:
 
     @property
     def title(self) -> Plotted:
-        """What its vertical axis is called."""
+        """The quantity that names its vertical axis."""
         return self.motions[0].panels[self.number].title
 
     @property
     def across(self) -> Plotted:
-        """What its horizontal axis is called: by all that motions run along."""
+        """The quantity that names its horizontal axis, for all motions."""
         names = dict.fromkeys(one.x.name for one in self.motions)
         return replace(self.motions[0].x, name=", ".join(names))
 
     @property
     def designs(self) -> int:
-        """How many designs all motions have."""
+        """The number of designs of all motions."""
         return sum(one.designs for one in self.motions)
 
     @property
@@ -276,7 +276,7 @@ def _mean(x: Any, y: Any) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One axes: its curves, and what its vertical axis is called."""
+    """One axes: the title of its vertical axis, and its curves."""
 
     title: Plotted
     curves: tuple[Plotted, ...]
@@ -284,7 +284,7 @@ class Panel:
 
 @dataclass(frozen=True, eq=False)
 class PlottedMotion:
-    """A motion as a plot has it. Its designs come behind `before` others."""
+    """A motion in a plot; its designs follow `before` others."""
 
     motion: Motion
     panels: tuple[Panel, ...]
@@ -295,7 +295,7 @@ class PlottedMotion:
 
     @property
     def x(self) -> Plotted:
-        """What it runs along."""
+        """The quantity of its horizontal axis."""
         return self.course.x
 
     @cached_property
@@ -306,7 +306,7 @@ class PlottedMotion:
 
     @property
     def designs(self) -> int:
-        """How many designs it has."""
+        """The number of its designs."""
         return len(self.x.values)
 
 
@@ -414,7 +414,7 @@ def plotted_extremes(
 
 
 def axis_values_at(motion: Motion, x: Plotted, at: Places) -> Number:
-    """Return what a plot runs along at places; NaN where there is no place."""
+    """Return the values of the horizontal axis at places; NaN at missing places."""
     if x.name == POSE:
         return at.place
     if x.name == TIME and motion.time is not None:
@@ -440,7 +440,7 @@ def _displayed_values(curve: Plotted, values: Number) -> Number:
 
 @dataclass(frozen=True, eq=False)
 class PlottedCurve:
-    """How a plot goes from pose to pose. It is smooth, as solved between them, and goes through both sides of jumps."""
+    """The curves of a motion: smooth, as solved between poses, and through both sides of jumps."""
 
     motion: Motion
     x: Plotted
@@ -449,7 +449,7 @@ class PlottedCurve:
 
     @classmethod
     def of(cls, motion: Motion, x: Plotted, names: Sequence[str]) -> PlottedCurve:
-        """Return the course of a motion. It is solved between its poses for the quantities of names."""
+        """Return the curves of a motion, solved between its poses for the named quantities."""
         more = CurvePlaces.of(motion)
         order = max([motion.order, *map(derivative_order, (*names, x.name))])
         with np.errstate(all="ignore"):
@@ -487,7 +487,7 @@ TO_LIMITS = 12
 
 @dataclass(frozen=True, eq=False)
 class CurvePlaces:
-    """Places besides poses, in order. `to_limits` tells which are between a pose and a limit position."""
+    """Places besides poses, in order. `to_limits` marks those between a pose and a limit position."""
 
     at: Places
     to_limits: Number

@@ -37,7 +37,7 @@ FEWEST = 3
 
 @dataclass(frozen=True, eq=False)
 class MatrixDrawing:
-    """What all panels share: columns of the drawn designs, and their colours."""
+    """The data of all panels: columns of the drawn designs, and their colours."""
 
     columns: tuple[Plotted, ...]
     assembled: Number
@@ -258,7 +258,7 @@ def pareto(
 
 
 def _upward(both: Sequence[str], greatest: Sequence[str]) -> list[bool]:
-    """Of which figures more is better. Raises InvalidInput for others."""
+    """Whether more is better, for each figure. Raises InvalidInput for unknown figures."""
     wrong = next((one for one in greatest if one not in both), None)
     if wrong is not None:
         raise InvalidInput(Problem("greatest", f"{wrong!r} is neither figure", suggestion(str(wrong), list(both))))
@@ -305,7 +305,7 @@ def _numbers(axes: Any, both: Sequence[Plotted], front: Number, upward: Sequence
 
 
 def _line(axes: Any, both: Sequence[Plotted], front: Number) -> None:
-    """The edge of what is bettered: along the front in steps."""
+    """The edge of the dominated region: along the front in steps."""
     x, y = (one.values[front] for one in both)
     axes.plot(x, y, color=COLOURS[1], linewidth=1.0, drawstyle="steps-post", zorder=0.9, label="_front")
 

@@ -27,7 +27,7 @@ MOST_POINTS = 3000
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyColumns(ShortRepr):
-    """What plots read of a study: columns by name, and which designs are assembled."""
+    """The data of a study for plots: columns by name, and which designs are assembled."""
 
     found: StudyResult
 
@@ -102,13 +102,13 @@ class StudyColumns(ShortRepr):
         return found
 
     def values(self, column: StudyColumn, rows: Number | None = None) -> Plotted:
-        """Return a column as it is shown, or some rows of it."""
+        """Return a column in display units, or some rows of it."""
         own = np.asarray(self.found[column.name])
         return displayed_values(column.name, column.unit, own if rows is None else own[rows])
 
 
 def displayed_values(name: str, unit: str, values: Number) -> Plotted:
-    """Return values as they are shown, angles in degrees."""
+    """Return values in display units, angles in degrees."""
     found = Plotted(name, unit, np.asarray(values, dtype=float)).shown
     known = np.abs(found.values[np.isfinite(found.values)])
     return Plotted(found.name, found.unit, found.values, scale=float(np.max(known, initial=0.0)))
@@ -168,9 +168,9 @@ def toleranced_curves(found: ToleranceAnalysis, names: Sequence[str]) -> list[Ou
 
 
 def checked_pose(one: OutputTolerance, pose: int | None) -> int | None:
-    """Return the pose that is meant.
+    """Return the index of a pose.
 
-    Without one it is that of the greatest deviation; None of a figure. Raises InvalidInput where there is no such pose.
+    Without one it is that of the greatest deviation; of a figure it is None. Raises InvalidInput for an unknown pose.
     """
     if not one.is_course:
         if pose is not None:

@@ -47,7 +47,7 @@ from compoundkin.view.report.wording import counted
 
 @singledispatch
 def study_plot(found: Any, *names: str, **options: Any) -> Plot:
-    """Draw what is found by the plot that suits it."""
+    """Draw a result by the plot that suits it."""
     raise TypeError(f"{type(found).__name__} has no plot of its own")
 
 
@@ -71,7 +71,7 @@ def _(found: ToleranceAnalysis, *names: str, **options: Any) -> Plot:
 
 @study_plot.register
 def _(found: Optimum, *names: str, **options: Any) -> Plot:
-    """What became better."""
+    """Paths and quantities before and after."""
     return improvement(found, *names, **options)
 
 
@@ -111,7 +111,7 @@ def bands(
     title: str | None = None,
     size: tuple[float, float] | None = None,
 ) -> Plot:
-    """Draw how far quantities lie apart in a study or within tolerances.
+    """Draw the scatter of quantities in a study or within tolerances.
 
     They are drawn over the driver, or over the time of a motion in time. `names` are quantities at every pose, of
     vectors both components; without any, all that there are. Of a study the bands lie between percentiles of its
@@ -147,19 +147,18 @@ def bands(
 def _panels(
     found: StudyResult | ToleranceAnalysis, names: Sequence[str], percentiles: Sequence[float], relative: bool
 ) -> tuple[str, Motion, tuple[Bands, ...]]:
-    """What is said below the panels, the motion that they are over, and the panels."""
+    """The summary of the designs, the motion of the horizontal axis, and the panels."""
     ordered = checked_percentiles(percentiles)
     if isinstance(found, StudyResult):
         among = StudyColumns(found)
         panels = tuple(_study_bands(among, one, ordered) for one in among.courses(names))
         return among.summary(), found.reference, panels
-    said = [counted(found.count, "random design"), _missing(found.unassembled)]
+    said = [
+        counted(found.count, "random design"),
+        f"{found.unassembled:,} cannot be assembled" * bool(found.unassembled),
+    ]
     panels = tuple(_tolerance_bands(found, one, relative) for one in toleranced_curves(found, names))
     return ", ".join(filter(None, said)), found.motion, panels
-
-
-def _missing(number: int) -> str:
-    return f"{number:,} cannot be assembled" if number else ""
 
 
 def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
@@ -237,15 +236,11 @@ def _draw(axes: Any, x: Plotted, panel: Bands) -> None:
         axes.fill_between(across, low, high, facecolor=shade, edgecolor=COLOURS[0], linewidth=0.4, label=name)
     for name, values, look in panel.lines:
         axes.plot(across, values, label=name, **look)
-    still = canvas.constant_limits(panel.drawn, panel.title.scale)
-    if still is not None:
-        axes.set_ylim(*still)
-    else:
-        axes.margins(y=HEADROOM)
+    canvas.set_vertical_margins(axes, panel.drawn, panel.title.scale, HEADROOM)
 
 
 def _shade(dark: float) -> tuple[float, ...]:
-    """The colour of a band, on white: bands that could be seen through would be darker than in the legend."""
+    """The colour of a band, opaque: transparent bands on each other would be darker than in the legend."""
     from matplotlib.colors import to_rgb
 
     return tuple(1.0 - dark * (1.0 - part) for part in to_rgb(COLOURS[0]))
@@ -261,7 +256,7 @@ PLACES = 400
 
 @dataclass(frozen=True, eq=False)
 class FigureDistribution:
-    """What a histogram shows: values, percentiles, named lines, a normal distribution."""
+    """The content of a histogram: values, percentiles, named lines, a normal distribution."""
 
     title: str
     summary: str
@@ -374,8 +369,9 @@ def _percentiles(axes: Any, shown: FigureDistribution, values: Number, labels: l
     top, scale = axes.get_ylim()[1], shown.values.scale
     for one, value in zip(shown.percentiles, np.percentile(values, shown.percentiles), strict=True):
         axes.axvline(value, color=INK, linestyle="--", linewidth=1.0)
-        word = "median" if one == 50.0 else f"{one:g} %"
-        labels.append(PointLabel(axes, float(value), 0.97 * top, f"{word}: {value_text(float(value), scale)}", 1.0))
+        labels.append(
+            PointLabel(axes, float(value), 0.97 * top, f"{_percentile(one)}: {value_text(float(value), scale)}", 1.0)
+        )
 
 
 BARS_BASE_HEIGHT, BAR_HEIGHT = 1.7, 0.27
@@ -389,7 +385,7 @@ BEHIND = 0.28
 
 @dataclass(frozen=True, eq=False)
 class ContributionRows:
-    """What each source contributes, the greatest share first.
+    """The contribution of each source, the greatest share first.
 
     Shares are those of the variance in percent, parts those of the worst case.
     """
@@ -445,7 +441,7 @@ def contributions(
 
 
 def contribution_rows(one: OutputTolerance, pose: int | None, most: int = MOST) -> ContributionRows:
-    """Return what each source contributes at a pose. Small ones are together."""
+    """Return the contributions at a pose. Small ones are summed."""
     shares, parts = (
         np.array([value_at(own[name], pose) for name in own]) for own in (one.contributions, one.worst_parts)
     )
@@ -474,6 +470,6 @@ def _draw_contributions(axes: Any, rows: ContributionRows, values: Number, label
 
 
 def _contribution_heading(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
-    """What the bars are of: the output and where, with its errors."""
+    """The output and its pose, with its errors."""
     worst, deviation = (value_words(one, value_at(own, pose)) for own in (one.worst, one.deviation))
     return f"{place_words(found, one, pose)}, worst case ±{worst}, standard deviation {deviation}"

@@ -79,15 +79,11 @@ def timing_chart(
         for one, row in zip(axes, shown, strict=True):
             _draw(one, row, (wide[0] - MARGINS) / (high - low), "°" if along != TIME else " s")
         _events(axes, shown)
-        across = Plotted("time", "s", np.array([low, high])) if along == TIME else _turn(low, high)
+        across = Plotted(*(("time", "s") if along == TIME else ("rotation of the cam", DEGREES)), np.array([low, high]))
         axes[-1].set_xlabel(across.label)
         canvas.set_round_ticks(axes[-1].xaxis, across.is_angle, canvas.ACROSS)
         figure.align_ylabels(axes)
         return canvas.finished(figure, [])
-
-
-def _turn(low: float, high: float) -> Plotted:
-    return Plotted("rotation of the cam", DEGREES, np.array([low, high]))
 
 
 def _draw(axes: Any, row: TimingRow, inches: float, unit: str) -> None:
@@ -172,13 +168,13 @@ class Phase:
 
     @property
     def word(self) -> str:
-        """What it does."""
+        """Its name."""
         return ("dwell", "rise", "fall")[self.sense]
 
 
 @dataclass(frozen=True, eq=False)
 class TimingRow:
-    """One row: its name, what its values and their places are, and the range.
+    """One row: its name, unit, range, and motion.
 
     `moved` returns the value and its rate at places; `breaks` are where phases may begin, none where that is not known.
     """
@@ -191,7 +187,7 @@ class TimingRow:
 
     @property
     def scale(self) -> float:
-        """By what values are multiplied to be read: angles are in degrees."""
+        """The factor to display units: angles are in degrees."""
         return float(np.rad2deg(1.0)) if self.unit == DEGREES else 1.0
 
     @cached_property
@@ -240,7 +236,7 @@ class TimingRow:
 
 
 def timing_rows(what: Mechanism | Mapping[str, Any], over: str | None) -> tuple[str, tuple[TimingRow, ...]]:
-    """Return what the rows are drawn over, "time" or "rotation", and the rows.
+    """Return the horizontal axis, "time" or "rotation", and the rows.
 
     Raises InvalidInput where there is nothing to draw.
     """

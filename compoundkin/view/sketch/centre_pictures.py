@@ -83,7 +83,7 @@ def centre_number(scene: Scene, one: str, two: str) -> str:
 
 
 def _at(scene: Scene, values: Number) -> Number:
-    """What an array of the shown motion's shape holds at the pose."""
+    """The entry at the pose of an array over the motion."""
     assert scene.shown is not None
     inputs = scene.shown.inputs
     full = np.asarray(values)

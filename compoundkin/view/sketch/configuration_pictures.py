@@ -56,7 +56,7 @@ NARROWEST = 200.0
 
 @dataclass(frozen=True, eq=False)
 class _ConfigurationPanel:
-    """One configuration with its heading, what is said of it, and others that are drawn faintly."""
+    """One configuration with its heading, a description, and others that are drawn faintly."""
 
     heading: str
     said: str
@@ -149,7 +149,7 @@ def _whole(poses: Sequence[Pose]) -> Pose:
 
 
 def _drivers(structure: Structure, values: Mapping[str, float]) -> list[str]:
-    """What the drivers' values are."""
+    """The drivers' values as notes."""
     return [driver_value_text(structure, name, value) for name, value in values.items()]
 
 

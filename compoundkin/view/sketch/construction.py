@@ -48,7 +48,7 @@ class DrawnDyad:
 
     @property
     def painter(self) -> Painter:
-        """What draws its links alone."""
+        """The painter of its links alone."""
         return Painter(self.scene, self.window, frozenset(self.group.links))
 
     def style(self, kind: str) -> str:

@@ -67,7 +67,7 @@ class DrawnForce:
 
     @property
     def is_visible(self) -> bool:
-        """Whether its arrow is long enough visible."""
+        """Whether its arrow is long enough to be drawn."""
         return abs(self.stop - self.start) >= SHORTEST
 
     @property
@@ -148,7 +148,7 @@ def force_text(value: float) -> str:
 
 
 LOWERED = str.maketrans("0123456789-", "₀₁₂₃₄₅₆₇₈₉₋")
-# What is below this part of the largest force is rounding.
+# Forces below this part of the largest are rounding.
 NOTHING = 1e-9
 # Arcs are not to scale: a moment below this part of the largest force by the size would look like any other.
 FAINT = 1e-5

@@ -77,14 +77,14 @@ KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: 
 
 @dataclass(frozen=True, eq=False)
 class ForcesAtPose:
-    """What acts on the links at a pose, and what is drawn of it."""
+    """The forces on the links at a pose, and those that are drawn."""
 
     forces: Forces
     scene: Scene
     on: Mapping[str, tuple[ActingForce, ...]]
 
     def displayed(self, link: str | None) -> list[ActingForce]:
-        """Return what is drawn in a sketch. All that acts on a link, or each pair's force on its second one."""
+        """Return the forces that a sketch shows: all on a link, or each pair's force on its second link."""
         if link is not None:
             return list(self.on[link])
         found = [one for own in self.on.values() for one in own if is_drawn_once(one, self.scene.legend)]
@@ -101,7 +101,7 @@ class ForcesAtPose:
 
 
 def forces_at_pose(forces: Forces, options: PictureOptions) -> ForcesAtPose:
-    """Return what acts at the requested pose. Raises UnknownName for an unknown link."""
+    """Return the forces at the requested pose. Raises UnknownName for an unknown link."""
     scene = scene_of(forces.motion, options.at, options.pose, options.design)
     if options.link is not None:
         scene.mechanism.link(options.link)
@@ -174,7 +174,7 @@ def picture_with_notes(
     what: str,
     size: float | None,
 ) -> Picture:
-    """Return a picture of forces with what stands below it.
+    """Return a picture of forces with the notes below it.
 
     That is the pose, the links' numbers, units, the scale.
     """
@@ -189,7 +189,7 @@ def picture_with_notes(
 def notes_below(
     known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale | None, width: float, height: float
 ) -> tuple[list[Shape], float]:
-    """Return what stands below a picture of forces, and the height with it."""
+    """Return the notes below a picture of forces, and the height with them."""
     scene = known.scene
     notes = [*pose_notes(scene), *(f"{number} {name}" for name, number in scene.legend.items())]
     notes += list(_units(known, shown, scale))
@@ -211,7 +211,7 @@ def notes_below(
 
 
 def _units(known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale | None) -> Iterator[str]:
-    """What there is to say of units, of statics, of arcs, of forces too small to be drawn."""
+    """Notes on units, statics, arcs, and forces too small to be drawn."""
     units = known.forces.units
     yield f"forces in {units.force}"
     if not known.forces.inertia:
@@ -295,7 +295,7 @@ def _polygon_panel(
 def _sides(
     forces: Sequence[ActingForce], corner: Sequence[complex]
 ) -> tuple[list[Shape], list[Label], list[tuple[str, str]]]:
-    """The arrows of a polygon, their labels outside of it, and what these say."""
+    """The arrows of a polygon, their labels outside of it, and the texts and kinds of these."""
     middle = complex(np.mean(corner))
     shapes: list[Shape] = [CircleShape(corner[0], 2.0, "dot")]
     labels, texts = [], []

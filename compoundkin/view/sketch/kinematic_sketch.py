@@ -191,7 +191,7 @@ def _centre_places(scene: Scene) -> list[complex]:
 
 
 def _centres(scene: Scene, window: Window) -> tuple[list[Shape], list[Label], list[str]]:
-    """What is drawn of the instant centres, their labels and notes."""
+    """The shapes of the instant centres, their labels and notes."""
     from compoundkin.view.sketch.centre_pictures import centre_labels, centre_shapes, visible_centres
 
     found = visible_centres(scene, window)
@@ -223,7 +223,7 @@ def _finished(
     scales: Sequence[VectorScale],
     size: float | None,
 ) -> Picture:
-    """The picture with what stands below it: notes and the scales of vectors."""
+    """The picture with notes and the scales of vectors below it."""
     texts, height = lines_below(lines_of_text(notes, window.width - 32.0), window.height)
     for scale in scales:
         texts += scale_shapes(scale, height)
@@ -236,7 +236,7 @@ def _finished(
 
 
 def _ghosts(scene: Scene, ghosts: Any) -> list[Scene]:
-    """So many poses, evenly along the motion."""
+    """Some poses, evenly along the motion."""
     if isinstance(ghosts, bool) or not isinstance(ghosts, int) or not 0 <= ghosts <= MOST_GHOSTS:
         raise InvalidInput(Problem("ghosts", f"{ghosts!r} is not a number of poses", f"0 to {MOST_GHOSTS}"))
     places = np.linspace(0, scene.count - 1, ghosts + 1 if scene.closes else max(ghosts, 1)).round().astype(int)
@@ -370,7 +370,7 @@ def moving_sketch(
 
 
 def _reach_of_labels(sketch: MovingSketch) -> Number:
-    """Corners of the boxes around all labels at all poses: where links go, their names must not leave the picture."""
+    """Corners of the boxes around all labels at all poses, so that labels stay on the picture."""
     found = [np.zeros(0, dtype=complex)]
     for part in (part for part in sketch.parts if part.is_label):
         boxes = list(shape_corners(part.shapes))

@@ -44,7 +44,9 @@ ON_EDGE = 8.0
 
 @dataclass(frozen=True, eq=False)
 class LabelCourse:
-    """How places of a picture move. At each of some poses they are turned about zero, then shifted, complex (poses,).
+    """The movement of places on a picture.
+
+    At each of some poses they are turned about zero, then shifted, complex (poses,).
 
     At the first pose, the one shown, they are where they are.
     """
@@ -58,14 +60,14 @@ class LabelCourse:
         return places * self.turn.reshape(shape) + self.shift.reshape(shape)
 
     def relative(self, places: Number) -> Number:
-        """Return places (poses, ...) as seen from what takes this course."""
+        """Return places (poses, ...) relative to this course."""
         shape = (-1, *[1] * (np.ndim(places) - 1))
         return (places - self.shift.reshape(shape)) / self.turn.reshape(shape)
 
 
 @dataclass(frozen=True, eq=False)
 class LabelCourses:
-    """The courses of what links carry. What stays upright at points has theirs, by letters."""
+    """The courses of links, and of points, by letters, for labels that stay upright."""
 
     of_links: Mapping[str, LabelCourse]
     of_points: Mapping[str, LabelCourse]
@@ -81,7 +83,7 @@ class LabelCourses:
         return (self.of_links if kind == "link" else self.of_points).get(name, self.others)
 
 
-# Of a picture of one pose.
+# The courses in a picture of one pose.
 STILL = LabelCourses({}, {}, LabelCourse(np.ones(1, dtype=complex), np.zeros(1, dtype=complex)))
 
 

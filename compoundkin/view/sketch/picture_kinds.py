@@ -21,7 +21,7 @@ POSE = ("at", "pose", "design")
 
 
 class PictureKind(NamedTuple):
-    """A kind of picture: what draws it, and which options it takes.
+    """A kind of picture: the function that draws it, and the options it takes.
 
     What draws is `module:function` of this folder, imported when it is used.
     """

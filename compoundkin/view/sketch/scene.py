@@ -234,7 +234,7 @@ class Scene:
 
     @cached_property
     def letters(self) -> Mapping[str, complex]:
-        """Where every point is, at the pose shown. Without points of the frame that no pair needs."""
+        """The places of all points at the pose shown, without points of the frame that no pair needs."""
         used = {letter for pair in self.structure.pairs for letter in pair.letters}
         found = {}
         for letter, links in self.mechanism.carriers.items():
@@ -301,7 +301,7 @@ class Scene:
 
     @property
     def count(self) -> int:
-        """How many assembled poses the motion has."""
+        """The number of assembled poses of the motion."""
         return 1 if self.known is None else max(1, len(self.known))
 
     @property

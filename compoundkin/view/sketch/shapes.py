@@ -37,7 +37,7 @@ class Polygon(ShortRepr):
 
 @dataclass(frozen=True, repr=False)
 class Strokes(ShortRepr):
-    """Several lines of one style that belong together, such as a hatching. Equal ones tell their `row`."""
+    """Several lines of one style that belong together, such as a hatching. Those of equal strokes have their `row`."""
 
     lines: tuple[tuple[complex, ...], ...]
     style: str

@@ -156,7 +156,7 @@ def _on_arc(
 
 
 def _of_guide(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Dimension]:
-    """How far a guide on a moving link is from the first of its points, and at which angle to a line of the link."""
+    """The distance of a guide on a moving link from its first point, and its angle to a line of the link."""
     link = seen.members[0]
     points = [complex(p) for p in painter.scene.points[link].values()]
     along = complex(mark.along)
@@ -338,7 +338,7 @@ def guide_dimensions(painter: Painter) -> list[Dimension]:
 
 
 def _off(way: complex, e: complex) -> float:
-    """How far a way leads off a direction."""
+    """The distance of a vector's tip from a line through its foot."""
     return float(abs((np.conjugate(e) * way).imag))
 
 
@@ -445,7 +445,7 @@ def _discs(place: DimensionPlace, text: str) -> Number:
 def _fixed(
     dimension: Dimension, at: Number, lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
 ) -> Number:
-    """What places cost by what is drawn there."""
+    """The costs of places by the shapes and labels there."""
     costs = np.array([place.cost for place in dimension.places])
     if len(lines):
         near = distances(at.ravel(), lines).reshape(*at.shape, -1) < HALF

@@ -226,7 +226,7 @@ def _letter(scene: Scene, link: str, point: complex, nothing: float) -> str:
 
 
 def _longest(structure: Structure) -> float:
-    """How large a panel may be."""
+    """The greatest size of a panel."""
     return TWO if len(structure.loops) <= FEW else THREE
 
 
@@ -282,7 +282,7 @@ def loop_links(loop: Loop) -> str:
 
 @dataclass(frozen=True)
 class LoopPanel:
-    """One loop: its number, its corners, what is behind it, its vectors."""
+    """One loop: its number, its corners, the shapes behind it, its vectors."""
 
     number: int
     loop: Loop
@@ -565,7 +565,7 @@ def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
 
 
 def _relaxed_places(wanted: Number, orders: Number) -> Number:
-    """Places (orders, links) that have settled from circles on which the links stand in some orders."""
+    """Places (orders, links) that have relaxed from circles on which the links stand in some orders."""
     count = orders.shape[1]
     places = np.exp(2j * np.pi * orders / max(count, 1) + 1j * START) * max(1.0, count / 4.0)
     weights, itself = np.where(wanted > 0, 1.0 / np.maximum(wanted, 1.0) ** 2, 0.0), np.eye(count)
@@ -577,7 +577,7 @@ def _relaxed_places(wanted: Number, orders: Number) -> Number:
 
 
 def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
-    """How many lines between links cross."""
+    """The number of lines between links that cross."""
     first, second = np.array(joined, dtype=int).reshape(-1, 2).T
     a, b = places[first], places[second]
     side = (np.conjugate(b - a)[:, None] * (np.stack([a, b])[:, None] - a[:, None])).imag
@@ -595,7 +595,7 @@ START = 0.3
 
 
 def _steps(count: int, joined: Sequence[tuple[int, int]]) -> Number:
-    """How many pairs are between every two links; where nothing joins them, many. Source: Floyd and Warshall, 1962."""
+    """The number of pairs between every two links; many where nothing joins them. Source: Floyd and Warshall, 1962."""
     far = float(max(count, 2))
     steps = np.full((count, count), far)
     for one, two in joined:

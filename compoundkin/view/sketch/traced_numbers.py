@@ -1,8 +1,8 @@
 """Numbers that trace how they are computed while a sketch is painted: a value, and the node of a graph for it.
 
-Painters compute with them as with any other numbers, and every branch is taken by the values. The trace of a vertex
+Painters compute with them as with any other numbers, and every branch is taken by the values. The node of a vertex
 says how it is computed from the mechanism's dimensions, so that a page can draw it anew. A function that takes no
-traces gives the plain value: what is drawn of it is carried by its link as it is.
+nodes gives the plain value: what is drawn of it is carried by its link as it is.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ SAME = (np.ravel, np.atleast_1d)
 
 
 class Traced:
-    """What noted numbers have in common: their note, and how NumPy's functions are answered."""
+    """A number with its node; NumPy's functions of it are traced too."""
 
-    note: RecordedNumber
+    node: RecordedNumber
 
     def conjugate(self) -> Any:
         """Return the complex conjugate."""
-        return traced(untraced(self).conjugate(), self.note.conjugate())
+        return traced(untraced(self).conjugate(), self.node.conjugate())
 
     @property
     def real(self) -> Any:
         """The real part."""
-        return traced(untraced(self).real, self.note.real)
+        return traced(untraced(self).real, self.node.real)
 
     @property
     def imag(self) -> Any:
         """The imaginary part."""
-        return traced(untraced(self).imag, self.note.imag)
+        return traced(untraced(self).imag, self.node.imag)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         from compoundkin.programs.recording.recorded_number import UFUNCS
@@ -49,7 +49,7 @@ class Traced:
         values = [untraced(one) for one in inputs]
         found = getattr(ufunc, method)(*values, **{key: untraced(one) for key, one in options.items()})
         recorded = UFUNCS.get(ufunc) if method == "__call__" and not options else None
-        return _answered(found, inputs, lambda notes: recorded(*notes)) if recorded else found
+        return _traced_result(found, inputs, lambda nodes: recorded(*nodes)) if recorded else found
 
     def __array_function__(self, function: Callable[..., Any], types: Any, args: Any, options: Any) -> Any:
         from compoundkin.programs.recording.recorded_number import FUNCTIONS
@@ -57,24 +57,24 @@ class Traced:
         found = function(*untraced(args), **{key: untraced(one) for key, one in options.items()})
         recorded = FUNCTIONS.get(function)
         if function in SAME:
-            return traced(found, self.note)
+            return traced(found, self.node)
         if recorded is None or options:
             return found
-        return _answered(found, args, lambda notes: recorded(self.note, *notes))
+        return _traced_result(found, args, lambda nodes: recorded(self.node, *nodes))
 
 
-def _answered(value: Any, operands: Any, recorded: Callable[[list[Any]], Any]) -> Any:
-    """A value with its note; the value alone where truth values are needed or an operand has no note."""
+def _traced_result(value: Any, operands: Any, recorded: Callable[[list[Any]], Any]) -> Any:
+    """A value with its node; the value alone of truth values, and where an operand has no node."""
     if isinstance(value, tuple | bool | np.bool_) or np.asarray(value).dtype.kind == "b":
         return value
-    own = next(one.note for one in operands if isinstance(one, Traced))
+    own = next(one.node for one in operands if isinstance(one, Traced))
     if any(_is_array(one) and not isinstance(one, Traced) for one in operands):
         return value
     try:
-        note = recorded([one.note if isinstance(one, Traced) else own.like(one) for one in operands])
+        node = recorded([one.node if isinstance(one, Traced) else own.like(one) for one in operands])
     except TypeError:
         return value
-    return traced(value, note) if isinstance(note, type(own)) else value
+    return traced(value, node) if isinstance(node, type(own)) else value
 
 
 def _binary(name: str, swapped: bool = False) -> Callable[[Any, Any], Any]:
@@ -86,8 +86,8 @@ def _binary(name: str, swapped: bool = False) -> Callable[[Any, Any], Any]:
         one, two = (other, self) if swapped else (self, other)
         value = operation(untraced(one), untraced(two))
         # numbers that cannot change are not worked out again
-        fixed = self.note.is_constant and (not isinstance(other, Traced) or other.note.is_constant)
-        return traced(value, self.note.like(value) if fixed else operation(_note(one), _note(two)))
+        fixed = self.node.is_constant and (not isinstance(other, Traced) or other.node.is_constant)
+        return traced(value, self.node.like(value) if fixed else operation(_node(one), _node(two)))
 
     return method
 
@@ -105,38 +105,38 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, np.ndarray) and value.ndim > 0
 
 
-def _note(value: Any) -> Any:
-    return value.note if isinstance(value, Traced) else value
+def _node(value: Any) -> Any:
+    return value.node if isinstance(value, Traced) else value
 
 
 class TracedCourse(Traced, np.ndarray):  # type: ignore[override]
-    """An array along the poses of a motion. Its note is that of one pose."""
+    """An array along the poses of a motion. Its node is that of one pose."""
 
     def __array_finalize__(self, of: Any) -> None:
-        self.note = getattr(of, "note", None)  # type: ignore[assignment]
+        self.node = getattr(of, "node", None)  # type: ignore[assignment]
 
     def min(self, *args: Any, **options: Any) -> Any:
         """Return the least of real numbers, over the poses."""
-        return traced(untraced(self).min(*args, **options), _least(self.note))
+        return traced(untraced(self).min(*args, **options), _least(self.node))
 
     def max(self, *args: Any, **options: Any) -> Any:
         """Return the greatest of real numbers, over the poses."""
-        return traced(untraced(self).max(*args, **options), -_least(-self.note))
+        return traced(untraced(self).max(*args, **options), -_least(-self.node))
 
 
-def traced(value: Number, note: RecordedNumber) -> Any:
-    """Return a number, or an array along the poses, with a note."""
+def traced(value: Number, node: RecordedNumber) -> Any:
+    """Return a number, or an array along the poses, with a node."""
     if _is_array(value):
         found: Any = np.asarray(value).view(TracedCourse)
     else:
         single = value.item() if isinstance(value, np.ndarray) else value
         found = TracedPlace(single) if isinstance(single, complex) else TracedLength(single)
-    found.note = note
+    found.node = node
     return found
 
 
 def untraced(value: Any) -> Any:
-    """Return numbers without their notes."""
+    """Return numbers without their nodes."""
     if isinstance(value, tuple | list):
         return type(value)(untraced(one) for one in value)
     if not isinstance(value, Traced):
@@ -157,13 +157,13 @@ class _Scalar(Traced):
     __truediv__, __rtruediv__ = _binary("truediv"), _binary("truediv", True)
 
     def __neg__(self) -> Any:
-        return traced(-untraced(self), -self.note)
+        return traced(-untraced(self), -self.node)
 
     def __abs__(self) -> Any:
-        return traced(abs(untraced(self)), abs(self.note))
+        return traced(abs(untraced(self)), abs(self.node))
 
     def __pow__(self, exponent: float) -> Any:
-        return traced(untraced(self) ** exponent, self.note**exponent)
+        return traced(untraced(self) ** exponent, self.node**exponent)
 
     def item(self) -> Any:
         """Return itself."""
@@ -171,7 +171,7 @@ class _Scalar(Traced):
 
 
 class TracedPlace(_Scalar, complex):  # type: ignore[misc]
-    """A place or direction with its note. It equals no other, not even zero: at other dimensions it is elsewhere."""
+    """A place or direction with its node. It equals no other, not even zero: at other dimensions it is elsewhere."""
 
     def __eq__(self, other: object) -> bool:
         return self is other
@@ -181,7 +181,7 @@ class TracedPlace(_Scalar, complex):  # type: ignore[misc]
 
 
 class TracedLength(_Scalar):
-    """A real number with its note. It is no `float`, of which Python's complex numbers would take the value alone."""
+    """A real number with its node. It is no `float`, of which Python's complex numbers would take the value alone."""
 
     def __init__(self, value: float) -> None:
         self.value = float(value)
@@ -202,18 +202,18 @@ class TracedLength(_Scalar):
         return format(self.value, form)
 
 
-def _least(note: RecordedNumber) -> RecordedNumber:
+def _least(node: RecordedNumber) -> RecordedNumber:
     """The least of a number over the poses: an input, found by the node of that number."""
     from compoundkin.programs.graph.operation_graph import InputNumber
 
-    return type(note).given(note.graph, InputNumber(LEAST, str(note.x)))
+    return type(node).given(node.graph, InputNumber(LEAST, str(node.x)))
 
 
 def as_place(value: Number) -> complex:
-    """Return a place as a complex number. Its note stays with it, where it has one."""
+    """Return a place as a complex number. Its node stays with it, where it has one."""
     return value if isinstance(value, TracedPlace) else complex(value)
 
 
 def as_length(value: Number) -> Any:
-    """Return a real number as a plain one. Its note stays with it, where it has one."""
+    """Return a real number as a plain one. Its node stays with it, where it has one."""
     return value if isinstance(value, TracedLength) else float(value)

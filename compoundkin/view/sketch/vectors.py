@@ -36,7 +36,7 @@ SAME = 1.0
 
 @dataclass(frozen=True)
 class VectorScale:
-    """How vectors are drawn. Picture units for a unit of theirs, and a round amount to show beside the picture.
+    """The scale of vectors: picture units for one of their units, and a round amount to show beside the picture.
 
     `order` is how many time derivatives they take: odd ones turn round where a motion goes back.
     """

@@ -111,7 +111,7 @@ class RedrawnParts:
     def nodes(self, value: Number) -> tuple[int, int]:
         """Return the nodes of both coordinates of a place."""
         if isinstance(value, Traced):
-            return value.note.part(0), value.note.part(1)
+            return value.node.part(0), value.node.part(1)
         return self.graph.constant(float(value.real)), self.graph.constant(float(value.imag))
 
     @cached_property
