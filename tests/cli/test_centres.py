@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 
 from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
+from tests import catalog
 
 Run = Callable[..., Result]
 CRANK, ROD = 0.12, 0.26
@@ -138,8 +139,8 @@ def test_a_file_takes_its_form_from_its_name(run: Run, tmp_path: Path) -> None:
     assert r"(frame input)(input block) x (frame output)(output block)" in text
 
 
-# every third; of all others tests/analysis/centres/test_catalog.py tells that they agree
-@pytest.mark.parametrize("name", shipped_mechanisms.shipped()[::3])
+# every third; that the others agree is tested in tests/analysis/centres/test_catalog.py
+@pytest.mark.parametrize("name", catalog.CHOSEN[::3])
 def test_mechanisms_fit_80_columns_and_agree(run: Run, name: str) -> None:
     result = run("centres", name)
     assert result.exit_code == 0

@@ -28,8 +28,10 @@ OUTPUTS = "#outputs-table-1"
 SIX_BAR = "six-bar"
 
 
-def others(folder: Path) -> dict[str, Path]:
+@pytest.fixture(scope="session")
+def others(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages without a moving sketch: faults, and no mechanism at all."""
+    folder = tmp_path_factory.mktemp("others")
     parts = ck.link("frame", A=0, D=4), ck.link("a", A=0, B=1), ck.link("b", B=0, C=3), ck.link("c", D=0, C=3)
     structure = ck.decompose(ck.Mechanism("Undriven four-bar", *parts))
     made = {"faults": page(structure), "atlas": atlas_report(6).page()}
@@ -43,26 +45,29 @@ def wide(one: Any) -> tuple[int, int]:
     return tuple(one.value("[document.scrollingElement.scrollWidth, innerWidth]"))
 
 
+def fits(one: Any) -> None:
+    """It complains about nothing, asks for nothing, and is no wider than a desk's or a phone's window."""
+    for width, height in (DESK, PHONE):
+        one.set_viewport_size({"width": width, "height": height})
+        one.wait_for_timeout(100)
+        page_width, window = wide(one)
+        assert page_width <= window, one.path
+    assert one.complaints == []
+    assert [url for url in one.requests if not url.startswith("data:")] == [one.path.as_uri()]
+
+
 @pytest.mark.parametrize(
-    "name", ["six-bar", "jansen-leg", "stephenson-iii", "planetary-train", "disc-cam-roller-program"]
+    "name",
+    [SIX_BAR, "disc-cam-roller-program"]
+    + [pytest.param(name, marks=pytest.mark.full) for name in ("jansen-leg", "stephenson-iii", "planetary-train")],
 )
 def test_it_is_quiet_asks_for_nothing_and_fits(made: Made, opened: Open, name: str) -> None:
-    for size in (DESK, PHONE):
-        one = opened(made(name), size)
-        one.wait_for_timeout(200)
-        assert one.complaints == []
-        assert [url for url in one.requests if not url.startswith("data:")] == [one.path.as_uri()]
-        width, window = wide(one)
-        assert width <= window
+    fits(opened(made(name)))
 
 
-def test_pages_without_a_motion_are_quiet_and_fit_too(opened: Open, tmp_path: Path) -> None:
-    for path in others(tmp_path).values():
-        for size in (DESK, PHONE):
-            one = opened(path, size)
-            assert one.complaints == []
-            width, window = wide(one)
-            assert width <= window, path
+def test_pages_without_a_motion_are_quiet_and_fit_too(opened: Open, others: dict[str, Path]) -> None:
+    for path in others.values():
+        fits(opened(path))
 
 
 def test_nothing_is_written_too_small_for_a_phone(made: Made, opened: Open) -> None:
@@ -94,14 +99,12 @@ def test_matrices_stand_on_one_line_and_their_rows_apart(opened: Open, tmp_path:
     path = tmp_path / "equations.html"
     options = "--equations", "--order", "2", "-o", str(path)
     assert CliRunner().invoke(cli, ["structure", "jansen-leg", *options]).exit_code == 0
-    for size in (DESK, PHONE):
-        one = opened(path, size)
-        count, below, gap = one.value(MATRICES)
-        assert count == 3
-        assert below < 0
-        assert gap > 2
-        width, window = wide(one)
-        assert width <= window
+    one = opened(path)
+    fits(one)
+    count, below, gap = one.value(MATRICES)
+    assert count == 3
+    assert below < 0
+    assert gap > 2
 
 
 def column(one: Any, table: str, k: int) -> list[float]:
@@ -139,6 +142,8 @@ def test_a_column_is_sorted_by_its_numbers_with_a_click_and_by_keyboard(made: Ma
 
 def test_all_rows_are_shown_on_demand(made: Made, opened: Open) -> None:
     one = opened(made(SIX_BAR))
+    one.value("document.dispatchEvent(new CustomEvent('compoundkin:pose', { detail: { pose: 9 } }))")
+    assert one.locator(f"{OUTPUTS} tr.here").get_attribute("data-pose") == "9"
     button = one.get_by_role("button", name="Show all 73 rows")
     assert len(column(one, OUTPUTS, 0)) == 25
     button.click()
@@ -280,13 +285,7 @@ def test_names_below_the_sketch_light_up_by_keyboard_too(made: Made, opened: Ope
     assert lit(one, "#links") == set()
 
 
-def test_names_in_a_table_are_one_stop_of_the_tab_key(made: Made, opened: Open) -> None:
-    one = opened(made(SIX_BAR))
-    stops = one.value("[...document.querySelectorAll('#links .who')].filter((b) => b.tabIndex === 0).length")
-    assert stops == 1
-
-
-def test_the_keyboard_comes_first_to_the_report_and_then_to_its_parts_in_order(made: Made, opened: Open) -> None:
+def test_the_keyboard_comes_to_the_report_first_and_headings_go_down_by_one(made: Made, opened: Open) -> None:
     one = opened(made(SIX_BAR))
     one.keyboard.press("Tab")
     assert one.value("document.activeElement.className") == "skip"
@@ -298,18 +297,23 @@ def test_the_keyboard_comes_first_to_the_report_and_then_to_its_parts_in_order(m
         .filter((e) => e.tabIndex >= 0).every((e) => e.tabIndex === 0)"""
     )
     assert order, "positive tab indices change the order of the page"
-
-
-def test_headings_go_down_one_level_at_a_time(made: Made, opened: Open) -> None:
-    one = opened(made(SIX_BAR))
+    stops = one.value("[...document.querySelectorAll('#links .who')].filter((b) => b.tabIndex === 0).length")
+    assert stops == 1, "names in a table are one stop of the tab key"
     levels = one.value("[...document.querySelectorAll('h1,h2,h3,h4')].map((h) => +h.tagName[1])")
     assert levels[0] == 1
     assert levels.count(1) == 1
     assert all(after - before <= 1 for before, after in pairwise(levels))
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+@pytest.mark.parametrize(
+    ("size", "scheme"),
+    [
+        pytest.param(DESK, "light", id="desk-light"),
+        pytest.param(PHONE, "dark", id="phone-dark"),
+        pytest.param(DESK, "dark", id="desk-dark", marks=pytest.mark.full),
+        pytest.param(PHONE, "light", id="phone-light", marks=pytest.mark.full),
+    ],
+)
 def test_axe_finds_nothing_against_it(made: Made, opened: Open, size: tuple[int, int], scheme: str) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
     one = opened(made(SIX_BAR), size, color_scheme=scheme)
@@ -344,21 +348,15 @@ def test_scripts_leave_one_name_behind(made: Made, opened: Open, tmp_path: Path)
     assert found - named - {"compoundkin"} == set()
 
 
-def test_without_scripts_all_is_there_to_read(made: Made, opened: Open) -> None:
+def test_without_scripts_all_is_there_to_read_but_the_plots(made: Made, opened: Open) -> None:
     one = opened(made(SIX_BAR), java_script_enabled=False)
-    assert one.locator("#published").is_visible()
-    assert not one.locator(".theme").is_visible()
-    assert not one.locator(".tools").first.is_visible()
+    for visible in ("#published", "#links"):
+        assert one.locator(visible).is_visible()
+    for scripted in (".theme", ".tools", "#motion", ".contents a[href='#motion']"):
+        assert not one.locator(scripted).first.is_visible()
 
 
-def test_the_row_of_the_pose_shown_is_marked(made: Made, opened: Open) -> None:
-    one = opened(made(SIX_BAR))
-    one.value("document.dispatchEvent(new CustomEvent('compoundkin:pose', { detail: { pose: 9 } }))")
-    assert one.locator(f"{OUTPUTS} tr.here").get_attribute("data-pose") == "9"
-
-
-def test_a_report_of_faults_says_so_in_words(opened: Open, tmp_path: Path) -> None:
-    path = others(tmp_path)["faults"]
-    one = opened(path, PHONE)
+def test_a_report_of_faults_says_so_in_words(opened: Open, others: dict[str, Path]) -> None:
+    one = opened(others["faults"], PHONE)
     assert "cannot be solved" in one.locator(".badges").text_content()
     assert one.locator(".alert").first.is_visible()

@@ -102,7 +102,7 @@ def _changes(motion: ck.results.Motion, names: list[str], seed: int) -> dict[str
 
 
 @pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES[:2], *(pytest.param(name, marks=pytest.mark.full) for name in NAMES[2:])])
 def test_what_is_drawn_anew_is_what_painters_draw(name: str, made: Any, opened: Any) -> None:
     motion, view = catalog.motion(name), opened(made(name))
     names, window, pose = view.value(

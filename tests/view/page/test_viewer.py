@@ -32,7 +32,14 @@ def until(view: Any, script: str) -> None:
     pytest.fail(f"never true: {script}")
 
 
-@pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "planetary-train", "class-iii-six-bar"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "six-bar",
+        "planetary-train",
+        *(pytest.param(name, marks=pytest.mark.full) for name in ("jansen-leg", "class-iii-six-bar")),
+    ],
+)
 def test_the_slider_takes_every_point_where_the_solver_has_it(name: str, made: Any, opened: Any) -> None:
     motion = catalog.motion(name)
     view = opened(made(name))

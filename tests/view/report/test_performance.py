@@ -1,20 +1,11 @@
-"""The section Performance of reports: in every one of the catalog, and the same from text to JSON."""
+"""The section Performance of reports, the same from text to JSON."""
 
 from __future__ import annotations
-
-import pytest
 
 import compoundkin as ck
 from compoundkin.view.report import report
 from compoundkin.view.report.report_data import Alert, Paragraph, TableBlock
 from tests import catalog
-
-
-@pytest.mark.parametrize("name", catalog.NAMES)
-def test_every_mechanism_of_the_catalog_has_the_section(name: str) -> None:
-    section = catalog.report_of(name).section("performance")
-    assert section is not None
-    assert section.blocks
 
 
 def test_it_tells_strokes_dead_points_and_types() -> None:

@@ -5,7 +5,6 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import load
-from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.report_data import Alert, FormulaBlock, Paragraph, StepBlock, TableBlock
 from compoundkin.view.report.structure_sections import equation_count
@@ -65,7 +64,7 @@ def test_each_group_says_what_it_uses_and_yields(six_bar: ck.results.Motion) -> 
     assert facts[2]["yields"] == "bar, block; point G"
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", catalog.CHOSEN)
 def test_equations_equal_unknowns_where_the_drivers_determine_the_motion(name: str) -> None:
     structure = catalog.structure(name)
     count, mobility = equation_count(structure), structure.mobility

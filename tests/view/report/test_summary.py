@@ -27,8 +27,12 @@ def fan(groups: int) -> ck.Mechanism:
 DYAD: dict[str, Any] = {"rod": lambda k: (f"B{k}", f"C{k}"), "arm": lambda k: (f"F{k}", f"C{k}")}
 
 
-def test_text_names_the_first_and_counts_the_rest() -> None:
-    made = ck.report(ck.decompose(fan(GROUPS)))
+@pytest.fixture(scope="module")
+def made() -> ck.results.Report:
+    return ck.report(ck.decompose(fan(GROUPS)))
+
+
+def test_text_names_the_first_and_counts_the_rest(made: ck.results.Report) -> None:
     text = made.text()
     # 2 + 2 * 400 links, 1 + 3 * 400 pairs, a paragraph and the frame before the groups
     assert "... and 702 rows more, in the whole report." in text
@@ -40,8 +44,7 @@ def test_text_names_the_first_and_counts_the_rest() -> None:
     assert all(f"rod{k}" in whole for k in range(GROUPS))
 
 
-def test_markdown_and_json_are_whole() -> None:
-    made = ck.report(ck.decompose(fan(GROUPS)))
+def test_markdown_and_json_are_whole(made: ck.results.Report) -> None:
     sections = json.loads(made.json())["sections"]
     assert len(sections["links"]["blocks"][-1]["rows"]) == 2 + 2 * GROUPS
     assert f"rod{GROUPS - 1}" in made.markdown()
