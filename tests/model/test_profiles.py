@@ -13,7 +13,7 @@ from compoundkin.model.profiles import Synthesised, synthesise
 from compoundkin.model.profiles.synthesised import least_base
 
 SPEED = 2.0
-ANGLES = np.linspace(-1.0, 12.0, 3_000)
+ANGLES = np.linspace(-1.0, 12.0, 700)
 
 
 def lift(amount: float, law: str = "cycloidal") -> Program:

@@ -23,6 +23,7 @@ from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import KINDS
 from compoundkin.model.pairs.contract import Drivable, Pair, Replaceable, TurnCounting
 from compoundkin.view.sketch.picture_kinds import KINDS as PICTURES
+from tests.catalog import EVERYTHING
 from tests.model.pairs.minimal import Guided, Level, register, with_guided, with_level
 
 MECHANISMS = {"held once": with_level, "held twice": with_guided}
@@ -209,5 +210,5 @@ def test_each_answer_may_be_left_out(code: str, name: str, monkeypatch: pytest.M
     assert ck.mobility_analysis(lesser).finite >= 1
     assert ck.instant_centres(motion) is not None
     assert ck.draw(motion).svg
-    # what is verified is in the report
-    assert ck.report(motion).outcome.passed
+    # what is verified is in the report, which takes five times as long
+    assert (ck.report(motion).outcome if EVERYTHING else ck.verify(motion)).passed
