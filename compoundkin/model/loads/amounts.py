@@ -22,15 +22,13 @@ from compoundkin.model.geometry import real, vector
 from compoundkin.model.laws.constant_laws import ComparedByValue
 from compoundkin.model.loads.contract import LoadedPoses
 
-# What an amount may depend on, by name: each is asked for only where it is needed.
+# The variables of an amount by name, each evaluated only where it is needed.
 Variables: TypeAlias = Mapping[str, Callable[[], Number]]
 
 
 @dataclass(frozen=True, eq=False)
 class LoadFunction(CopiesFunction):
-    """A Python function that returns amounts.
-
-    It takes so many arrays, such as the coordinate, its rate, the time.
+    """A Python function that returns amounts for `count` arrays, such as the coordinate, its rate, the time.
 
     >>> LoadFunction(lambda t: 2.0 * t, 1).value("forces.press", (np.array([[0.0, 3.0]]),)).tolist()
     [[0.0, 6.0]]
@@ -48,7 +46,7 @@ class LoadFunction(CopiesFunction):
         return hash(self.f)
 
     def value(self, where: str, arguments: tuple[Number, ...]) -> Number:
-        """Return its amounts for arrays that broadcast. It is called with finite numbers alone."""
+        """Return its amounts for arrays that broadcast. The function is called with finite numbers only."""
         given = np.broadcast_arrays(*(np.asarray(one, dtype=float) for one in arguments))
         known = np.logical_and.reduce([np.isfinite(one) for one in given])
         places = [one[known] for one in given]
@@ -111,7 +109,7 @@ class LoadTable(ShortRepr, ComparedByValue, CopiesFields):
 
     @classmethod
     def of(cls, where: str, given: Mapping[Any, Any], over: str = "") -> Self:
-        """Return the table that a mapping says. Raises InvalidMechanism naming `where`."""
+        """Return the table of a mapping. Raises InvalidMechanism naming `where`."""
         known = [key.name for key in cls.keys]
         wrong = [Problem(f"{where}.{key}", "a table of a load has no such key", suggestion(key, known))
                  for key in given if key not in known]  # fmt: skip
@@ -203,7 +201,7 @@ Amount: TypeAlias = Number | LoadFunction | LoadTable
 
 
 def as_amount(where: str, given: Any, *variables: str) -> Amount:
-    """Return an amount as it is held. Raises InvalidMechanism naming `where`.
+    """Return an amount as a number, array, function or table. Raises InvalidMechanism naming `where`.
 
     >>> as_amount("torques.motor", 3), as_amount("torques.motor", lambda t: 2 * t, "time").count
     (3.0, 1)
@@ -216,9 +214,7 @@ def as_amount(where: str, given: Any, *variables: str) -> Amount:
 
 
 def as_planar_amount(where: str, given: Any) -> Amount | tuple[Amount, Amount]:
-    """Return a vector as it is held.
-
-    It is complex, a function that returns such, or two amounts, x and y.
+    """Return a planar amount: complex, a function that returns such, or two amounts x and y.
 
     >>> as_planar_amount("forces.press", (0, lambda t: -5 * t))[0]
     0.0
@@ -238,10 +234,10 @@ def _moves(given: Any) -> bool:
 
 
 def _count(where: str, function: Callable[..., Any], variables: tuple[str, ...]) -> int:
-    """Return how many of the variables a function takes: as many as it needs, one at least."""
+    """Return how many of the variables a function takes, at least one."""
     try:
         parameters = inspect.signature(function).parameters.values()
-    except (TypeError, ValueError):  # functions of NumPy do not say
+    except (TypeError, ValueError):  # functions of NumPy have no signature
         return int(getattr(function, "nin", 1))
     placed = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
     needed = sum(p.default is p.empty for p in placed)
@@ -254,7 +250,7 @@ def _count(where: str, function: Callable[..., Any], variables: tuple[str, ...])
 
 
 def _numbers(where: str, made: Any) -> Any:
-    """Return what a function returned as an array; of two, as complex numbers."""
+    """Return the result of a function as an array; two results as complex numbers."""
     try:
         if isinstance(made, tuple | list) and len(made) == 2:
             return complex_of(*np.broadcast_arrays(*(np.asarray(part, dtype=float) for part in made)))
@@ -268,8 +264,8 @@ def _numbers(where: str, made: Any) -> Any:
 def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables = MappingProxyType({})) -> Number:
     """Return an amount at the poses of a block, a real number.
 
-    `variables` are those that a function takes before the time, the first of them what a table is over that names
-    nothing else. Raises InvalidInput naming `where`.
+    `variables` are those that a function takes before the time; the first is the default variable of tables. Raises
+    InvalidInput naming `where`.
     """
     found = _value_of(where, amount, at, variables)
     if np.iscomplexobj(found):
@@ -278,10 +274,10 @@ def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables =
 
 
 def _value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables = MappingProxyType({})) -> Number:
-    """Return an amount, of functions of vectors complex."""
+    """Return an amount, complex for functions of vectors."""
     if isinstance(amount, LoadFunction):
-        asked: list[Callable[[], Number]] = [*variables.values(), lambda: time_of(where, at)]
-        return amount.value(where, tuple(variable() for variable in asked[: amount.count]))
+        available: list[Callable[[], Number]] = [*variables.values(), lambda: time_of(where, at)]
+        return amount.value(where, tuple(variable() for variable in available[: amount.count]))
     if isinstance(amount, LoadTable):
         if amount.over == TIME or not (amount.over or variables):
             return amount.value(where, time_of(where, at))
@@ -307,7 +303,7 @@ def time_of(where: str, at: LoadedPoses) -> Number:
 
 
 def needs_rates(amount: Any) -> bool:
-    """Tell whether a function asks for a rate, its second argument."""
+    """Return whether an amount is a function of a rate, its second argument."""
     return isinstance(amount, LoadFunction) and amount.count > 1
 
 
@@ -318,5 +314,5 @@ def tables_of(amount: Any) -> Iterator[LoadTable]:
             yield part
 
 
-# Places beyond the ends of a table by no more than this part of its range are its ends: rounding of 0.1 + 0.1 + 0.1.
+# Places beyond an end of a table by this part of its range or less are that end: rounding of 0.1 + 0.1 + 0.1.
 SLACK = 1e-9

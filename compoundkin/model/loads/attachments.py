@@ -21,14 +21,14 @@ from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, valu
 from compoundkin.model.loads.contract import NO_RENAMING, Load, LoadedPoses, NamedParts
 from compoundkin.model.pairs.revolute import SEPARATORS
 
-# What functions of a load along a pair may take.
+# The variables of functions of a load along a pair.
 COORDINATE = "coordinate"
 VARIABLES = (COORDINATE, "rate", "time")
 FORWARD, BACK = "forward", "back"
 
 
 def rate_of(series: Series) -> Number:
-    """Return the rate of a coordinate; none of a motion without velocities."""
+    """Return the rate of a coordinate, zero for a motion without velocities."""
     return series.c[1] if len(series.c) > 1 else 0.0
 
 
@@ -53,10 +53,7 @@ def renamed_pair(name: str, links: Mapping[str, str], coordinates: Mapping[str, 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PairLoad(Load):
-    """A load along the free coordinate of a pair.
-
-    It acts on the pair's second link, its opposite on the first.
-    """
+    """A load along the free coordinate of a pair: on its second link, the opposite on the first."""
 
     pair: str = field(metadata=value_key("name", "The pair, by its name, a pin's letter or a driver of it."))
     members: tuple[str, ...] = field(default=(), kw_only=True)
@@ -68,11 +65,11 @@ class PairLoad(Load):
 
     @property
     def links(self) -> tuple[str, ...]:
-        """The two links of its pair, which the mechanism tells it."""
+        """The two links of its pair, once the mechanism has completed it."""
         return self.members
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
-        """Return it along a pair of another name."""
+        """Return the load along a pair of another name."""
         return replace(super().renamed(links, coordinates), pair=renamed_pair(self.pair, links, coordinates))
 
     def completed(self, written: NamedParts) -> Load:
@@ -85,7 +82,7 @@ class PairLoad(Load):
         """Return the effort: positive where it drives the coordinate up."""
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, or one without such a coordinate."""
+        """Find an unknown pair, or one that takes no effort."""
         pair = written.pair(self.pair)
         if pair is None and (several := written.at_pin(self.pair)):
             what = f"the pin {self.pair!r} joins more than two links"
@@ -106,9 +103,9 @@ class PairLoad(Load):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Effort(PairLoad):
-    """An effort along the free coordinate of a pair.
+    """An effort along the free coordinate of a pair: a thrust on a slide or along a slot, a torque at a pin.
 
-    It is a thrust on a slide or along a slot, a torque at a pin. It acts on the pair's second link, the opposite on the
+    It acts on the pair's second link, the opposite on the
     first; ``"forward"`` and ``"back"`` are while the coordinate grows and while it shrinks.
     """
 
@@ -165,10 +162,7 @@ def effort(pair: str, amount: Any, *, only: str | None = None, name: str = "") -
 
 
 class EndSeparation(NamedTuple):
-    """The way from the first end to the second.
-
-    It has its length, and the velocity of the second end relative to the first.
-    """
+    """The vector from the first end to the second, its length, and the relative velocity of the second end."""
 
     vector: Number
     length: Number
@@ -176,27 +170,24 @@ class EndSeparation(NamedTuple):
 
     @property
     def rate(self) -> Number:
-        """How fast it grows. Ends that meet move apart with their whole speed."""
+        """The rate of its length; ends that coincide move apart with their whole speed."""
         with np.errstate(all="ignore"):
             along = dot(self.vector, self.velocity) / self.length
         return np.where(np.asarray(self.length) == 0.0, np.abs(self.velocity), along)
 
     def along(self, pull: Number, where: str) -> Number:
-        """Return a pull as a vector. Warns, naming `where`, where ends that meet give it no direction."""
+        """Return a pull as a vector. Warns, naming `where`, if ends coincide, where it has no direction."""
         length, vector = np.asarray(self.length), np.asarray(self.vector)
         meeting = (length == 0.0) & (np.asarray(pull) != 0.0)
         if np.any(meeting):
-            warn(f"{where}: its ends meet, where its force has no direction", LikelySlip)
+            warn(f"{where}: its ends coincide, where its force has no direction", LikelySlip)
         with np.errstate(all="ignore"):
             return np.where(length == 0.0, np.where(meeting, np.nan, 0.0), pull * vector / length)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PointToPointLoad(Load):
-    """A load along the line between points of two links.
-
-    Its ends are the point `point` of `link` and the point `at` of the link `to`.
-    """
+    """A load along the line from the point `point` of `link` to the point `at` of the link `to`."""
 
     link: str = field(metadata=link_key("The link that one end is fixed to."))
     point: Any = field(metadata=spot_key("link", "Its end there: a point, or a place in the link's frame."))
@@ -211,7 +202,7 @@ class PointToPointLoad(Load):
         return f"{self.title} on {self.link}"
 
     def gap(self, at: LoadedPoses) -> EndSeparation:
-        """Return the line between its ends."""
+        """Return the separation of its ends."""
         between = at.place(self.to, self.at) - at.place(self.link, self.point)
         return EndSeparation(between.c[0], abs(between.c[0]), velocity_of(between))
 
@@ -233,7 +224,7 @@ class PointToPointLoad(Load):
 
 
 def velocity_of(series: Series) -> Number:
-    """Return the velocity of a place; none of a motion without velocities."""
+    """Return the velocity of a place, zero for a motion without velocities."""
     return series.c[1] if len(series.c) > 1 else 0j
 
 
@@ -247,25 +238,25 @@ def attachment_point(where: str, given: Any) -> Number | str:
 
 
 def check_ends(where: str, pair: str, link: str, beside: Mapping[str, Any]) -> None:
-    """Raise InvalidMechanism for ends that are none, or of both sorts.
-
-    `beside` has what is said and should not be.
+    """Raise InvalidMechanism for missing ends, and for arguments `beside` that belong to the other sort of ends.
 
     >>> check_ends("springs.arm", "C", "", {"point": "A"})
     Traceback (most recent call last):
     compoundkin.base.errors.InvalidMechanism: springs.arm.point: it is along the pair 'C'; leave point out
     """
-    said = [key for key, value in beside.items() if not (isinstance(value, str | int | float) and value in ("", 0))]
+    superfluous = [
+        key for key, value in beside.items() if not (isinstance(value, str | int | float) and value in ("", 0))
+    ]
     if not pair and not link:
         raise InvalidMechanism(Problem(where, "it has no ends", 'name a link and a point, or write pair="C"'))
-    if said:
+    if superfluous:
         what = f"it is along the pair {pair!r}" if pair else "it is between points, which have no coordinate"
-        raise InvalidMechanism(Problem(f"{where}.{said[0]}", what, f"leave {', '.join(said)} out"))
+        raise InvalidMechanism(Problem(f"{where}.{superfluous[0]}", what, f"leave {', '.join(superfluous)} out"))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PairProperty(ShortRepr):
-    """What is written of a pair beside its dimensions, under the pair's name."""
+    """A property of a pair beside its dimensions, under the pair's name."""
 
     pair: str
 
@@ -277,9 +268,9 @@ class PairProperty(ShortRepr):
         return self.pair
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
-        """Return it in a pair of another name."""
+        """Return the property of a pair of another name."""
         return replace(self, pair=renamed_pair(self.pair, links, coordinates))
 
     def unknown(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find that there is no such pair."""
+        """Report that there is no such pair."""
         yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", suggestion(self.pair, written.pairs))

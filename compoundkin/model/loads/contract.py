@@ -23,11 +23,11 @@ NO_RENAMING: Mapping[str, str] = MappingProxyType({})
 
 
 class LoadedPoses(Protocol):
-    """What loads are asked at: some designs x some poses with their velocities. All arrays are (designs, poses)."""
+    """The poses at which loads are evaluated, with their velocities. All arrays are (designs, poses)."""
 
     @property
     def units(self) -> Units:
-        """The mechanism's units: what loads return is in them."""
+        """The mechanism's units, in which loads return wrenches."""
 
     @property
     def time(self) -> Number | None:
@@ -37,23 +37,20 @@ class LoadedPoses(Protocol):
         """Return the pose of a link, with its first derivative at least."""
 
     def place(self, link: str, point: str | complex) -> Series:
-        """Return where a point of a link is. By its letter or its place in the link."""
+        """Return the place of a link's point, given by its letter or its place in the link."""
 
     def coordinate(self, name: str) -> Series:
         """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
 
     def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
-        """Yield the links of a pair with the wrenches of a unit effort.
-
-        It is along the coordinate, on the second link; its opposite is on the first.
-        """
+        """Yield the two links of a pair with the wrenches of a unit effort on the second and its opposite."""
 
     def fitted(self, value: Any, where: str = ...) -> Number:
-        """Return what of a value belongs to these poses. `where` names it in errors."""
+        """Return the entries of a value at these poses. `where` names it in errors."""
 
 
 class NamedParts(Protocol):
-    """What is written of links and pairs, for loads that name them."""
+    """The names of links, points and pairs, for loads that refer to them."""
 
     @property
     def letters(self) -> Mapping[str, tuple[str, ...]]:
@@ -65,16 +62,16 @@ class NamedParts(Protocol):
 
     @property
     def pairs(self) -> list[str]:
-        """The names by which pairs may be meant."""
+        """The names of pairs."""
 
     def at_pin(self, letter: str) -> list[str]:
         """Return the names of the pairs at a multiple pin."""
 
     def pair(self, name: str) -> Pair | None:
-        """Return the pair that a name means, or None."""
+        """Return the pair of a name, or None."""
 
     def coordinate(self, name: str) -> Pair | None:
-        """Return the pair of which a name means the coordinate, or None."""
+        """Return the pair whose coordinate a name refers to, or None."""
 
 
 def with_names(amount: Any, coordinates: Mapping[str, str]) -> Any:
@@ -87,7 +84,7 @@ def with_names(amount: Any, coordinates: Mapping[str, str]) -> Any:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Load(ShortRepr, ABC):
-    """What acts on links from outside: forces, torques, efforts, springs, dampers. Kinds are frozen dataclasses."""
+    """A load on links: a force, torque, effort, spring or damper. Kinds are frozen dataclasses."""
 
     name: str = field(
         default="",
@@ -100,21 +97,21 @@ class Load(ShortRepr, ABC):
     wording: ClassVar[NameWording] = NameWording(verb="act")
     keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
     amounts: ClassVar[tuple[str, ...]] = ()  # the fields that hold amounts
-    own_variable: ClassVar[str] = TIME  # what their tables are over that do not say it
+    own_variable: ClassVar[str] = TIME  # the default variable of their tables
 
     def __post_init__(self) -> None:
-        """A load that is given no name is called after what it acts on."""
+        """A load without a name is named after what it acts on."""
         if not self.name:
             object.__setattr__(self, "name", self.called)
 
     @property
     @abstractmethod
     def called(self) -> str:
-        """Its name where none is given."""
+        """Its default name."""
 
     @property
     def where(self) -> str:
-        """Its place in errors."""
+        """The name of its place in errors."""
         return f"{self.table}.{self.name}"
 
     @property
@@ -129,36 +126,36 @@ class Load(ShortRepr, ABC):
 
     @property
     def needs_rates(self) -> bool:
-        """Whether it asks for velocities."""
+        """Whether it depends on velocities."""
         return False
 
     @property
     def pin(self) -> str:
-        """The letter of the pin that it acts on itself. It is empty where it acts on a link."""
+        """The letter of the pin that it acts on; empty where it acts on a link."""
         return ""
 
     def attack(self, link: str) -> str | Number | None:
-        """Return the point of a link at which it acts. It is a letter or a place in the link, None for a couple."""
+        """Return its point on a link, a letter or a place; None for a couple."""
         return None
 
     def completed(self, written: NamedParts) -> Load:
-        """Return the load with what its words leave open; itself without any."""
+        """Return the load with omitted points filled in; itself where there are none."""
         found = implied_points(self, written.letters)
         return replace(self, **found) if found else self
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
-        """Return it on links and over coordinates of other names. Its own name stays."""
-        told = {key: links.get(getattr(self, key), getattr(self, key)) for key in self.link_keys}
-        held = {key: with_names(getattr(self, key), coordinates) for key in self.amounts if coordinates}
-        return replace(self, **told, **held)
+        """Return the load with other names of links and coordinates. Its own name stays."""
+        fields = {key: links.get(getattr(self, key), getattr(self, key)) for key in self.link_keys}
+        amounts = {key: with_names(getattr(self, key), coordinates) for key in self.amounts if coordinates}
+        return replace(self, **fields, **amounts)
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find what is wrong with it as written."""
+        """Find problems of its definition."""
         yield from name_problems(self, written.letters, where, self.wording)
 
     @abstractmethod
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
-        """Yield the links it acts on with their wrenches, in the mechanism's units."""
+        """Yield the links it acts on, with the wrenches in the mechanism's units."""
 
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return its potential energy, None for a load that has none."""

@@ -30,9 +30,7 @@ _RATE = "Force or torque for a unit of speed, or the force itself as a table ove
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Damper(PointToPointLoad):
-    """A damper between points of two links.
-
-    It pulls with its rate times the speed at which it is drawn.
+    """A damper between points of two links, which pulls with its rate times its speed of extension.
 
     >>> damper("arm", "A", at="S", rate=40).name
     'damper on arm'
@@ -48,7 +46,7 @@ class Damper(PointToPointLoad):
 
     @property
     def needs_rates(self) -> bool:
-        """Whether it asks for velocities: it does nothing else."""
+        """Whether it depends on velocities."""
         return True
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
@@ -57,10 +55,10 @@ class Damper(PointToPointLoad):
         yield from rate_problems(self.rate, where)
 
     def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
-        """Return its force; where its ends meet, along their relative velocity."""
+        """Return its force; where its ends coincide, along their relative velocity."""
         own = {"rate": lambda: gap.rate, "length": lambda: gap.length}
         amount = value_of(self.where, self.rate, at, own)
-        # ends that meet move along the line they are on before and after
+        # ends that coincide move along the line on which they are before and after
         line = np.where(np.asarray(gap.length) == 0.0, gap.velocity, gap.vector)
         pull = amount if is_force_law(self.rate) else amount * gap.rate
         return EndSeparation(line, np.abs(line), gap.velocity).along(pull, self.where)
@@ -68,7 +66,7 @@ class Damper(PointToPointLoad):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PairDamper(PairLoad):
-    """A damper along the free coordinate of a pair: it works against its rate."""
+    """A damper along the free coordinate of a pair, against its rate."""
 
     rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
 
@@ -79,7 +77,7 @@ class PairDamper(PairLoad):
 
     @property
     def needs_rates(self) -> bool:
-        """Whether it asks for velocities: it does nothing else."""
+        """Whether it depends on velocities."""
         return True
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
@@ -96,7 +94,7 @@ class PairDamper(PairLoad):
 
 
 def rate_problems(rate: Amount, where: str) -> Iterator[Problem]:
-    """Find a damper that drives."""
+    """Find a negative rate, with which a damper would drive."""
     if not is_force_law(rate) and np.any(np.asarray(rate) < 0.0):
         yield Problem(f"{where}.{Damper.amounts[0]}", "a damper of negative rate drives", "give a rate above zero")
 
@@ -107,9 +105,9 @@ def damper(
 ) -> Damper | PairDamper:
     """Return a damper between points of two links, or along a pair.
 
-    It is written as a `spring`, and pulls with `rate` times the speed at which it is drawn. Of a `rate` that is a
-    function of as many of (speed, length or coordinate, time) as it takes, or a table over the speed, it is the force
-    itself. Raises InvalidMechanism for ends of both sorts.
+    It is written as a `spring`, and pulls with `rate` times its speed of extension. A `rate` that is a function of as
+    many of (speed, length or coordinate, time) as it takes, or a table over the speed, is the force itself. Raises
+    InvalidMechanism for ends of both sorts.
 
     >>> damper("arm", "A", to="frame", at="S", rate=40).rate
     40.0

@@ -23,9 +23,8 @@ from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 class Force(Load):
     """A force on a link at a point, or on a pin itself.
 
-    Its direction is fixed in the frame or in a link. A load on a pin is carried by the first of its links, and `on_pin`
-    is its letter. With `while_moving` it acts only while its point moves in that direction, which is told in the same
-    axes as the force.
+    Its direction is fixed in the frame or in a link. A load on a pin acts on the first of its links, and `on_pin` is
+    its letter. With `while_moving` it acts only while its point moves in that direction, given in the same axes.
     """
 
     link: str = field(metadata=link_key("The link it acts on, or the letter of a point that carries it."))
@@ -50,23 +49,23 @@ class Force(Load):
 
     @property
     def needs_rates(self) -> bool:
-        """Whether it acts only while its point moves one way."""
+        """Whether it depends on the direction of motion."""
         return self.while_moving is not None
 
     @property
     def link_keys(self) -> tuple[str, ...]:
-        """The fields that name links, with the one whose axes it keeps."""
+        """The fields that name links, with the one in whose axes it is given."""
         return ("link", "fixed_in")
 
     def completed(self, written: NamedParts) -> Load:
-        """Return the force on a link, where a point is named."""
+        """Return the force on a link of the point, where a point is named."""
         own = written.carriers.get(self.link, ())
         if self.link in written.letters or not own or not isinstance(self.at, str) or self.at:
             return super().completed(written)
         return replace(self, link=own[0], at=self.link, on_pin=self.link if len(own) > 1 else "")
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find unknown links and points, the one with which it turns among them."""
+        """Find unknown links and points, and a direction of zero length."""
         yield from super().problems(written, where)
         if self.fixed_in not in written.letters:
             what = f"there is no link {self.fixed_in!r}"
@@ -76,7 +75,7 @@ class Force(Load):
 
     @property
     def pin(self) -> str:
-        """The letter of the pin that it acts on itself."""
+        """The letter of the pin that it acts on."""
         return self.on_pin
 
     def attack(self, link: str) -> str | Number:
@@ -131,7 +130,7 @@ def force(
     with which it then turns. `at` is a letter of the link, or a place in its frame. With ``while_moving=(dx, dy)`` it
     acts only while that point moves so.
 
-    Raises InvalidMechanism for what is no force.
+    Raises InvalidMechanism for an invalid force.
 
     >>> force("bar", (-3, -5), at="G").force
     (-3-5j)

@@ -33,8 +33,8 @@ class Gravity(ShortRepr):
 def gravity(x: Any, y: Any, *, unit: str = "") -> Gravity:
     """Return gravity as a vector, m/s^2 whatever the unit of length.
 
-    Another `unit` such as "in/s^2" may be said. Warns of a size that hardly can be meant in m/s^2 where no unit is
-    said. Raises InvalidMechanism for an unknown one.
+    Another `unit` such as "in/s^2" may be given. Warns of a magnitude that is unlikely in m/s^2 where none is given.
+    Raises InvalidMechanism for an unknown one.
 
     >>> gravity(0, -9.81).vector
     -9.81j
@@ -54,5 +54,5 @@ def warn_of_unit(given: Number) -> None:
     """Warn of a gravity that is too great to be in m/s^2."""
     greatest = float(np.max(np.abs(given), initial=0.0)) if np.ndim(given) else abs(given)
     if np.isfinite(greatest) and greatest > MOST:
-        told = f"gravity: {greatest:g} m/s^2 is {greatest / 9.81:.3g} times that of the earth"
-        warn(f'{told}; it is in m/s^2 whatever the unit of length, or say unit="in/s^2"', LikelySlip)
+        text = f"gravity: {greatest:g} m/s^2 is {greatest / 9.81:.3g} times that of the earth"
+        warn(f'{text}; it is in m/s^2 whatever the unit of length, or say unit="in/s^2"', LikelySlip)

@@ -56,22 +56,22 @@ class Mass(ShortRepr):
         return ("link",)
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
-        """Return it on a link of another name."""
+        """Return the mass of a link of another name."""
         return replace(self, link=links.get(self.link, self.link))
 
     @property
     def is_complete(self) -> bool:
-        """Whether nothing of it is left out."""
+        """Whether all of its values are given."""
         return self.mass is not None and self.at is not None and self.inertia is not None
 
     def completed(self, points: Mapping[str, Number]) -> Mass:
-        """Return it with what is left out, as of a uniform body."""
+        """Return the mass with omitted values of a uniform body."""
         if self.is_complete:
             return self
         body = uniform_body(list(points.values()))
         mass = self.mass if self.density is None else self.density * body.extent
-        told = [("mass", self.mass), ("mass centre", self.at), ("inertia", self.inertia)]
-        left_out = " and ".join(name for name, value in told if value is None)
+        values = [("mass", self.mass), ("mass centre", self.at), ("inertia", self.inertia)]
+        left_out = " and ".join(name for name, value in values if value is None)
         return replace(
             self,
             mass=mass,
@@ -82,7 +82,7 @@ class Mass(ShortRepr):
         )
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find unknown links and points, and numbers that no mass has."""
+        """Find unknown links and points, and invalid numbers."""
         if self.link == FRAME:
             yield Problem(f"{where}.link", "the frame does not move: its mass does nothing", "name a link that moves")
             return
@@ -111,7 +111,7 @@ def mass(link: str, mass: Any = None, *, at: Any = None, inertia: Any = None, de
     units of mass times length squared. Left out, they are those of a uniform bar through the link's points, if these
     are in line, else of the uniform plate in their convex hull; a link of one point is a point mass. ``density=`` in
     place of a mass is for each unit of length of the bar, or of area of the plate. Numbers, or arrays for designs,
-    (designs, 1). What was assumed is told by `assumed` of ``mechanism.masses[link]``.
+    (designs, 1). ``mechanism.masses[link].assumed`` lists what was assumed.
 
     Raises InvalidMechanism for what is no number.
 
@@ -129,10 +129,7 @@ IN_LINE = 1e-9
 
 
 class UniformBody(NamedTuple):
-    """A uniform body.
-
-    It has its length or area, its mass centre, and its inertia about that for a unit of mass.
-    """
+    """A uniform body: its length or area, its mass centre, and its inertia about that for a unit of mass."""
 
     kind: str  # "point mass", "uniform bar", "uniform plate"
     extent: Number
@@ -193,7 +190,7 @@ def _plate(points: Number) -> UniformBody:
 
 
 def _hull_edges(points: Number) -> tuple[Number, Number]:
-    """Return the edges of the convex hull, counterclockwise; edges that are none are points.
+    """Return the edges of the convex hull, counterclockwise; further edges have zero length.
 
     Source: R. A. Jarvis, On the identification of the convex hull of a finite set of points in the plane,
     Information Processing Letters 2 (1973) 18-21.

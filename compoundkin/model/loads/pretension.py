@@ -28,7 +28,7 @@ class Pretension(PairProperty):
     table: ClassVar[str] = "pretensions"
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, or one without strands; a belt that pushes."""
+        """Find an unknown pair, one without strands, and a negative force."""
         pair = written.pair(self.pair)
         if pair is None:
             yield from self.unknown(written, where)

@@ -34,9 +34,7 @@ _ONLY = 'Whether it acts in "tension" or in "compression" only.'
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Spring(PointToPointLoad):
-    """A spring between points of two links.
-
-    It pulls with stiffness times extension, plus a preload.
+    """A spring between points of two links, which pulls with stiffness times extension, plus a preload.
 
     >>> spring("arm", "A", at="S", stiffness=900, free_length=0.2).name
     'spring on arm'
@@ -55,18 +53,18 @@ class Spring(PointToPointLoad):
 
     @property
     def needs_rates(self) -> bool:
-        """Whether its force depends on how fast it is drawn."""
+        """Whether its force depends on its speed of extension."""
         return needs_rates(self.stiffness)
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find unknown ends, a negative length, a side that is none."""
+        """Find unknown ends, a negative length, an unknown sense."""
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
         if np.any(np.asarray(self.free_length) < 0.0):
             yield Problem(f"{where}.free_length", "a length is not negative", "give a preload instead")
 
     def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
-        """Return its force. Without a free length it is exact where its ends meet."""
+        """Return its force, exact where the ends of a spring without free length coincide."""
         preload, free = (at.fitted(value, self.where) for value in (self.preload, self.free_length))
         extension = gap.length - free
         if is_force_law(self.stiffness):
@@ -74,17 +72,14 @@ class Spring(PointToPointLoad):
             pull = value_of(self.where, self.stiffness, at, own) + preload
             return gap.along(one_sided_pull(pull, self.only), self.where)
         stiffness = at.fitted(self.stiffness, self.where)
-        # the part in proportion to the length has no need of a direction
+        # the part in proportion to the length needs no direction
         force = stiffness * gap.vector + gap.along(preload - stiffness * free, self.where)
         return (
             force if self.only is None else np.where(is_active(stiffness * extension + preload, self.only), force, 0.0)
         )
 
     def energy(self, at: LoadedPoses) -> Number | None:
-        """Return its energy, zero at its free length.
-
-        None where its force is a function or a table.
-        """
+        """Return its energy, zero at its free length; None where its force is a function or a table."""
         if is_force_law(self.stiffness):
             return None
         extension = self.gap(at).length - at.fitted(self.free_length)
@@ -95,8 +90,8 @@ class Spring(PointToPointLoad):
 class PairSpring(PairLoad):
     """A spring along the free coordinate of a pair.
 
-    It is a torsion spring at a pin, or a spring along a slide. It drives the coordinate down with stiffness times what
-    it is beyond `free`, plus a preload.
+    It is a torsion spring at a pin, or a spring along a slide. It drives the coordinate down with stiffness times the
+    excess over `free`, plus a preload.
     """
 
     stiffness: Amount = field(kw_only=True, metadata=value_key("amount", _STIFFNESS))
@@ -113,16 +108,16 @@ class PairSpring(PairLoad):
 
     @property
     def needs_rates(self) -> bool:
-        """Whether its force depends on how fast it is drawn."""
+        """Whether its force depends on its speed of extension."""
         return needs_rates(self.stiffness)
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, or one that no spring could act along."""
+        """Find an unknown pair, and an unknown sense."""
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
 
     def effort(self, at: LoadedPoses) -> Number:
-        """Return its effort, against what the coordinate is beyond its free one."""
+        """Return its effort, against the excess of the coordinate over its free one."""
         series, preload = at.coordinate(self.pair), at.fitted(self.preload, self.where)
         extension = series.c[0] - at.fitted(self.free, self.where)
         if is_force_law(self.stiffness):
@@ -131,10 +126,7 @@ class PairSpring(PairLoad):
         return 0.0 - one_sided_pull(at.fitted(self.stiffness, self.where) * extension + preload, self.only)
 
     def energy(self, at: LoadedPoses) -> Number | None:
-        """Return its energy, zero at its free coordinate.
-
-        None where its effort is a function or a table.
-        """
+        """Return its energy, zero at its free coordinate; None where its effort is a function or a table."""
         if is_force_law(self.stiffness):
             return None
         extension = at.coordinate(self.pair).c[0] - at.fitted(self.free)
@@ -147,12 +139,12 @@ def as_spring(load: Load) -> Spring | PairSpring | None:
 
 
 def is_force_law(stiffness: Amount) -> bool:
-    """Tell whether a stiffness is the force itself, as a function or a table."""
+    """Return whether a stiffness gives the force itself, as a function or a table."""
     return isinstance(stiffness, LoadFunction | LoadTable)
 
 
 def is_active(pull: Number, only: str | None) -> Number:
-    """Tell where a one-sided spring acts. That is true where its pull is not a number."""
+    """Return where a one-sided spring acts; also where its pull is not a number."""
     return ~(np.asarray(pull) <= 0.0) if only == TENSION else ~(np.asarray(pull) >= 0.0)
 
 
@@ -162,10 +154,7 @@ def one_sided_pull(pull: Number, only: str | None) -> Number:
 
 
 def stored_energy(stiffness: Number, preload: Number, extension: Number, only: str | None) -> Number:
-    """Return the energy that a spring holds beyond its free length.
-
-    That of a one-sided spring stays where it acts no more.
-    """
+    """Return the energy of a spring; that of a one-sided spring stays where it no longer acts."""
     whole = (stiffness * extension / 2.0 + preload) * extension
     if only is None:
         return whole
@@ -175,7 +164,7 @@ def stored_energy(stiffness: Number, preload: Number, extension: Number, only: s
 
 
 def side_problems(only: str | None, where: str) -> Iterator[Problem]:
-    """Find a side on which no spring acts."""
+    """Find an unknown sense of a one-sided spring."""
     if only not in (None, TENSION, COMPRESSION):
         yield Problem(
             f"{where}.only", f"a spring does not act in {only!r} only", suggestion(only, [TENSION, COMPRESSION])
@@ -193,9 +182,9 @@ def spring(
     ``spring("arm", "A", to="frame", at="S", stiffness=900, free_length=0.2)`` pulls the point A of the arm and the
     point S of the frame together with stiffness times extension plus `preload`; points are letters, or places in their
     links' frames. ``spring(pair="C", stiffness=5, free=0.3)`` drives the coordinate of a pair down by stiffness times
-    what it is beyond `free` (radians or a length): a torsion spring at a pin, a spring along a slide. A `stiffness`
+    its excess over `free` (radians or a length): a torsion spring at a pin, a spring along a slide. A `stiffness`
     that is a function of as many of (extension, rate, time) as it takes, or a table over the extension, gives the
-    force itself. ``only="tension"`` or ``"compression"`` is for one that does nothing else. Numbers, or arrays for
+    force itself. With ``only="tension"`` or ``"compression"`` it acts in that sense only. Numbers, or arrays for
     designs.
 
     Raises InvalidMechanism for ends of both sorts.

@@ -119,7 +119,7 @@ def test_springs_whose_ends_meet() -> None:
     found = torque(arm.replace(ck.spring("arm", "A", at="S", stiffness=3)), driver="arm")
     assert found.tolist() == pytest.approx([0.0, 3.0 * np.sin(0.5)])
     loaded = block(arm.replace(ck.spring("arm", "A", at="S", stiffness=3, free_length=1)))
-    with pytest.warns(LikelySlip, match="its ends meet"):
+    with pytest.warns(LikelySlip, match="its ends coincide"):
         pulls = [np.ravel(wrench.force) for *_, wrench in loaded.named_loads()]
     assert [np.isnan(pull).tolist() for pull in pulls] == [[True, False]] * 2
 
