@@ -57,14 +57,14 @@ class ArcSlot(FrictionContact, Guided, TravelLimitedArc):
         return self.at, self.centre_at
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, a radius that is none."""
+        """Find unknown links and points, and an invalid radius."""
         yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
         yield from self.reach_problems(links, where)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find named ends that leave the arc no length."""
+        """Find travel limits that leave the arc no length."""
         yield from self.reach_misfits(geometry, where)
 
     def ends(self, geometry: Geometry) -> Ends:

@@ -48,13 +48,13 @@ class Belt(Geared, BeltDrive):
         return not self.crossed
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
-        """Return the radii as they are; by teeth alone, some that fit."""
+        """Return the radii; by teeth alone, radii that fit."""
         if self.teeth is None or self.radii is None:
             return 1.0 if self.teeth is None else super().reach(one, two, distance)
         return self.radii[0] / self.teeth[0]
 
     def strands(self, ends: Ends, poses: Poses) -> tuple[Wrench, Wrench]:
-        """Return what a unit pull in each strand does to the second pulley."""
+        """Return the wrench of a unit pull in each strand on the second pulley."""
         axes, radii = axes_of(ends, poses), self.circles(ends, poses)
         lines = (line_of_action(axes, radii, side) for side in (1.0, -1.0))
         one, two = (Wrench.at(there, (here - there) / np.abs(here - there)) for here, there, _ in lines)
@@ -73,7 +73,7 @@ class Belt(Geared, BeltDrive):
         return (one - two).times(0.5), Wrench()
 
     def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
-        """Return the first strand's pull less the second's. The moment about the second axis tells it."""
+        """Return the first strand's pull less the second's, by the moment about the second axis."""
         axis = axes_of(ends, poses)[1]
         return wrench.about(axis) / self.wrenches(ends, poses)[0].about(axis)
 

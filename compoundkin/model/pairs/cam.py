@@ -75,7 +75,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
         return float(np.max(self.radius))
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, and a radius or profile that is none."""
+        """Find unknown links and points, and an invalid radius or profile."""
         yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) >= 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
@@ -168,7 +168,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
         return np.where(forward, least, greatest), np.where(forward, greatest, least)
 
     def no_contact_reason(self) -> str:
-        """Say that the path does not meet the profile."""
+        """Return the message that the path does not meet the profile."""
         ends = () if self.curve.closed else [complex(self.curve.at(s).c[0]) for s in (self.curve.low, self.curve.high)]
         between = " between its ends " + " and ".join(f"({p.real:.6g}, {p.imag:.6g})" for p in ends) if ends else ""
         return f"on its way {self.at} does not meet the profile of {self.on}{between}"

@@ -30,7 +30,7 @@ class Stroke(Prismatic):
     """The slide in a cylinder: its displacement is the length between the pins."""
 
     def passed(self, here: str, there: str, is_end: bool) -> str:
-        """Say that the cylinder is longer or shorter than its stroke allows."""
+        """Return the message that the cylinder is longer or shorter than its stroke allows."""
         return f"{self.name} is {here} long, {'more' if is_end else 'less'} than its stroke allows, {there}"
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
@@ -78,7 +78,7 @@ class Cylinder:
 
     @property
     def called(self) -> str:
-        """Its name where none is given."""
+        """Its default name."""
         return f"{self.link} cylinder"
 
     @property
@@ -103,7 +103,7 @@ class Cylinder:
         return Stroke(self.rod, on=self.barrel, at=self.point, through=self.at, name=self.name, reach=reach)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, and a stroke that is none. `links` maps each link to its points."""
+        """Find unknown links and points, and an invalid stroke. `links` maps each link to its points."""
         yield from name_problems(self, links, where, self.wording)
         if self.point == self.at:
             yield Problem(f"{where}.at", f"both ends are at {self.at!r}", "name two points with different letters")
@@ -124,7 +124,7 @@ class Cylinder:
         if not (np.isfinite(low).all() and np.isfinite(high).all() and low.size and high.size):
             yield Problem(where, f"{self.stroke!r} is empty or not finite", how)
         elif not (np.all(low > 0) and np.all(low < high)):
-            what = f"a stroke from {np.ravel(low)[0]:g} to {np.ravel(high)[0]:g} is none"
+            what = f"a stroke from {np.ravel(low)[0]:g} to {np.ravel(high)[0]:g} is not possible"
             yield Problem(where, what, "give two lengths above zero between the pins, the lesser first")
 
 

@@ -80,7 +80,7 @@ class Face(ProfileContact, FrictionContact):
     is_flat: ClassVar[bool] = True
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, a profile or side that is none."""
+        """Find unknown links and points, and an invalid profile or side."""
         yield from super().problems(links, where)
         if self.side not in (1, -1):
             yield Problem(f"{where}.side", f"{self.side!r} is not a side", "write 1 (left) or -1 (right)")
@@ -164,7 +164,7 @@ class Face(ProfileContact, FrictionContact):
         return path.sense * against, path.sense * along
 
     def no_contact_reason(self) -> str:
-        """Say that the face does not reach the profile."""
+        """Return the message that the face does not reach the profile."""
         return f"the face of {self.link} does not meet the profile of {self.on}, or lies along its own guide"
 
     @cached_property

@@ -32,7 +32,7 @@ class Gear(Geared, TransmittingPair):
     The `pressure_angle` (radians) shows in forces and in the equivalent linkage, not in any motion. See `Geared` for
     the rest.
 
-    The teeth press on each other at the pitch point, along the pressure line of the flank that the load asks for: a
+    The tooth force acts at the pitch point, along the pressure line of the flank that the load requires: a
     tangential force, and one that parts the wheels. Where a train has several planets, these are forces of all of them
     together: one planet of n carries the n-th part if all share alike, and the bearings of the sun carry nothing.
 
@@ -59,7 +59,7 @@ class Gear(Geared, TransmittingPair):
 
     @property
     def turns_alike(self) -> bool:
-        """A gear and the ring around it do."""
+        """Whether they are a gear and the ring around it."""
         return self.internal
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
@@ -84,14 +84,14 @@ class Gear(Geared, TransmittingPair):
             return
         sign = -1.0 if self.internal else 1.0
         if self.module is not None and self.teeth is not None:
-            wanted = np.abs(np.asarray(self.teeth[1]) + sign * np.asarray(self.teeth[0])) * self.module / 2.0
+            required = np.abs(np.asarray(self.teeth[1]) + sign * np.asarray(self.teeth[0])) * self.module / 2.0
             yield from distance_problems(
-                self.axes, distance, wanted, f"{where}.teeth", "teeth and module ask for a distance of"
+                self.axes, distance, required, f"{where}.teeth", "teeth and module require a distance of"
             )
         elif self.radii is not None:
-            wanted = np.abs(np.asarray(self.radii[1]) + sign * np.asarray(self.radii[0]))
+            required = np.abs(np.asarray(self.radii[1]) + sign * np.asarray(self.radii[0]))
             yield from distance_problems(
-                self.axes, distance, wanted, f"{where}.radii", "pitch circles ask for a distance of"
+                self.axes, distance, required, f"{where}.radii", "pitch circles require a distance of"
             )
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:

@@ -95,12 +95,12 @@ class Geared(TurnCounting, Replaceable):
         return one, -two if self.turns_alike else two
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links, one link twice, axes the carrier lacks, sizes that are none."""
+        """Find unknown links, one link twice, axes that the carrier lacks, and invalid sizes."""
         yield from wheel_problems(links, self.members, self.letters, where)
         yield from size_problems(self.teeth, self.radii, where)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Geared:
-        """Return the pair with axes found. An unnamed one is the only point its wheel shares with the carrier."""
+        """Return the pair with its axes: an unnamed one is the only point that its wheel shares with the carrier."""
         found: dict[str, Any] = {}
         for key, name in (("first_at", self.first), ("second_at", self.second)):
             shared = [letter for letter in links.get(name, ()) if letter in links.get(self.carrier, ())]
@@ -119,7 +119,7 @@ class Geared(TurnCounting, Replaceable):
         return np.abs(axes[self.second_at] - axes[self.first_at])
 
     def ends(self, geometry: Geometry) -> Ends:
-        """Return axes and sizes on wheels; the phase on the carrier. A drawing of all three links tells it."""
+        """Return axes and sizes on the wheels, and on the carrier the phase, read off a drawing of all three links."""
         one, two = self.sizes
         first = End(geometry.points[self.first][self.first_at], None, one)
         second = End(geometry.points[self.second][self.second_at], None, two)
@@ -133,14 +133,14 @@ class Geared(TurnCounting, Replaceable):
         return (second - carrier) + (first - carrier) * (one / two)
 
     def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
-        """Return the second wheel's angle. The first one's may be any of several: no angle is drawn with its turns."""
+        """Return the second wheel's angle; the first one's is not unique, as a drawing shows no turns."""
         first, _, carrier = seen.poses
         if own != 1 or first is None or carrier is None:
             return None
         return carrier.angle.c[0] + seen.ends[2].measure - ratio(seen.ends) * (first.angle - carrier.angle).c[0]
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """Return the ends with a drawn phase taken on by turns since. The turns are those of wheels and carrier."""
+        """Return the ends with a drawn phase advanced by whole turns of wheels and carrier."""
         if self.phase is not None or any(name not in geometry.drawn for name in self.members):
             return ends
         one, two, carrier = turns
@@ -148,7 +148,7 @@ class Geared(TurnCounting, Replaceable):
         return *ends[:2], ends[2]._replace(measure=ends[2].measure + ahead)
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """Return the angle of the second wheel ahead of its turn by the first."""
+        """Return the angle of the second wheel less that by the first."""
         first, second, carrier = (pose.angle for pose in poses)
         return ((second - carrier) + (first - carrier) * ratio(ends) - ends[2].measure,)
 
@@ -164,14 +164,14 @@ class Geared(TurnCounting, Replaceable):
         )
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
-        """Return the pitch point, which divides the line of axes. Equal wheels that turn alike have it at infinity."""
+        """Return the pitch point on the line of axes, at infinity for equal wheels that turn alike."""
         one, two = ends[0].measure, ends[1].measure
         first, second = axes_of(ends, poses)
         place = first * two + second * one
         return Point(-place.real / two, -place.imag / two, -(one + two) / two)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Return the angles that it ties; no loop runs through it."""
+        """Return the equation of its angles; no loop runs through it."""
         first, second, carrier = (angle_of(name) for name in self.members)
         turned = difference(carrier, first).times(-ratio(ends))
         tied = difference(turned, difference(carrier, second)).plus(-ends[2].measure)
@@ -181,30 +181,27 @@ class Geared(TurnCounting, Replaceable):
         )
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
-        """Return the factors from the sizes to radii of circles. The line of action touches these circles."""
+        """Return the factor from the sizes to the radii of the circles that the line of action touches."""
         return distance / (2.0 * (np.abs(one) + np.abs(two)))
 
     def circles(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
-        """Return the radii of the circles that a line of action touches.
-
-        The second is negative for outer tangents.
-        """
+        """Return the radii of the circles that a line of action touches, the second negative for outer tangents."""
         first, second = axes_of(ends, poses)
         one, two = (end.measure for end in ends[:2])
         reach = self.reach(one, two, np.abs(second - first))
         return one * reach, two * reach
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
-        """Return where the line of action touches the circles about the axes. It is of involutes or of a belt."""
+        """Return where the line of action, of involutes or of a belt, touches the circles about the axes."""
         line = line_of_action(axes_of(ends, poses), self.circles(ends, poses))
         return Osculation(line.first, line.second, line.across * 1j)
 
     def is_affine(self, lower: Pair, own: int) -> bool:
-        """Tell whether a pair is a pin: there any member turns in proportion."""
+        """Return whether a pair is a pin, at which any member turns in proportion."""
         return lower.free_is_angle and as_drivable(lower) is not None
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """Draw axes at random places. The ratio stays as it is: it may make a train lock."""
+        """Return axes at random places with the given ratio, which may lock a train."""
         one, two = (float(first_entry(size)) for size in self.sizes)
         places = (complex(*rng.standard_normal(2)) for _ in range(2))
         return *(End(place, None, size) for place, size in zip(places, (one, two), strict=True)), End(0j, None, 0.0)
@@ -222,7 +219,7 @@ class Geared(TurnCounting, Replaceable):
 
 
 def as_geared(pair: Pair) -> Geared | None:
-    """Return a pair as one whose closure is a sum of angles, or None. The angles are its members', times constants."""
+    """Return a pair as a geared one, whose closure is linear in its members' angles, or None."""
     return pair if isinstance(pair, Geared) else None
 
 
@@ -235,7 +232,7 @@ class LineOfAction(NamedTuple):
 
 
 def ratio(ends: Ends) -> Number:
-    """Return how far the second wheel turns back for one of the first. Both are seen from the carrier."""
+    """Return the backward turns of the second wheel for one of the first, relative to the carrier."""
     return ends[0].measure / ends[1].measure
 
 
@@ -249,7 +246,7 @@ def line_of_action(axes: tuple[Number, Number], radii: tuple[Number, Number], si
     """Return a common tangent of the circles about two axes.
 
     It is the inner one; the outer one where the second radius is negative. It touches the first circle to the left of
-    the way from axis to axis, or to the right for a `side` of -1.
+    the line from axis to axis, or to the right for a `side` of -1.
 
     >>> complex(line_of_action((0j, 5 + 0j), (1.0, -1.0)).second)
     (5+1j)
@@ -301,7 +298,7 @@ def wheel_problems(
 def _axis_problems(
     links: Mapping[str, tuple[str, ...]], pinned: tuple[str, str], axis: str, where: str, key: str
 ) -> Iterator[Problem]:
-    """Find an axis that a wheel and its carrier do not share. These are the links that are `pinned`."""
+    """Find an axis that a wheel and its carrier, the links `pinned`, do not share."""
     name, carrier = pinned
     shared = [letter for letter in links[name] if letter in links[carrier]]
     if axis and axis not in shared:
@@ -316,7 +313,7 @@ def _axis_problems(
 
 
 def size_problems(teeth: Sizes, radii: Sizes, where: str) -> Iterator[Problem]:
-    """Find two sizes that are none, or do not go together. The latter are teeth and radii."""
+    """Find invalid sizes, and teeth and radii of different ratios."""
     if teeth is None and radii is None:
         yield Problem(where, "it has no sizes", "give teeth = (20, 40) or radii = (10, 20)")
     for key, sizes in (("teeth", teeth), ("radii", radii)):
@@ -331,13 +328,13 @@ def size_problems(teeth: Sizes, radii: Sizes, where: str) -> Iterator[Problem]:
         yield Problem(where, what, "leave one of them out")
 
 
-def distance_problems(axes: str, distance: Number, wanted: Number, where: str, said: str) -> Iterator[Problem]:
+def distance_problems(axes: str, distance: Number, required: Number, where: str, reason: str) -> Iterator[Problem]:
     """Find wheels whose sizes do not fit the distance of their axes. The axes are on the carrier."""
-    off = np.abs(wanted - distance) > FITS * np.abs(distance)
+    off = np.abs(required - distance) > FITS * np.abs(distance)
     if np.any(off):
         at = int(np.argmax(np.ravel(np.broadcast_to(off, np.shape(off)))))
-        a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (wanted, distance))
-        what = f"{said} {a:.6g}, but {axes} are {b:.6g} apart"
+        a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (required, distance))
+        what = f"{reason} {a:.6g}, but {axes} are {b:.6g} apart"
         yield Problem(where, what, "change the sizes or move an axis; give teeth alone for a distance as it is")
 
 
@@ -350,15 +347,15 @@ def _sizes_text(sizes: Sequence[Number]) -> str:
 
 
 def pressure_problems(angle: Number, where: str) -> Iterator[Problem]:
-    """Find a pressure angle that is none."""
+    """Find an invalid pressure angle."""
     if np.ndim(angle) or not 0.0 <= angle < np.pi / 2.0:
-        shown = f"{np.rad2deg(angle):g} degrees" if np.ndim(angle) == 0 else "an array"
+        text = f"{np.rad2deg(angle):g} degrees" if np.ndim(angle) == 0 else "an array"
         remedy = "give one angle from 0 up to 90 degrees, such as pressure_angle=ck.deg(20)"
-        yield Problem(f"{where}.pressure_angle", f"{shown} is no pressure angle", remedy)
+        yield Problem(f"{where}.pressure_angle", f"{text} is not a pressure angle", remedy)
 
 
 def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:
     """Find a radius, or another length or number, that is not positive."""
     if radius is not None and not np.all(np.asarray(radius) > 0):
-        shown = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
-        yield Problem(f"{where}.{key}", f"{shown} is not positive", "give the size of the wheel")
+        text = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
+        yield Problem(f"{where}.{key}", f"{text} is not positive", "give the size of the wheel")

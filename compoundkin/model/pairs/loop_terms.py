@@ -44,7 +44,7 @@ class Implicit:
 
     The pose of a member follows from its angle and from the way, by the terms of `ways`, from the pair's side on the
     first member (the first of `points`) to that on it. With a `result` the function has this unknown's value.
-    `number` tells the equations of one pair from each other. What is to be zero is a length, or an angle.
+    `number` distinguishes the equations of one pair. The residual is a length or an angle.
     """
 
     pair: str

@@ -1,4 +1,4 @@
-"""What racks and wheels on a straight line have in common: no slip between a wheel and a line of another link."""
+"""Racks and wheels on a straight line: no slip between a wheel and a line of another link."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Row = tuple[Number, ...]
 
 
 class PitchLinePair(TurnCounting):
-    """A wheel of a radius that rolls along a straight line. The line is another link's, which comes first."""
+    """A wheel that rolls along a straight line of another link, which comes first."""
 
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
@@ -53,17 +53,14 @@ class PitchLinePair(TurnCounting):
             yield Problem(f"{where}.side", what, "write 1 for the left of its direction, -1 for the right")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find two points of the line at one place, or a wrong radius.
-
-        Wrong is one that does not fit a drawing which gives all dimensions.
-        """
+        """Find two coincident points of the line, or a radius that does not fit a drawing with all dimensions."""
         line, _ = self.members
         points = geometry.points[line]
         if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
             what = f"{self.through!r} and {self.toward!r} are at one place, so that the line has no direction"
             yield Problem(f"{where}.toward", what, "name another point or give an angle")
             return
-        seen = self._seen(geometry)
+        seen = self._drawn_axis(geometry)
         if seen is None or not all(name in geometry.as_drawn or name == "frame" for name in geometry.points):
             return
         away = self.side * (np.conjugate(seen[1]) * seen[0]).imag
@@ -92,8 +89,8 @@ class PitchLinePair(TurnCounting):
             return start, np.cos(self.angle) + 1j * np.sin(self.angle)
         return start, (points[self.toward] - start) / np.abs(points[self.toward] - start)
 
-    def _seen(self, geometry: Geometry) -> tuple[Number, Number] | None:
-        """The way from the line's point to the axis, and the line's direction, in the drawing; None if not shown."""
+    def _drawn_axis(self, geometry: Geometry) -> tuple[Number, Number] | None:
+        """Return the vector from the line's point to the axis, and the line's direction, in the drawing, or None."""
         line, wheel = self.members
         if line not in geometry.drawn:
             return None
@@ -107,8 +104,8 @@ class PitchLinePair(TurnCounting):
         return axis - geometry.drawn[line].at(start).c[0], geometry.drawn[line].u.c[0] * along
 
     def _phase(self, geometry: Geometry, across: Number) -> Number:
-        """The phase of the drawing; one that is stated is brought within half a turn of it; or zero."""
-        seen = self._seen(geometry)
+        """Return the phase of the drawing, a stated one moved within half a turn of it, or zero."""
+        seen = self._drawn_axis(geometry)
         if seen is None or self.members[1] not in geometry.drawn:
             return 0.0 if self.phase is None else self.phase
         line, wheel = (geometry.drawn[name].angle.c[0] for name in self.members)
@@ -119,7 +116,7 @@ class PitchLinePair(TurnCounting):
         return self.phase + whole_turns(drawn - self.phase, TURN * across)
 
     def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
-        """Return the angle to which the wheel has rolled where its axis is drawn. The line's is not told."""
+        """Return the angle to which the wheel has rolled at its drawn axis; the line's does not follow."""
         ends, line, at = seen.ends, seen.poses[0], seen.sketch.get(self.at)
         if own == 0 or line is None or at is None:
             return None
@@ -128,17 +125,14 @@ class PitchLinePair(TurnCounting):
         return line.angle.c[0] + (ends[0].measure - displacement) / ends[1].measure
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """Return the ends with a drawn phase taken on by turns since. The turns are those of line and wheel."""
+        """Return the ends with a drawn phase advanced by whole turns of line and wheel."""
         if any(name not in geometry.drawn for name in self.members):
             return ends
         line, wheel = ends
         return line._replace(measure=line.measure + wheel.measure * TURN * (turns[1] - turns[0])), wheel
 
     def slip(self, ends: Ends, poses: Poses) -> Series:
-        """Return the slip, zero where the wheel only rolls.
-
-        It is the length by which the axis is ahead of where the wheel rolls it.
-        """
+        """Return the slip: the displacement of the axis beyond the rolled length, zero without slip."""
         turned = poses[1].angle - poses[0].angle
         slip: Series = self.coordinate(ends, poses) + turned * ends[1].measure - ends[0].measure
         return slip

@@ -104,17 +104,14 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
         return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, and a guide that is none.
-
-        Such is one of a link that slides on itself, or from a point to itself.
-        """
+        """Find unknown links and points, and a guide on the link itself or from a point to itself."""
         yield from super().problems(links, where)
         if self.toward is not None and self.toward == self.through:
             yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
         yield from self.reach_problems(links, where)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find named ends that are not one after the other along the guide."""
+        """Find travel limits in the wrong order along the guide."""
         yield from self.reach_misfits(geometry, where)
 
     def ends(self, geometry: Geometry) -> Ends:
@@ -157,7 +154,7 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
         return None if other is None else np.angle(other.u.c[0] * along * back)
 
     def drawn_length(self, sketch: Mapping[str, Number]) -> Number | None:
-        """Return how far `at` is drawn from `through` along the guide, forward or backward."""
+        """Return the distance at which `at` is drawn from `through` along the guide, without sign."""
         if self.at not in sketch or self.through not in sketch:
             return None
         across = 0.0 if self.offset is None else self.offset
@@ -190,7 +187,7 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
         return Point(-guide.imag, guide.real, 0.0)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Return the way along the guide; angles of block and guide are tied."""
+        """Return the vector along the guide, and the equation of the angles of block and guide."""
         free = Unknown("displacement", self.name)
         guide, block = (angle_of(name).plus(end_angle(end)) for name, end in zip(self.members, ends, strict=True))
         arm, tied = Vector("", Sum(0.0, ((1.0, free),)), guide), Auxiliary(self.name, difference(guide, block))
@@ -213,7 +210,7 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
         return End(start, guide), End(start + guide * rng.standard_normal(), guide)
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
-        """Tell whether the guide lies in its block the right way round. The sine alone does not see it."""
+        """Return whether the guide lies in its block the right way round, which the sine does not determine."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.along).c[0] > 0
 

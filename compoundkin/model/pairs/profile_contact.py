@@ -26,7 +26,7 @@ CUTS = 1e-7
 
 
 class ProfileContact(Contact):
-    """A contact with a profile of the link `on`, leading a member along it."""
+    """A contact with a profile of the link `on`, which guides a member along it."""
 
     is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
 
@@ -35,17 +35,16 @@ class ProfileContact(Contact):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The point of the follower. It is of its face, of its edge, or the middle of its roller."""
+        """The point of the follower: of its face, its edge, or the centre of its roller."""
         return (self.at,)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, a profile that is none."""
+        """Find unknown links and points, and an invalid profile."""
         yield from super().problems(links, where)
         if not isinstance(self.profile, Profile):
             what = f"{self.profile!r} is not a profile"
-            yield Problem(
-                f"{where}.profile", what, "write profiles.disc(...), profiles.profile(points) or one made for a motion"
-            )
+            remedy = "write profiles.disc(...), profiles.profile(points) or profiles.synthesise(...)"
+            yield Problem(f"{where}.profile", what, remedy)
         else:
             yield from self.profile.problems(f"{where}.profile")
 
@@ -101,7 +100,7 @@ class ProfileContact(Contact):
 
     @abstractmethod
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """Return the coordinates, nearly, of contacts in mode -1 and +1. They are those of a member of one freedom.
+        """Return approximate coordinates of the contacts of a member of one freedom, in mode -1 and +1.
 
         `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
         pairs that stand for a round disc.
@@ -109,10 +108,10 @@ class ProfileContact(Contact):
 
     @abstractmethod
     def no_contact_reason(self) -> str:
-        """Say why a member has no contact where there are no candidates."""
+        """Return why a member has no contact where there are no candidates."""
 
     def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
-        """Find the smooth piece it is on. Pieces part where the profile's derivatives jump, or the contact leaps."""
+        """Return the index of the smooth piece of the profile, between jumps of its derivatives or of the contact."""
         return self.curve.smooth_piece(self.parameter(ends, poses), self._leaps)
 
     @cached_property
@@ -125,14 +124,14 @@ class ProfileContact(Contact):
         return self.outward * self.curve.curvature(s) * self.curve.size
 
     def _above_face(self, s: Number) -> Number:
-        """How little a face that touched here would cut into the profile elsewhere."""
+        """Return the margin by which a face that touches here stays clear of the profile elsewhere."""
         curve = self.curve
         normal = curve.normal(s).c[0] * self.outward
         farther = curve.at(curve.support(normal)).c[0] - curve.at(s).c[0]
         return CUTS * curve.size - (farther.real * normal.real + farther.imag * normal.imag)
 
     def _beside_roller(self, s: Number) -> Number:
-        """How little a roller that touched here would cut into the profile elsewhere."""
+        """Return the margin by which a roller that touches here stays clear of the profile elsewhere."""
         curve = self.curve
         middle = curve.at(s).c[0] + curve.normal(s).c[0] * self.outward * self.roller
         nearer = np.abs(middle - curve.at(curve.foot(middle).c[0]).c[0])
@@ -140,7 +139,7 @@ class ProfileContact(Contact):
 
 
 def as_profile_contact(pair: Pair) -> ProfileContact | None:
-    """Return a pair as one that leads a member along a profile, or None."""
+    """Return a pair as a profile contact, or None."""
     return pair if isinstance(pair, ProfileContact) else None
 
 
@@ -157,7 +156,7 @@ class Freedom(NamedTuple):
 
 
 class PointPath(NamedTuple):
-    """The way of a point past a profile, in the profile's frame. It is run as a body's coordinate grows.
+    """The path of a point past a profile, in the profile's frame, as a body's coordinate grows.
 
     It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense`
     is how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
@@ -169,7 +168,7 @@ class PointPath(NamedTuple):
     sense: Number
 
     def level(self, place: Number) -> Number:
-        """Return what is zero where a place is on the way."""
+        """Return a function of a place that is zero on the path."""
         if self.straight:
             gap = place - self.start
             return self.centre.real * gap.imag - self.centre.imag * gap.real
@@ -177,7 +176,7 @@ class PointPath(NamedTuple):
         return (gap.real**2 + gap.imag**2) - (arm.real**2 + arm.imag**2)
 
     def coordinate(self, place: Number, middle: complex) -> Number:
-        """Return the coordinate at a place on the way. An angle is within half a turn of that of the `middle`."""
+        """Return the coordinate at a place on the path, an angle within half a turn of that of the `middle`."""
         if self.straight:
             gap = place - self.start
             return self.sense * (self.centre.real * gap.real + self.centre.imag * gap.imag)
@@ -191,10 +190,7 @@ def nearest_angle(of: Number, middle: Number) -> Number:
 
 
 def relative_path(frame: Pose, point: Number, own: int, freedom: Freedom) -> PointPath:
-    """Return the way of a point of the world past a profile's frame.
-
-    Its body moves (own 1) or that of the profile (0).
-    """
+    """Return the path of a point of the world past a profile, as its body (own 1) or the profile's (0) moves."""
     back = np.conjugate(frame.u.c[0])
     straight = freedom.about is None
     centre = back * (freedom.along if straight else freedom.about - frame.z.c[0])
@@ -204,7 +200,7 @@ def relative_path(frame: Pose, point: Number, own: int, freedom: Freedom) -> Poi
 def path_crossings(
     path: PointPath, samples: tuple[Number, Number], away: Number, closed: bool
 ) -> tuple[Number, Number]:
-    """Find where a point crosses the parallel of a profile. Return the least and the greatest coordinate.
+    """Return the least and the greatest coordinate at which a point crosses the parallel curve of a profile.
 
     `samples` are points of the profile and its normals there, `away` how far the parallel is from it.
     """
@@ -222,7 +218,7 @@ def path_crossings(
 def face_tangencies(
     path: PointPath, samples: tuple[Number, Number], facing: Number, closed: bool
 ) -> tuple[Number, Number]:
-    """Find where a face that turns touches a profile. Return the least and the greatest angle.
+    """Return the least and the greatest angle at which a turning face touches a profile.
 
     `samples` are points of the profile and its outward normals there, `facing` the normal of the face.
     """
@@ -239,7 +235,7 @@ def face_tangencies(
     return extreme_contacts(level, coordinate, numbers, samples, closed)
 
 
-# Poses times samples that are looked at together: their arrays stay in a second-level cache.
+# Poses times samples that are evaluated together: their arrays stay in a second-level cache.
 BATCH = 1 << 17
 # A function of numbers at poses and of samples of a profile, broadcast together.
 SampledFunction: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
@@ -252,7 +248,7 @@ def extreme_contacts(
     samples: Sequence[Number],
     closed: bool,
 ) -> tuple[Number, Number]:
-    """Return the least and the greatest coordinate at which a level is zero. It passes zero between two samples.
+    """Return the least and the greatest coordinate at which a level changes sign between two samples.
 
     Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a
     limit position, is found from there.
@@ -274,9 +270,9 @@ def extreme_contacts(
         at = coordinate([v[pose] for v in flat], [v[side] + share * (v[side + 1] - v[side]) for v in around])
         np.minimum.at(least, pose, at)
         np.maximum.at(greatest, pose, at)
-        lost = first + np.setdiff1d(np.arange(len(found)), pose - first)
-        both = _neighbouring_samples(np.abs(found[lost - first]), lost, coordinate, flat, around, closed)
-        least[lost], greatest[lost] = np.fmin(*both), np.fmax(*both)
+        without = first + np.setdiff1d(np.arange(len(found)), pose - first)
+        both = _neighbouring_samples(np.abs(found[without - first]), without, coordinate, flat, around, closed)
+        least[without], greatest[without] = np.fmin(*both), np.fmax(*both)
     least, greatest = (np.where(np.isfinite(v), v, np.nan).reshape(shape) for v in (least, greatest))
     return least, greatest
 
@@ -289,7 +285,7 @@ def _neighbouring_samples(
     around: Sequence[Number],
     closed: bool,
 ) -> tuple[Number, Number]:
-    """The coordinates of the samples before and after that with the smallest level, for some poses."""
+    """Return the coordinates of the samples beside that of the smallest level, for some poses."""
     nearest, last = np.argmin(found, axis=1), found.shape[1] - 1
     before = np.where(nearest > 0, nearest - 1, last - 1 if closed else 0)
     after = np.where(nearest < last, nearest + 1, 1 if closed else last)

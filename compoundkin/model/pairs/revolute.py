@@ -53,7 +53,7 @@ class Revolute(FrictionPin, Drivable):
         return (self.at,)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find nothing wrong: a pin exists only where two links share a letter."""
+        """Find no problems: a pin exists only where two links share a letter."""
         return iter(())
 
     def ends(self, geometry: Geometry) -> Ends:
@@ -92,7 +92,7 @@ class Revolute(FrictionPin, Drivable):
         return Point(pin.real, pin.imag, 1.0)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Return the pin itself, which a loop passes."""
+        """Return the pin, through which a loop passes."""
         return LoopTerms((ends[0].point, ends[1].point), (self.at, self.at))
 
     def placed(self, ends: Ends, free: Series) -> Pose:

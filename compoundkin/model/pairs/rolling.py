@@ -86,7 +86,7 @@ class Rolling(RollingContact, PitchLinePair, Drivable):
         return self.radius
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, a radius that is none."""
+        """Find unknown links and points, and an invalid radius."""
         yield from super().problems(links, where)
         yield from radius_problems(where, "radius", self.radius)
 
@@ -104,7 +104,7 @@ class Rolling(RollingContact, PitchLinePair, Drivable):
         return place, 1j * e * np.sign(ends[1].measure)
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
-        """Return a force that presses at the contact, and two along the line.
+        """Return a normal force at the contact, and two forces along the line.
 
         One of these is at the contact, that of an effort at the axis.
         """

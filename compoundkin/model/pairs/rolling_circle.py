@@ -90,10 +90,7 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
         return self.at, self.centre_at
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, and radii that are none.
-
-        A wheel that is not smaller than the ring around it is a problem too.
-        """
+        """Find unknown links and points, invalid radii, and a wheel that is not smaller than the ring around it."""
         yield from super().problems(links, where)
         for key in ("circle", "radius"):
             yield from radius_problems(where, key, getattr(self, key))
@@ -103,20 +100,17 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
 
     @property
     def _turns(self) -> Number:
-        """How far the wheel turns for a turn of the line of centres."""
+        """The turns of the wheel for a turn of the line of centres."""
         return 1.0 + self.circle / (-self.radius if self.inside else self.radius)
 
     def ends(self, geometry: Geometry) -> Ends:
-        """Return the circle's middle, and the wheel's.
-
-        The first has the way to the wheel's at direction zero, and the phase.
-        """
+        """Return the circle's centre, with the vector to the wheel's at direction zero and the phase; the wheel's."""
         distance = self.circle + (-self.radius if self.inside else self.radius)
         wheel = End(geometry.points[self.link][self.at], None, self._turns)
         return End(geometry.points[self.on][self.centre_at], distance + 0j, self._phase(geometry)), wheel
 
     def _phase(self, geometry: Geometry) -> Number:
-        """The phase of the drawing; one that is stated is brought within half a turn of it; or zero."""
+        """Return the phase of the drawing, a stated one moved within half a turn of it, or zero."""
         if any(name not in geometry.drawn for name in self.members):
             return 0.0 if self.phase is None else self.phase
         on, wheel = (geometry.drawn[name] for name in self.members)
@@ -130,7 +124,7 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
         return np.angle((line * poses[0].u.conj()).c[0])
 
     def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
-        """Return the angle to which the wheel has rolled where it is drawn. The circle's is not told."""
+        """Return the angle to which the drawn wheel has rolled; the circle's does not follow."""
         ends, on, at = seen.ends, seen.poses[0], seen.sketch.get(self.at)
         if own == 0 or on is None or at is None:
             return None
@@ -138,28 +132,25 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
         return on.angle.c[0] + ends[1].measure * direction + ends[0].measure
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """Return the ends with a drawn phase taken on by turns since. The turns are those of circle and wheel."""
+        """Return the ends with a drawn phase advanced by whole turns of circle and wheel."""
         if any(name not in geometry.drawn for name in self.members):
             return ends
         return ends[0]._replace(measure=ends[0].measure + TURN * (turns[1] - turns[0])), ends[1]
 
     def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
-        """Return the ends with a drawn phase by the driver's turns.
-
-        It belongs to the line of centres after the turns it has made.
-        """
+        """Return the ends with a drawn phase for the line of centres after the driver's turns."""
         if self.phase is not None or any(name not in geometry.drawn for name in self.members):
             return ends
         return ends[0]._replace(measure=ends[0].measure - TURN * turns * ends[1].measure), ends[1]
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """Return the gap in x and y of the wheel's middle. It is the way from where its angle puts it."""
+        """Return the gap in x and y between the wheel's centre and its place by the wheel's angle."""
         on = poses[0].carry(ends[0])
         gap = poses[1].at(ends[1].point) - on.point - on.along * self.coordinate(ends, poses).turn()
         return gap.real, gap.imag
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """Return the direction of the line of centres, full turns counted. The wheel's angle tells it."""
+        """Return the direction of the line of centres with full turns, from the wheel's angle."""
         turned: Series = poses[1].angle - poses[0].angle - ends[0].measure
         direction: Series = turned / ends[1].measure
         return direction
@@ -177,7 +168,7 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
         )
 
     def _line(self, ends: Ends, poses: Poses) -> Number:
-        """The way from the middle of the circle to where the wheel's angle puts its own."""
+        """Return the vector from the circle's centre to the wheel's, by the wheel's angle."""
         turn: Number = self.coordinate(ends, poses).turn().c[0]
         return poses[0].carry(ends[0]).along.c[0] * turn
 
@@ -187,19 +178,19 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
         return Point(place.real * k, place.imag * k, k)
 
     def contact(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
-        """Return where the wheel touches the circle, and the normal there. It is a unit vector into the wheel."""
+        """Return the place of contact, and the unit normal there into the wheel."""
         # between the middles where they are, so that it does not take turns counted
         middle, axis = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
         slow = 1.0 / ends[1].measure
         return axis + (middle - axis) * slow, (axis - middle) / np.abs(axis - middle) * np.sign(slow)
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
-        """Return a force that presses at the contact, one along it, and a couple."""
+        """Return a normal force at the contact, a tangential one, and a couple."""
         place, normal = self.contact(ends, poses)
         return Wrench.at(place, normal), Wrench.at(place, 1j * normal), Wrench(0j, 1.0 / ends[1].measure)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Return the way from the circle's middle to the wheel's."""
+        """Return the vector from the circle's centre to the wheel's."""
         free = Unknown("direction", self.name)
         on, wheel = (angle_of(name) for name in self.members)
         line = Sum(end_angle(ends[0]), (*on.parts, (1.0, free)))

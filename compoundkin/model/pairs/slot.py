@@ -1,6 +1,6 @@
 """The pin in a slot: a point of one link runs along a straight slot in another, free to turn in it.
 
-It is also what is left of a slide, or of a pin, where part of that is redundant.
+It is also the remainder of a slide, or of a pin, with a redundant constraint released.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Slot(FrictionContact, Guided, TravelLimited):
         yield from self.reach_problems(links, where)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find two points of the slot at one place."""
+        """Find two coincident points of the slot, and travel limits in the wrong order."""
         points = geometry.points[self.on]
         if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
             what = f"{self.through!r} and {self.toward!r} are at one place, so that the slot has no direction"
@@ -135,7 +135,7 @@ class Slot(FrictionContact, Guided, TravelLimited):
         return self.at if link == self.link else None
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """Return a groove as long as the pin's way, and the pin."""
+        """Return a groove as long as the pin's path, and the pin."""
         return Groove(0, _centre_line(ends, *known_range(self.coordinate(ends, poses).c[0]))), Stud(1, ends[1].point)
 
     def with_ends(
@@ -147,7 +147,7 @@ class Slot(FrictionContact, Guided, TravelLimited):
 
 
 def _centre_line(ends: Ends, low: float, high: float) -> Number:
-    """The middle line of a slot, as far as it is used."""
+    """Return the centre line of a slot, as far as it is used."""
     return point_array(ends[0].point + ends[0].along.c[0] * place for place in (low, high))
 
 
@@ -155,7 +155,7 @@ slot = constructor("slot", Slot)
 
 
 class ReleasedPair(NamedTuple):
-    """A pair with some held coordinates left out. Their numbers, what they are in words, and what is left."""
+    """A pair with some held coordinates released: their indices, their name in words, and the remaining pair."""
 
     coordinates: tuple[int, ...]
     freed: str
@@ -176,7 +176,7 @@ class TurningBlock(Slot):
 
 
 def releases(pair: Pair) -> Iterator[ReleasedPair]:
-    """List the ways to leave out part of a written pair, the least first.
+    """Yield the possible releases of a pair's held coordinates, the smallest first.
 
     >>> from compoundkin.model.pairs import slide
     >>> [(way.coordinates, way.freed) for way in releases(slide("w", on="v", at="A", through="B"))]

@@ -1,6 +1,6 @@
-"""What a pair is drawn as: marks on its members, in the members' own frames, without any size on paper.
+"""Symbols of pairs: marks on their members, in the members' own frames, without a size on paper.
 
-A pair tells what there is to see of it (`Pair.glyph`); `view/sketch/` decides what that looks like.
+`Pair.glyph` returns the symbols of a pair; `view/sketch/` draws them.
 """
 
 from __future__ import annotations

@@ -201,9 +201,9 @@ def test_every_verb_takes_cylinders(verb: str, tmp_path: Any) -> None:
 # --- wrong input ---------------------------------------------------------------------------------------------
 
 WRONG: list[tuple[dict[str, Any], str]] = [
-    ({"stroke": (2.3, 1.3)}, "stroke: a stroke from 2.3 to 1.3 is none"),
-    ({"stroke": (0, 1.3)}, "stroke: a stroke from 0 to 1.3 is none"),
-    ({"stroke": (-1, 1.3)}, "stroke: a stroke from -1 to 1.3 is none"),
+    ({"stroke": (2.3, 1.3)}, "stroke: a stroke from 2.3 to 1.3 is not possible"),
+    ({"stroke": (0, 1.3)}, "stroke: a stroke from 0 to 1.3 is not possible"),
+    ({"stroke": (-1, 1.3)}, "stroke: a stroke from -1 to 1.3 is not possible"),
     ({"stroke": (math.nan, 1.3)}, "stroke: (nan, 1.3) is empty or not finite"),
     ({"stroke": 1.3}, "stroke: 1.3 is not two lengths"),
     ({"stroke": "ab"}, "stroke: 'ab' is not two lengths"),
