@@ -11,7 +11,7 @@ from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.characteristics.characteristics import Characteristics
 from compoundkin.analysis.checks import Check, Finding
-from compoundkin.analysis.comparison_result import MechanismComparison
+from compoundkin.analysis.comparison import MechanismComparison
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.interference import Interference
 from compoundkin.configurations.circuit_search import Circuits

@@ -26,7 +26,7 @@ from compoundkin.kinematics.extremes import between
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outline_shapes import OutlineShape, Points
 
-# The way of a point between two poses is at most so many times its chord: half a circle is 1.57 times its diameter.
+# The path of a point between two poses is at most so many times its chord: half a circle is 1.57 times its diameter.
 LONGER = 1.6
 # Origins and orientations of links by their names, (n,).
 Placed: TypeAlias = Mapping[str, tuple[Number, Number]]
@@ -34,10 +34,7 @@ Placed: TypeAlias = Mapping[str, tuple[Number, Number]]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ClearanceCourse(ShortRepr):
-    """The clearances of one design.
-
-    Arrays over the poses are of the assembled ones, whose indices are `known`.
-    """
+    """The clearances of one design. Arrays over poses are over the assembled ones, with the indices `known`."""
 
     motion: Motion
     design: int
@@ -60,13 +57,13 @@ class ClearanceCourse(ShortRepr):
         return np.broadcast_to(own[self.known] if len(own) > 1 else own, self.known.shape)
 
     @cached_property
-    def ways(self) -> Number:
-        """By how much clearances can change to the next pose, (bodies, poses - 1)."""
-        rows = [self._way(one) for one in self.comparison.compared]
+    def changes(self) -> Number:
+        """Bounds of the change of clearances to the next pose, (bodies, poses - 1)."""
+        rows = [self._change(one) for one in self.comparison.compared]
         return np.array(rows).reshape(len(rows), max(len(self.known) - 1, 0))
 
-    def _way(self, bodies: ComparedBodies) -> Number:
-        """Return the longest way of a point of the second body as seen from the first."""
+    def _change(self, bodies: ComparedBodies) -> Number:
+        """Return a bound of the longest path of a point of the second body relative to the first."""
         moved = [np.zeros(max(len(self.known) - 1, 0))]
         for one, other in bodies.shapes:
             (z, u), (far, turned) = self._placed[one.link], self._placed[other.link]
@@ -76,10 +73,7 @@ class ClearanceCourse(ShortRepr):
 
     @cached_property
     def at_poses(self) -> Number:
-        """The clearances at the known poses, (bodies, poses).
-
-        Where two bodies are far from each other it is a bound below which the clearance is not.
-        """
+        """The clearances at the known poses, (bodies, poses), where two bodies are far apart a lower bound."""
         rows = [self._exact_where_near(one) for one in self.comparison.compared]
         return np.array(rows).reshape(len(self.comparison.compared), len(self.known))
 
@@ -89,7 +83,7 @@ class ClearanceCourse(ShortRepr):
             return low
         first = np.array([np.argmin(low)])
         least = float(self._exact(bodies, first)[0])
-        near = np.flatnonzero(low <= max(least, 0.0) + self._way(bodies).max(initial=0.0))
+        near = np.flatnonzero(low <= max(least, 0.0) + self._change(bodies).max(initial=0.0))
         found = low.copy()
         found[near] = self._exact(bodies, near)
         return found
@@ -110,21 +104,18 @@ class ClearanceCourse(ShortRepr):
         return least_clearance(bodies, placed)
 
     def between(self, which: Number, places: Number) -> Number:
-        """Return the clearances of bodies, by their indices, at places along the motion, (n,).
-
-        NaN where the motion is not assembled.
-        """
+        """Return the clearances of bodies, by their indices, at places along the motion, (n,), NaN without assembly."""
         moved = between(self.motion, self.design, places, 0)
         found = np.full(len(places), np.nan)
-        kept = np.flatnonzero(moved.failed[0] == 0)
+        closed = np.flatnonzero(moved.failed[0] == 0)
         z, u = (
-            np.array([_picked(part, kept) for part in parts]).reshape(-1, len(kept))
+            np.array([_at_places(part, closed) for part in parts]).reshape(-1, len(closed))
             for parts in ([moved.poses[link].z for link in self._rows], [moved.poses[link].u for link in self._rows])
         )
-        least = np.full(len(kept), np.inf)
+        least = np.full(len(closed), np.inf)
         for pairs in self._alike:
-            pairs.lower(least, which[kept].astype(int), z, u)
-        found[kept] = least
+            pairs.lower(least, which[closed].astype(int), z, u)
+        found[closed] = least
         return found
 
     @cached_property
@@ -138,7 +129,7 @@ class ClearanceCourse(ShortRepr):
         return tuple(grouped_shape_pairs(self.comparison.compared, self._rows))
 
     def middles(self, which: Number, places: Number) -> Number:
-        """Return the places between bodies where they are nearest to each other, complex (n,)."""
+        """Return the places midway between bodies where they are nearest, complex (n,)."""
         moved = between(self.motion, self.design, places, 0)
         found = np.full(len(places), complex(np.nan, np.nan))
         for n, (k, is_lost) in enumerate(zip(which, moved.failed[0] != 0, strict=True)):
@@ -153,7 +144,7 @@ class ClearanceCourse(ShortRepr):
 
 
 def least_clearance(bodies: ComparedBodies, placed: Placed) -> Number:
-    """Return the clearance of two bodies where their links have origins and orientations, (n,)."""
+    """Return the clearances of two bodies at origins and orientations of their links, (n,)."""
     known: dict[int, Any] = {}
     for shape in (shape for two in bodies.shapes for shape in two):
         if id(shape) not in known:
@@ -165,15 +156,15 @@ def least_clearance(bodies: ComparedBodies, placed: Placed) -> Number:
 def poses_of(poses: Mapping[str, Pose], bodies: ComparedBodies, index: Number) -> Placed:
     """Return origins and orientations of the links of two bodies at some places, (n,)."""
     links = {shape.link for two in bodies.shapes for shape in two}
-    return {link: (_picked(poses[link].z, index), _picked(poses[link].u, index)) for link in links}
+    return {link: (_at_places(poses[link].z, index), _at_places(poses[link].u, index)) for link in links}
 
 
-def _picked(part: Series, index: Number) -> Number:
+def _at_places(part: Series, index: Number) -> Number:
     row = np.ravel(part.c[0])
     return np.broadcast_to(row[index] if len(row) > 1 else row, index.shape)
 
 
-# A point that is farther outside of a shape than this part of the size is not within it.
+# A point within this distance of a shape, a part of the size, is reached by it.
 WITHIN = 1e-9
 
 
@@ -193,20 +184,17 @@ class ComparedBodies(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OutlineComparison(ShortRepr):
-    """All that is compared of one design.
-
-    `neighbours` are not: shapes about their common joints.
-    """
+    """The compared bodies of one design; `neighbours` are joined links with shapes at their joints that are not."""
 
     compared: tuple[ComparedBodies, ...]
     neighbours: tuple[tuple[str, str], ...]
 
 
 def compared_outlines(mechanism: Mechanism, shapes: tuple[OutlineShape, ...], points: Points) -> OutlineComparison:
-    """Return which shapes of a mechanism are held against each other.
+    """Return the shapes of a mechanism that are compared.
 
-    Shapes of one link move together. Of two links that a pin or a slide joins, those that both reach its points
-    overlap by nature, and all of links that another pair joins: wheels touch where they mesh.
+    Shapes of one link move together. Shapes of links joined by a pin or slide that both reach its points always
+    overlap, as do all shapes of links that another pair joins: wheels touch where they mesh.
     """
     joints = _joints(mechanism)
     reached = [_reached(shape, points, WITHIN * mechanism.geometry.size) for shape in shapes]
@@ -228,7 +216,7 @@ def compared_outlines(mechanism: Mechanism, shapes: tuple[OutlineShape, ...], po
 
 
 def _joints(mechanism: Mechanism) -> Mapping[frozenset[str], list[tuple[str, ...]]]:
-    """Return the points of all joints of two links; none of a joint about which all is by nature in contact."""
+    """Return the points of all joints of two links, none for a joint whose shapes always touch."""
     found: dict[frozenset[str], list[tuple[str, ...]]] = {}
     for letter, links in mechanism.real_pins.items():
         for two in combinations(links, 2):
@@ -240,12 +228,12 @@ def _joints(mechanism: Mechanism) -> Mapping[frozenset[str], list[tuple[str, ...
 
 
 def _overlap(letters: tuple[str, ...], one: frozenset[str], other: frozenset[str]) -> bool:
-    """Tell whether two shapes both reach a joint."""
+    """Return whether two shapes both reach a joint."""
     return not letters or bool(one.intersection(letters) and other.intersection(letters))
 
 
 def _reached(shape: OutlineShape, points: Points, slack: float) -> frozenset[str]:
-    """Return the points of its link that a shape reaches."""
+    """Return the points of its link within a shape."""
     own: Any = points[shape.link]
     core, library = core_at(shape), shapely()
     apart = ((letter, library.distance(core, library.Point(p.real, p.imag))) for letter, p in own.items())
@@ -254,9 +242,9 @@ def _reached(shape: OutlineShape, points: Points, slack: float) -> frozenset[str
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ShapePairs(ShortRepr):
-    """Pairs of shapes, (pairs,), in order of the bodies that they belong to.
+    """Pairs of shapes with equally many corners, (pairs,), in order of their bodies.
 
-    `cores` and `closed` are of the first and of the second ones, `links` the rows of their links.
+    `cores` and `closed` are of the first and of the second shapes, `links` the rows of their links.
     """
 
     bodies: Number
@@ -266,9 +254,9 @@ class ShapePairs(ShortRepr):
     reach: Number
 
     def lower(self, found: Number, which: Number, z: Number, u: Number) -> None:
-        """Put clearances into what is `found` where they are less, (n,).
+        """Lower the values `found` (n,) to the clearances of bodies, by their indices.
 
-        They are of bodies by their indices. `z` and `u` are the origins and orientations of all links, (links, n).
+        `z` and `u` are the origins and orientations of all links, (links, n).
         """
         first, last = np.searchsorted(self.bodies, which, "left"), np.searchsorted(self.bodies, which, "right")
         count = last - first
@@ -283,7 +271,7 @@ class ShapePairs(ShortRepr):
 
 
 def grouped_shape_pairs(compared: Sequence[ComparedBodies], rows: Mapping[str, int]) -> Iterator[ShapePairs]:
-    """Yield all pairs of shapes of bodies, those alike together. `rows` are those of links."""
+    """Yield all pairs of shapes of bodies, grouped by their corners. `rows` are those of links."""
     found: dict[tuple[tuple[int, bool], ...], list[tuple[int, tuple[OutlineShape, OutlineShape]]]] = {}
     for k, bodies in enumerate(compared):
         for two in bodies.shapes:
@@ -300,10 +288,7 @@ def grouped_shape_pairs(compared: Sequence[ComparedBodies], rows: Mapping[str, i
 
 
 def core_at(shape: OutlineShape, z: Number = 0j, u: Number = 1 + 0j) -> Any:
-    """Return the cores of a shape as geometries, (n,).
-
-    Its link has origins `z` and orientations `u` there; of numbers it is one.
-    """
+    """Return the cores of a shape as geometries (n,), at origins `z` and orientations `u` of its link."""
     return geometries(np.asarray(z)[..., None] + np.asarray(u)[..., None] * np.array(shape.core), shape.closed)
 
 
@@ -317,9 +302,9 @@ def geometries(vertices: Number, closed: bool) -> Any:
 
 
 def shape_clearance(one: OutlineShape, other: OutlineShape, cores: tuple[Any, Any]) -> Number:
-    """Return how far apart two shapes are, (n,), from the cores of both.
+    """Return the clearances of two shapes (n,) from their cores, negative where their edges overlap.
 
-    It is negative where their edges overlap, and not less than both radii where their cores cross.
+    Crossing cores give minus the sum of both radii.
     """
     return np.asarray(shapely().distance(*cores)) - (one.radius + other.radius)
 
@@ -333,7 +318,7 @@ def nearest_places(cores: tuple[Any, Any]) -> Number:
 
 
 def between_outlines(one: OutlineShape, other: OutlineShape, cores: tuple[Any, Any]) -> Number:
-    """Return the places in the middle between the edges of two shapes, complex (n,)."""
+    """Return the places midway between the edges of two shapes, complex (n,)."""
     ends = nearest_places(cores)
     distance = np.abs(ends[:, 1] - ends[:, 0])
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -342,7 +327,7 @@ def between_outlines(one: OutlineShape, other: OutlineShape, cores: tuple[Any, A
 
 
 def shapely(where: str = "interference") -> Any:
-    """Return `shapely`. Raises InvalidInput, which names a place, where it is not installed."""
+    """Return `shapely`. Raises InvalidInput for `where` if it is not installed."""
     try:
         return import_module("shapely")
     except ImportError:

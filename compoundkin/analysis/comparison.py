@@ -6,48 +6,54 @@ are of one kind and move the points alike; a sign of -1 says that the two count 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from math import tau
 
 import numpy as np
 
 from compoundkin.analysis.common_pose import CommonPose, common_pose
-from compoundkin.analysis.comparison_result import (
-    ComparedDriver,
-    ComparedFact,
-    MechanismComparison,
-    PlaceDifference,
-    TurnDifference,
-)
 from compoundkin.analysis.correspondence import (
     ComparedMechanism,
-    compared_lengths,
     compared_mechanism,
     link_partners,
     partners_by_place,
     tracers_by_name,
 )
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import Number, wrapped
+from compoundkin.base.arrays import Number, first_entry, wrapped
+from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined
 from compoundkin.kinematics import Motion
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 
+# Two mechanisms count as equal up to this distance, a part of their size: files of other programs have three decimals
+# of numbers up to a hundred or so, and a mechanism magnifies their rounding somewhat.
+TOLERANCE = 1e-4
+# Distances below this part of the size are rounding.
+ROUNDING = 1e-12
+# A full turn is compared in steps of two degrees.
+POSES = 181
+# A range within this of a full turn is one.
+_ROUNDING = 1e-6
+# For links with more points the distances from the first two suffice.
+_ALL_DISTANCES = 5
+
 
 @checked
 def compare(one: Mechanism, other: Mechanism) -> MechanismComparison:
     """Compare two mechanisms: structure, dimensions, and how far apart they come when moved alike.
 
-    They are moved from a pose that both have, by the same displacements of their drivers, over the range that both
-    have. Points stand for each other that are in the same places there and go on together, else those of the same name;
-    drivers do that move these points alike. Lengths of the second are converted by the units. Where one has none, or
-    nothing fits so, they are taken as written, or times a power of ten. The frames' axes are the same.
+    They move from a common pose by the same displacements of their drivers, over the common range. Points correspond
+    that are in the same places there and move alike, else those of the same name; drivers correspond that move these
+    points alike. Lengths of the second are converted by the units; without units, or where that fits nothing, they are
+    taken as written, or times a power of ten. The frames have the same axes.
 
-    Nothing is raised for mechanisms that cannot be solved or have nothing in common: the comparison then says why.
+    Mechanisms that cannot be solved or have nothing in common raise nothing: `why` of the comparison has the reason.
 
     >>> from compoundkin.model.elements import drive, drawn, link
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -65,8 +71,149 @@ def compare(one: Mechanism, other: Mechanism) -> MechanismComparison:
         return replace(known, why=error.problems[0].what if error.problems else str(error))
 
 
+@dataclass(frozen=True)
+class ComparedFact:
+    """A fact about both mechanisms, in words."""
+
+    what: str
+    one: str
+    other: str
+
+    @property
+    def differs(self) -> bool:
+        """Whether the two differ."""
+        return self.one != self.other
+
+
+@dataclass(frozen=True)
+class ComparedLength:
+    """The distance of two points on a link of each mechanism, in the unit of the first."""
+
+    link: str
+    other_link: str
+    points: tuple[str, str]
+    other_points: tuple[str, str]
+    one: float
+    other: float
+
+    @property
+    def difference(self) -> float:
+        """The second length minus the first."""
+        return self.other - self.one
+
+
+@dataclass(frozen=True)
+class ComparedDriver:
+    """A driver of each mechanism; `sign` is -1 where the two count in opposite directions.
+
+    `start` are their values at the common pose, `other_start` in the second's own unit and sense, `reach` the range of
+    displacements from there that both have: radians, or the first's unit of length. `speed` and `other_speed` are their
+    speeds at the start, the second's in the first's unit and sense. Driven alike, both go at any speed.
+    """
+
+    name: str
+    other: str
+    is_angle: bool
+    sign: int
+    start: float
+    other_start: float
+    reach: tuple[float, float] = (0.0, 0.0)
+    speed: float = 1.0
+    other_speed: float = 1.0
+
+
+@dataclass(frozen=True)
+class PlaceDifference:
+    """The greatest distance of corresponding points, at the driver values `drives` of the first."""
+
+    point: str
+    other: str
+    distance: float
+    drives: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class TurnDifference:
+    """The greatest difference of the angles (radians from the first pose) of corresponding links."""
+
+    link: str
+    other: str
+    angle: float
+    drives: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MechanismComparison(DisplaysHtml):
+    """Two mechanisms side by side, all lengths in the unit of the first, those of the second times `scale`.
+
+    `points` and `links` map names of the first to those of the second. `places` are the points' greatest distances over
+    `poses` poses, the greatest first, `turns` the differences of links whose angle no two points define; `only_one` and
+    `only_other` are points without a counterpart. `apart` poses can be assembled in one of the two alone. Where the
+    motions are not compared, `why` has the reason.
+    """
+
+    structures: tuple[Structure, Structure]
+    scale: float
+    size: float
+    matched_by: str
+    points: Mapping[str, str]
+    links: Mapping[str, str]
+    facts: tuple[ComparedFact, ...]
+    lengths: tuple[ComparedLength, ...] = ()
+    drivers: tuple[ComparedDriver, ...] = ()
+    places: tuple[PlaceDifference, ...] = ()
+    turns: tuple[TurnDifference, ...] = ()
+    motions: tuple[Motion, Motion] | None = None
+    poses: int = 0
+    apart: int = 0
+    why: str = ""
+
+    @property
+    def only_one(self) -> tuple[str, ...]:
+        """The points of the first without a counterpart."""
+        return tuple(k for k in self.structures[0].mechanism.carriers if k not in self.points)
+
+    @property
+    def only_other(self) -> tuple[str, ...]:
+        """The points of the second without a counterpart."""
+        known = set(self.points.values())
+        return tuple(k for k in self.structures[1].mechanism.carriers if k not in known)
+
+    @property
+    def largest(self) -> PlaceDifference | None:
+        """The greatest distance of all points, None where the motions are not compared."""
+        return self.places[0] if self.places else None
+
+    def within(self, tolerance: float = TOLERANCE) -> bool:
+        """Return whether all points agree within this part of the size, and all links within as many radians.
+
+        Points without a counterpart do not count.
+        """
+        if not self.places or self.apart:
+            return False
+        # NaN is no agreement
+        near = all(one.distance <= tolerance * self.size for one in self.places)
+        return near and all(one.angle <= tolerance for one in self.turns)
+
+    @property
+    def verdict(self) -> str:
+        """The result in words."""
+        largest = self.largest
+        if largest is None:
+            return f"the motions are not compared: {self.why}"
+        unit = f" {self.structures[0].mechanism.unit}".rstrip()
+        result = f"at most {largest.distance:.3g}{unit} apart, at {largest.point}"
+        result = "they move alike to rounding" if largest.distance <= ROUNDING * self.size else result
+        missing = f"; {count_phrase(self.apart, 'pose')} can be assembled in one of them alone" if self.apart else ""
+        return f"{result}{missing}"
+
+    def __repr__(self) -> str:
+        one, other = (structure.mechanism.title for structure in self.structures)
+        return f"MechanismComparison({one!r} with {other!r}: {self.verdict})"
+
+
 def _moved(known: MechanismComparison) -> MechanismComparison:
-    """Return a comparison with what the motions tell. Raises what keeps them from being solved."""
+    """Return a comparison with that of the motions. Raises as `solve`."""
     common = common_pose(*map(compared_mechanism, known.structures))
     if common is None:
         return replace(known, why="they have no pose in common, and few points of the same names")
@@ -75,7 +222,7 @@ def _moved(known: MechanismComparison) -> MechanismComparison:
     course = SharedCourse(common, driver_partners(common))
     counts = len(common.one.motion.drives), len(common.other.motion.drives)
     if len(course.drivers) < max(counts):
-        return replace(known, drivers=tuple(course.drivers), why="their drivers do not stand for each other")
+        return replace(known, drivers=tuple(course.drivers), why="their drivers do not correspond")
     known = _dimensioned(known, course.points)
     if not course.both.size:
         return replace(known, drivers=tuple(course.drivers), why="no pose can be assembled in both")
@@ -92,58 +239,58 @@ def _moved(known: MechanismComparison) -> MechanismComparison:
 
 
 def _dimensioned(known: MechanismComparison, points: dict[str, str]) -> MechanismComparison:
-    """Return a comparison with the points that stand for each other, the links that follow and their lengths."""
+    """Return a comparison with corresponding points, the links that follow and their lengths."""
     mechanisms = known.structures[0].mechanism, known.structures[1].mechanism
     links = link_partners(*mechanisms, points)
-    lengths = tuple(compared_lengths(*mechanisms, links, points, known.scale))
+    lengths = tuple(_compared_lengths(*mechanisms, links, points, known.scale))
     return replace(known, points=points, links=links, lengths=lengths)
 
 
 def _links_without_two_points(known: MechanismComparison) -> dict[str, str]:
-    """Return the moving links that have no two points, so that places do not tell how they turn."""
-    told = {length.link for length in known.lengths if min(length.one, length.other) > 0.0}
-    return {name: partner for name, partner in known.links.items() if name not in told and name != FRAME}
+    """Return the moving links without two distinct points, whose angle places do not define."""
+    defined = {length.link for length in known.lengths if min(length.one, length.other) > 0.0}
+    return {name: partner for name, partner in known.links.items() if name not in defined and name != FRAME}
+
+
+def _compared_lengths(
+    one: Mechanism, other: Mechanism, links: Mapping[str, str], points: Mapping[str, str], scale: float
+) -> Iterator[ComparedLength]:
+    """Yield the distances of the common points of links, those of the second times `scale`."""
+    for name, partner in links.items():
+        mine, theirs = one.geometry.points.get(name, {}), other.geometry.points.get(partner, {})
+        letters = [k for k in mine if points.get(k) in theirs]
+        pairs = list(combinations(letters, 2))
+        if len(letters) > _ALL_DISTANCES:
+            pairs = [two for two in pairs if two[0] in letters[:2]]
+        for a, b in pairs:
+            like = points[a], points[b]
+            lengths = abs(first_entry(mine[a] - mine[b])), scale * abs(first_entry(theirs[like[0]] - theirs[like[1]]))
+            yield ComparedLength(name, partner, (a, b), like, float(lengths[0]), float(lengths[1]))
 
 
 def compared_facts(one: Structure, other: Structure) -> tuple[ComparedFact, ...]:
-    """Return what there is to say of both structures, in words.
+    """Return the facts of both structures, in words.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.structure import decompose
     >>> compared_facts(*[decompose(load(name)) for name in ("crank-rocker", "six-bar")])[1]
     ComparedFact(what='pairs', one='4 R', other='6 R + 1 P')
     """
-    return tuple(ComparedFact(what, tell(one), tell(other)) for what, tell in _FACTS.items())
+    mine, theirs = _facts(one), _facts(other)
+    return tuple(ComparedFact(what, mine[what], theirs[what]) for what in mine)
 
 
-def _pairs(structure: Structure) -> str:
-    return " + ".join(f"{count.number} {count.code}" for count in structure.mobility.pairs)
-
-
-def _groups(structure: Structure) -> str:
-    return ", ".join(group.name for group in structure.groups) or "none"
-
-
-def _class(structure: Structure) -> str:
-    return roman(max((group.class_ for group in structure.groups), default=1))
-
-
-def _drivers(structure: Structure) -> str:
-    return ", ".join(structure.driven) or "none"
-
-
-_FACTS: Mapping[str, Callable[[Structure], str]] = {
-    "links": lambda structure: str(len(structure.mechanism.links)),
-    "pairs": _pairs,
-    "mobility": lambda structure: str(structure.mobility.freedoms),
-    "independent loops": lambda structure: str(len(structure.loops)),
-    "drivers": _drivers,
-    "Assur groups": _groups,
-    "class": _class,
-    "unit of length": lambda structure: structure.mechanism.unit or "none",
-}
-# A full turn is compared in steps of two degrees.
-POSES = 181
+def _facts(structure: Structure) -> dict[str, str]:
+    return {
+        "links": str(len(structure.mechanism.links)),
+        "pairs": " + ".join(f"{count.number} {count.code}" for count in structure.mobility.pairs),
+        "mobility": str(structure.mobility.freedoms),
+        "independent loops": str(len(structure.loops)),
+        "drivers": ", ".join(structure.driven) or "none",
+        "Assur groups": ", ".join(group.name for group in structure.groups) or "none",
+        "class": roman(max((group.class_ for group in structure.groups), default=1)),
+        "unit of length": structure.mechanism.unit or "none",
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,25 +319,25 @@ class SharedCourse:
 
     @cached_property
     def assembled(self) -> tuple[Number, Number]:
-        """At which poses each is assembled."""
+        """Whether each is assembled, (poses,)."""
         one, other = (np.ravel(motion.assembled) for motion in self.motions)
         return one, other
 
     @property
     def apart(self) -> int:
-        """How many poses can be assembled in one of the two alone."""
+        """The number of poses that can be assembled in one of the two alone."""
         return int(np.count_nonzero(self.assembled[0] != self.assembled[1]))
 
     @cached_property
     def both(self) -> Number:
-        """The indices of the poses that both have."""
+        """The indices of the common poses."""
         return np.flatnonzero(self.assembled[0] & self.assembled[1])
 
     @cached_property
     def points(self) -> dict[str, str]:
-        """The points that stand for each other. Of several in one place it is those that go on together.
+        """The corresponding points: of several in one place those that move alike.
 
-        Tracers that are left, elsewhere on their links, go by their names.
+        The remaining tracers, elsewhere on their links, correspond by name.
         """
         one, other = self.common.one, self.common.other
         if self.common.matched_by != "place":
@@ -202,7 +349,7 @@ class SharedCourse:
         return points | tracers_by_name(one, other, points)
 
     def places(self) -> Iterator[PlaceDifference]:
-        """Yield how far apart points come."""
+        """Yield the greatest distances of points."""
         one, other = self.common.one, self.common.other
         at_one, at_other = one.places(self.motions[0])[self.both], other.places(self.motions[1])[self.both]
         for letter, partner in self.points.items():
@@ -212,7 +359,7 @@ class SharedCourse:
                 yield PlaceDifference(letter, partner, float(off[worst]), self._drives(worst))
 
     def turns(self, links: Mapping[str, str]) -> Iterator[TurnDifference]:
-        """Yield how differently links turn. `links` have no two points that tell it."""
+        """Yield the greatest differences of the angles of `links`."""
         for name, partner in links.items():
             angles = [
                 np.ravel(motion.links[link].angle)[self.both]
@@ -225,19 +372,15 @@ class SharedCourse:
                 yield TurnDifference(name, partner, float(off[worst]), self._drives(worst))
 
     def _drives(self, pose: int) -> dict[str, float]:
-        """Return the first's driver values at one of the poses that both have."""
+        """Return the first's driver values at one of the common poses."""
         where = self.both[pose]
         return {name: float(np.ravel(drive.value)[where]) for name, drive in self.motions[0].drives.items()}
 
 
-# A range that lacks no more than this of a full turn is one.
-_ROUNDING = 1e-6
-
-
 def driver_partners(common: CommonPose) -> tuple[ComparedDriver, ...]:
-    """Return the drivers that stand for each other.
+    """Return the corresponding drivers.
 
-    Of each kind those do that move the points alike at the common pose, else those of the same name or rank.
+    Drivers of one kind correspond that move the points alike at the common pose, else those of the same name or rank.
     """
     one, other = common.one, common.other
     likeness = _likeness(common)
@@ -258,7 +401,7 @@ def driver_partners(common: CommonPose) -> tuple[ComparedDriver, ...]:
 
 
 def _candidates(common: CommonPose, likeness: Number) -> Iterator[tuple[float, bool, int, int, str, str]]:
-    """Yield two drivers of one kind each, with what makes them unlike, and the sign of one in the other's sense."""
+    """Yield pairs of drivers of one kind with their unlikeness, and the sign of one in the other's sense."""
     one, other = common.one.structure.driven_angles, common.other.structure.driven_angles
     for i, name in enumerate(common.one.motion.drives):
         for j, partner in enumerate(common.other.motion.drives):
@@ -268,7 +411,7 @@ def _candidates(common: CommonPose, likeness: Number) -> Iterator[tuple[float, b
 
 
 def _likeness(common: CommonPose) -> Number:
-    """Return how alike drivers move the points, 1 for the same way and -1 for the opposite one, 0 where unknown."""
+    """Return how alike drivers move the points: 1 alike, -1 in opposite directions, 0 unknown."""
     one = _rates(common.one, common.values, list(common.points))
     other = _rates(common.other, common.other_values, list(common.points.values()))
     product = (one.conj().T @ other).real
@@ -278,13 +421,13 @@ def _likeness(common: CommonPose) -> Number:
 
 
 def _rates(side: ComparedMechanism, values: Mapping[str, float], letters: list[str]) -> Number:
-    """Return how fast each driver moves points, (points, drivers)."""
+    """Return the points' rates by each driver, (points, drivers)."""
     found = side.rates(values)[1]
     return found[[side.letters.index(letter) for letter in letters]]
 
 
 def _reach(driver: ComparedDriver, one: ComparedMechanism, other: ComparedMechanism) -> tuple[float, float]:
-    """Return the displacements from the common pose that are in the own range of both."""
+    """Return the displacements from the common pose within the ranges of both."""
     mine = _range(one, driver.name, driver.start, 1.0)
     theirs = _range(other, driver.other, driver.other_start, driver.sign * (1.0 if driver.is_angle else other.scale))
     whole = [driver.is_angle and high - low >= tau - _ROUNDING for low, high in (mine, theirs)]

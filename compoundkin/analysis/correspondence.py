@@ -8,12 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
 
 import numpy as np
 
-from compoundkin.analysis.comparison_result import ComparedLength
-from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
@@ -25,9 +23,9 @@ from compoundkin.structure import Structure
 
 @dataclass(frozen=True, eq=False)
 class ComparedMechanism:
-    """A mechanism solved over its drivers' own ranges. Its lengths count `scale` times.
+    """A mechanism solved over its drivers' own ranges, its lengths times `scale`.
 
-    `there` is one pose of it: the drawn one, or where that is not exact, the one of its motion nearest to the drawing.
+    `there` is one pose: the drawn one, or the pose of its motion nearest to an inexact drawing.
     """
 
     motion: Motion
@@ -36,7 +34,7 @@ class ComparedMechanism:
 
     @property
     def structure(self) -> Structure:
-        """What it is made of."""
+        """Its structure."""
         return self.motion.structure
 
     @property
@@ -46,9 +44,9 @@ class ComparedMechanism:
 
     @cached_property
     def letters(self) -> tuple[str, ...]:
-        """The points, without those that are only thought."""
-        thought = self.mechanism.auxiliary_links
-        return tuple(k for k, names in self.mechanism.carriers.items() if not thought.issuperset(names))
+        """The points, without those of auxiliary links alone."""
+        auxiliary = self.mechanism.auxiliary_links
+        return tuple(k for k, names in self.mechanism.carriers.items() if not auxiliary.issuperset(names))
 
     @cached_property
     def fixed(self) -> frozenset[str]:
@@ -57,18 +55,18 @@ class ComparedMechanism:
 
     @cached_property
     def marks(self) -> tuple[str, ...]:
-        """The points that a pose is known by. Those are the moving pins, or where there are none what moves."""
+        """The points that identify a pose: the moving pins, or without any all moving points."""
         moving = [k for k in self.letters if k not in self.fixed]
         return tuple(k for k in moving if k in self.mechanism.pins) or tuple(moving)
 
     @cached_property
     def tracers(self) -> tuple[str, ...]:
-        """The moving points of one link that no pair has."""
+        """The moving points of one link without a pair."""
         used = {k for pair in self.mechanism.written_pairs for k in pair.letters}.union(self.fixed, self.mechanism.pins)
         return tuple(k for k in self.letters if k not in used)
 
     @property
-    def shown(self) -> dict[str, float]:
+    def drawn_values(self) -> dict[str, float]:
         """The drivers' values at the pose nearest to the drawing."""
         return _values(self.there, 0)
 
@@ -86,14 +84,11 @@ class ComparedMechanism:
         return float(np.ravel(self.motion.drives[name].rate)[0])
 
     def at(self, values: Mapping[str, Number], order: int = 1) -> Motion:
-        """Return its motion at other values of the drivers, quietly."""
+        """Return its motion at other values of the drivers, without warnings."""
         return quietly_solved(self.structure, {k: np.atleast_1d(v) for k, v in values.items()}, order)
 
     def rates(self, values: Mapping[str, float]) -> tuple[Number, Number]:
-        """Return where its points are, and how fast drivers move them.
-
-        Rates are those by each driver alone at unit speed, (points, drivers).
-        """
+        """Return the places of its points, and their rates by each driver alone at unit speed, (points, drivers)."""
         rates = np.zeros((len(self.letters), len(values)), dtype=complex)
         motion = self.there
         for column, moved in enumerate(values):
@@ -102,17 +97,17 @@ class ComparedMechanism:
         return self.places(motion)[0], rates * self.scale
 
     def places(self, motion: Motion) -> Number:
-        """Return where its points are, (poses, points)."""
+        """Return the places of its points, (poses, points)."""
         found = [np.broadcast_to(motion.points[k].position, motion.shape).ravel() for k in self.letters]
         return np.stack(found, axis=-1) * self.scale
 
     def scaled(self, scale: float) -> ComparedMechanism:
-        """Return it in another unit."""
+        """Return the same in another unit."""
         return replace(self, scale=scale)
 
 
 def compared_mechanism(structure: Structure) -> ComparedMechanism:
-    """Return a mechanism as it moves by itself. Raises InvalidInput for several designs, and as `solve`."""
+    """Return a mechanism solved over its own ranges. Raises InvalidInput for several designs, and as `solve`."""
     motion = quietly_solved(structure, None, 1)
     if motion.inputs.designs > 1:
         what = f"it has {motion.inputs.designs} designs"
@@ -131,12 +126,12 @@ def _values(motion: Motion, pose: int) -> dict[str, float]:
 # Points nearer to each other than this part of the size are in the same place: files of other programs are rounded to
 # three decimals, and drawings may be in numbers of one digit.
 SAME_PLACE = 1e-3
-# Below this part of the size distances tell points apart no more, names do.
+# Distances below this part of the size are equal: names decide.
 _ALIKE = 1e-9
 
 
 def shares_places(one: ComparedMechanism, at_one: Number, other: ComparedMechanism, at_other: Number) -> bool:
-    """Tell whether all marks of one mechanism are where points of the other are."""
+    """Return whether all marks of one mechanism coincide with points of the other."""
     near = _near(one, at_one, other, at_other, SAME_PLACE * one.size)
     of_one = [near[k].any() for k, name in enumerate(one.letters) if name in one.marks]
     of_other = [near[:, k].any() for k, name in enumerate(other.letters) if name in other.marks]
@@ -146,9 +141,9 @@ def shares_places(one: ComparedMechanism, at_one: Number, other: ComparedMechani
 def partners_by_place(
     one: ComparedMechanism, at_one: Number, other: ComparedMechanism, at_other: Number
 ) -> dict[str, str]:
-    """Return which points stand for which, by their places over some poses, (poses, points).
+    """Return corresponding points by their places over some poses, (poses, points).
 
-    They are near at the first pose. Of several that are, those that move alike, then those of the same name.
+    They are near at the first pose; of several, those correspond that move alike, then those of the same name.
     """
     near = _near(one, at_one[0], other, at_other[0], SAME_PLACE * one.size)
     pairs = ((int(i), int(j)) for i, j in np.argwhere(near))
@@ -156,12 +151,12 @@ def partners_by_place(
 
 
 def partners_by_name(one: ComparedMechanism, other: ComparedMechanism) -> dict[str, str]:
-    """Return the points that have the same name. Both are of the frame, or both are not."""
+    """Return the points of the same name, both or neither on the frame."""
     return {k: k for k in one.letters if k in other.letters and (k in one.fixed) == (k in other.fixed)}
 
 
 def tracers_by_name(one: ComparedMechanism, other: ComparedMechanism, points: Mapping[str, str]) -> dict[str, str]:
-    """Return the tracers left that have one name, on links that are partners."""
+    """Return the remaining tracers of the same name on corresponding links."""
     links = link_partners(one.mechanism, other.mechanism, points)
     mine, theirs = one.mechanism.carriers, other.mechanism.carriers
     left = set(other.tracers).difference(points.values())
@@ -169,14 +164,14 @@ def tracers_by_name(one: ComparedMechanism, other: ComparedMechanism, points: Ma
 
 
 def _near(one: ComparedMechanism, at_one: Number, other: ComparedMechanism, at_other: Number, most: float) -> Number:
-    """Return which points are near which, those of the frame only to each other."""
+    """Return whether points are near each other, both or neither on the frame."""
     fixed = [np.array([k in side.fixed for k in side.letters], dtype=bool) for side in (one, other)]
     near: Number = np.abs(at_one[:, None] - at_other) <= most
     return near & (fixed[0][:, None] == fixed[1])
 
 
 def _apart(one: Number, other: Number) -> float:
-    """Return how far two points come apart, of the poses that both have."""
+    """Return the greatest distance of two points over their common poses."""
     off = np.abs(one - other)
     known = np.isfinite(off)
     return float(off[known].max()) if known.any() else 0.0
@@ -185,7 +180,7 @@ def _apart(one: Number, other: Number) -> float:
 def _chosen(
     one: ComparedMechanism, other: ComparedMechanism, found: Iterable[tuple[float, int, int]]
 ) -> dict[str, str]:
-    """Return a partner for each point at most, the likeliest first."""
+    """Return at most one partner for each point, the likeliest first."""
     ranked = sorted(_ranked(one, other, found))
     points: dict[str, str] = {}
     taken: set[str] = set()
@@ -206,12 +201,8 @@ def _ranked(
         yield 0.0 if off <= floor else off, letter != partner, links, letter, partner
 
 
-# Of links with more points the distances from the first two are enough.
-_ALL_DISTANCES = 5
-
-
 def link_partners(one: Mechanism, other: Mechanism, points: Mapping[str, str]) -> dict[str, str]:
-    """Return which links stand for each other. Those that share most points come first; the frames are one."""
+    """Return corresponding links, those with most common points first; the frames correspond."""
     found, taken = {FRAME: FRAME}, {FRAME}
     for *_, name, partner in sorted(_shared(one, other, points)):
         if name not in found and partner not in taken:
@@ -221,7 +212,7 @@ def link_partners(one: Mechanism, other: Mechanism, points: Mapping[str, str]) -
 
 
 def _shared(one: Mechanism, other: Mechanism, points: Mapping[str, str]) -> Iterator[tuple[int, bool, str, str]]:
-    """Yield two links each that have points in common, with how many, and whether their names differ."""
+    """Yield pairs of links with common points: their number, and whether the names differ."""
     counts: dict[tuple[str, str], int] = {}
     for letter, like in points.items():
         for name in one.carriers[letter]:
@@ -230,19 +221,3 @@ def _shared(one: Mechanism, other: Mechanism, points: Mapping[str, str]) -> Iter
                     counts[name, partner] = counts.get((name, partner), 0) + 1
     for (name, partner), count in counts.items():
         yield -count, name != partner, name, partner
-
-
-def compared_lengths(
-    one: Mechanism, other: Mechanism, links: Mapping[str, str], points: Mapping[str, str], scale: float
-) -> Iterator[ComparedLength]:
-    """Yield the distances of the points that links share. Those of the second count `scale` times."""
-    for name, partner in links.items():
-        mine, theirs = one.geometry.points.get(name, {}), other.geometry.points.get(partner, {})
-        letters = [k for k in mine if points.get(k) in theirs]
-        pairs = list(combinations(letters, 2))
-        if len(letters) > _ALL_DISTANCES:
-            pairs = [two for two in pairs if two[0] in letters[:2]]
-        for a, b in pairs:
-            like = points[a], points[b]
-            lengths = abs(first_entry(mine[a] - mine[b])), scale * abs(first_entry(theirs[like[0]] - theirs[like[1]]))
-            yield ComparedLength(name, partner, (a, b), like, float(lengths[0]), float(lengths[1]))

@@ -23,18 +23,18 @@ from compoundkin.kinematics.extremes import Places, closed_cycles
 from compoundkin.model.mechanism import values_of_design
 from compoundkin.model.outline_shapes import outline_shapes
 
-# Runs that end nearer than this to a pose (in poses) end at it.
+# Touches that end nearer than this to a pose (in poses) end at it.
 SAME = 1e-7
 
 
 @checked
 def interference(motion: Motion) -> Interference:
-    """Find which links touch along a motion, and how near others come.
+    """Return which links touch along a motion, and the least clearance of the others.
 
-    All outlines that share a layer are compared, pins too, at the poses and between them: where the clearance of two
-    links is zero is found to 1e-6 of the driver. Of joined links, what reaches the points of their common pin or slide
-    overlaps by nature and is not compared; links that gears, cams, slots or other pairs join are not compared at all.
-    Poses that cannot be assembled are left out.
+    All outlines that share a layer are compared, pins too, at the poses and between them: zeros of a clearance are
+    exact to 1e-6 of the driver. Shapes of joined links that reach the points of their common pin or slide always
+    overlap and are not compared, nor are links joined by gears, cams, slots or other pairs. Poses that cannot be
+    assembled are left out.
 
     Raises InvalidInput for a mechanism without outlines, for links whose dimensions change along the motion, and where
     shapely is not installed.
@@ -82,7 +82,7 @@ def _course(motion: Motion, design: int) -> ClearanceCourse:
 
 
 def _touches(course: ClearanceCourse, search: TouchSearch) -> Iterator[LinkTouch]:
-    """Yield the runs of a design."""
+    """Yield the touches of a design."""
     which, begin, end = _through_seam(course, *search.touches())
     at_begin, at_end = _drives(course, begin), _drives(course, end)
     middles = course.middles(which, begin)
@@ -98,7 +98,7 @@ def _touches(course: ClearanceCourse, search: TouchSearch) -> Iterator[LinkTouch
 
 
 def _through_seam(course: ClearanceCourse, which: Number, begin: Number, end: Number) -> tuple[Number, Number, Number]:
-    """Return runs, of closed cycles those that come to the last pose as one with those that begin at the first."""
+    """Return touches, in closed cycles those up to the last pose joined with those from the first."""
     keep: Number = np.ones(len(which), dtype=bool)
     last, begin = course.motion.inputs.poses - 1, begin.copy()
     if closed_cycles(course.motion)[course.design]:
@@ -110,7 +110,7 @@ def _through_seam(course: ClearanceCourse, which: Number, begin: Number, end: Nu
 
 
 def _open(course: ClearanceCourse, places: Number, side: int) -> Number:
-    """Tell which places are poses beside which there is none, or none that is assembled."""
+    """Return whether places are poses beside a pose that is missing or not assembled."""
     near = np.round(places)
     return (np.abs(places - near) <= SAME) & ~np.isin(near + side, course.known)
 
@@ -128,7 +128,7 @@ def _clearances(course: ClearanceCourse, search: TouchSearch) -> Iterator[LinkCl
 
 
 def _drives(course: ClearanceCourse, place: Number) -> list[tuple[dict[str, float], float | None]]:
-    """Return what the drivers and the time are at each of some places."""
+    """Return the values of the drivers and the time at some places."""
     there = Places(course.motion, np.full(len(place), course.design), place)
     drives, time = there.drives, there.time
     times: list[float | None] = [None] * len(place) if time is None else np.asarray(time).tolist()
@@ -137,13 +137,12 @@ def _drives(course: ClearanceCourse, place: Number) -> list[tuple[dict[str, floa
 
 @dataclass(frozen=True)
 class LinkTouch:
-    """A run in which two links touch.
+    """An interval in which two links touch, from the place `first` to the place `last` along the motion.
 
-    It is from the place `first` to the place `last` along the motion. Places count poses from 0, and are fractional
-    between them. `begin` and `end` are the drivers' values there, found to 1e-6; where the run reaches an end of the
-    motion, or poses that cannot be assembled (`open_begin`, `open_end`), they are the values there. `at` is where they
-    touch first. Of a closed cycle a run through its first pose is one, and `first` is after `last`. A pin is called
-    "pin B".
+    Places count poses from 0, and are fractional between them. `begin` and `end` are the drivers' values there, exact
+    to 1e-6, or those at an end of the motion or beside poses that cannot be assembled (`open_begin`, `open_end`). `at`
+    is the first point of contact. In a closed cycle an interval through the first pose has `first` after `last`. The
+    name of a pin is "pin B".
     """
 
     one: str
@@ -162,10 +161,7 @@ class LinkTouch:
 
 @dataclass(frozen=True)
 class LinkClearance:
-    """The least clearance of two links that never touch.
-
-    It is at a place along the motion; `at` is in the middle between them.
-    """
+    """The least clearance of two links that never touch, at a place along the motion; `at` is midway between them."""
 
     one: str
     other: str
@@ -180,11 +176,10 @@ class LinkClearance:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Interference(DisplaysHtml):
-    """Which outlines touch along a motion, and how near the others come.
+    """The touches of outlines along a motion, and the least clearances of links that never touch.
 
-    `clearances` are those of two links each that never touch, the least first, design by design. `neighbours` are
-    joined links whose shapes about their common joint are not compared. `poses` were looked at, with all between them;
-    `missing` are not assembled.
+    `clearances` are in increasing order, design by design. `neighbours` are joined links whose shapes at their common
+    joint are not compared. `poses` is the number of poses compared, `missing` of those that are not assembled.
     """
 
     motion: Motion
@@ -196,26 +191,26 @@ class Interference(DisplaysHtml):
 
     @property
     def passed(self) -> bool:
-        """Whether nothing touches, and there was something to look at."""
+        """Whether nothing touches, over one pose at least."""
         return self.poses > 0 and not self.touches
 
     @property
     def least(self) -> LinkClearance | None:
-        """The least clearance of all; None where nothing is compared that never touches."""
+        """The least clearance of all, or None."""
         return min(self.clearances, key=lambda one: one.clearance, default=None)
 
     @property
     def touching(self) -> tuple[tuple[str, str], ...]:
-        """The links that touch, each two once."""
+        """The pairs of links that touch."""
         return tuple(dict.fromkeys((one.one, one.other) for one in self.touches))
 
     def at(self, pose: int, design: int = 0) -> tuple[LinkTouch, ...]:
-        """Return the runs in which a pose lies, by its index along the motion."""
+        """Return the touches at a pose, by its index along the motion."""
         return tuple(one for one in self.touches if one.design == design and _within(one, pose))
 
     @property
     def verdict(self) -> str:
-        """What it comes to in words."""
+        """The result in words."""
         if not self.poses:
             return "no pose is assembled: nothing could be compared"
         if not self.touches and not self.clearances:
@@ -224,8 +219,8 @@ class Interference(DisplaysHtml):
             return f"{count_phrase(len(self.touching), 'pair')} of links touch"
         least = self.least
         unit = f" {self.motion.mechanism.unit}".rstrip()
-        told = "" if least is None else f"; the least clearance is {least.clearance:.6g}{unit}"
-        return f"no links touch{told}"
+        result = "" if least is None else f"; the least clearance is {least.clearance:.6g}{unit}"
+        return f"no links touch{result}"
 
     def __repr__(self) -> str:
         return f"Interference({self.motion.mechanism.title!r} at {count_phrase(self.poses, 'pose')}: {self.verdict})"
@@ -237,14 +232,14 @@ def _within(one: LinkTouch, place: float) -> bool:
     return place >= one.first or place <= one.last
 
 
-# Halvings of the distance of two poses, to 1e-8 of it.
+# Halvings of the interval between two poses, to 1e-8 of it.
 HALVINGS = 27
-# Steps of golden section, to 1e-9 of the distance of two poses.
+# Steps of golden section, to 1e-9 of the interval between two poses.
 STEPS = 44
 
 
 class TouchIntervals(NamedTuple):
-    """Runs in which bodies touch, (n,). The bodies by their index, the places from which to which."""
+    """Intervals in which bodies touch, (n,): indices of the bodies, first and last places."""
 
     which: Number
     begin: Number
@@ -252,7 +247,7 @@ class TouchIntervals(NamedTuple):
 
 
 class LeastClearances(NamedTuple):
-    """The least clearance of all bodies that never touch, (n,), and its places."""
+    """The least clearances of bodies that never touch, (n,), and their places."""
 
     which: Number
     place: Number
@@ -261,13 +256,13 @@ class LeastClearances(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TouchSearch(ShortRepr):
-    """What is searched for touches: the clearances of a design."""
+    """The search for touches and least clearances of a design."""
 
     course: ClearanceCourse
 
     @cached_property
     def _beside(self) -> Number:
-        """Which known poses are followed by the next pose of the motion."""
+        """Whether the next known pose is the next pose of the motion."""
         return np.diff(self.course.known) == 1
 
     @cached_property
@@ -277,25 +272,25 @@ class TouchSearch(ShortRepr):
 
     @cached_property
     def _dips(self) -> tuple[Number, Number, Number]:
-        """The bodies that come nearer between two poses than at any, where, and how near."""
-        values, ways, touching = self.course.at_poses, self.course.ways, self.course.at_poses <= 0.0
-        bound = 0.5 * (values[:, :-1] + values[:, 1:] - ways)
+        """The bodies that are nearer between two poses than at any pose: indices, places and clearances."""
+        values, changes, touching = self.course.at_poses, self.course.changes, self.course.at_poses <= 0.0
+        bound = 0.5 * (values[:, :-1] + values[:, 1:] - changes)
         free = ~(touching[:, :-1] | touching[:, 1:]) & self._beside
         worth = free & (bound < np.maximum(self._at_poses, 0.0)[:, None])
         return self._searched(np.argwhere(worth), 1.0)
 
     @cached_property
     def _gaps(self) -> tuple[Number, Number, Number]:
-        """The bodies that part between two poses at which they touch, where, and by how much."""
+        """The bodies that part between two poses at which they touch: indices, places and clearances."""
         values, touching = self.course.at_poses, self.course.at_poses <= 0.0
-        bound = 0.5 * (values[:, :-1] + values[:, 1:] + self.course.ways)
+        bound = 0.5 * (values[:, :-1] + values[:, 1:] + self.course.changes)
         worth = touching[:, :-1] & touching[:, 1:] & self._beside & (bound > 0.0)
         return self._searched(np.argwhere(worth), -1.0)
 
     def _searched(self, worth: Number, sign: float) -> tuple[Number, Number, Number]:
-        """Return bodies, places and values of the least clearances between poses; the greatest with the sign -1."""
+        """Return bodies, places and values of the least (sign 1) or greatest (-1) clearances between poses."""
         which, index = worth.T
-        low, ways = self.course.known[index].astype(float), self.course.ways[which, index]
+        low, changes = self.course.known[index].astype(float), self.course.changes[which, index]
         best: Number = np.maximum(self._at_poses, 0.0) if sign > 0 else np.zeros(len(self._at_poses))
 
         def value(s: Number, on: Number) -> Number:
@@ -305,13 +300,13 @@ class TouchSearch(ShortRepr):
             if sign > 0:
                 np.minimum.at(best, which, np.maximum(values, 0.0))
             # a clearance changes no faster than its bodies move
-            return (values > 0.0 if sign > 0 else values >= 0.0) & (values - ways * widths <= best[which])
+            return (values > 0.0 if sign > 0 else values >= 0.0) & (values - changes * widths <= best[which])
 
         place, found = golden_section_minimum(value, low, low + 1.0, STEPS, going)
         return which, place, sign * found
 
     def touches(self) -> TouchIntervals:
-        """Return the runs in which bodies touch, in order of the bodies."""
+        """Return the intervals in which bodies touch, in order of the bodies."""
         which, place, piece, is_touching = self._nodes()
         same = (which[1:] == which[:-1]) & (piece[1:] == piece[:-1])
         k = np.flatnonzero(same & (is_touching[1:] != is_touching[:-1]))
@@ -326,7 +321,7 @@ class TouchSearch(ShortRepr):
         return TouchIntervals(which[first].astype(int), begin, end)
 
     def _nodes(self) -> tuple[Number, Number, Number, Number]:
-        """Return all places at which it is known whether bodies touch, in order: bodies, place, piece, whether."""
+        """Return all places with a known clearance in order: bodies, place, piece of the motion, whether they touch."""
         values, known = self.course.at_poses, self.course.known.astype(float)
         pieces = np.append(0, np.cumsum(~self._beside))[: len(known)]
         rows = [np.stack([np.repeat(np.arange(len(values)), len(known)), np.tile(known, len(values)),
@@ -340,7 +335,7 @@ class TouchSearch(ShortRepr):
         return which[order], place[order], piece[order], touching[order].astype(bool)
 
     def least(self) -> LeastClearances:
-        """Return the least clearance of all bodies that never touch."""
+        """Return the least clearances of all bodies that never touch."""
         values, (which, place, found) = self.course.at_poses, self._dips
         best, at = self._at_poses.copy(), self.course.known[values.argmin(axis=1)].astype(float)
         order = np.argsort(-found, kind="stable")  # the least comes last, and stays

@@ -31,8 +31,7 @@ def command(one: str, other: str, tolerance: float | None, form: str | None, pat
     for each other by their places at a pose that both have, else by their names. Exit code 4: they are farther apart
     than the tolerance, or cannot be driven alike.
     """
-    from compoundkin.analysis.comparison import compare
-    from compoundkin.analysis.comparison_result import TOLERANCE
+    from compoundkin.analysis.comparison import TOLERANCE, compare
     from compoundkin.view.report.study_reports import comparison_report
 
     if tolerance is not None and isnan(tolerance):

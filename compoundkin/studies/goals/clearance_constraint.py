@@ -10,7 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.analysis.clearances import ComparedBodies, compared_outlines, geometries, nearest_places, shapely
+from compoundkin.analysis.clearances import (
+    ComparedBodies,
+    compared_outlines,
+    geometries,
+    nearest_places,
+    shape_clearance,
+    shapely,
+)
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
@@ -108,7 +115,7 @@ def _clearances(trial: DesignTrial, points: Points, two: tuple[object, object]) 
     known = np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1)
     found = np.full(known.shape, np.nan)
     cores = geometries(a[known], one.shape.closed), geometries(b[known], other.shape.closed)
-    found[known] = shapely().distance(*cores) - (one.shape.radius + other.shape.radius)
+    found[known] = shape_clearance(one.shape, other.shape, cores)
     return found
 
 

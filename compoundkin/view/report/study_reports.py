@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.common_pose import scale_of_units
-from compoundkin.analysis.comparison_result import ROUNDING, MechanismComparison
+from compoundkin.analysis.comparison import ROUNDING, MechanismComparison
 from compoundkin.base.arrays import Number, degrees
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from math import prod
 from typing import TYPE_CHECKING, TypeAlias
 
-from compoundkin.analysis.comparison_result import MechanismComparison
+from compoundkin.analysis.comparison import MechanismComparison
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
