@@ -102,10 +102,7 @@ def has_loads(mechanism: Mechanism) -> bool:
 
 
 def loaded_forces(motion: Motion) -> Forces | None:
-    """Return the forces of a motion; None without masses and loads.
-
-    Without accelerations they are those of statics.
-    """
+    """Return the forces of a motion; None without masses and loads. Without accelerations they are those of statics."""
     if not has_loads(motion.mechanism) or not motion.assembled.any():
         return None
     return force_analysis(motion, inertia=motion.order >= 2)

@@ -58,10 +58,7 @@ class ForceResult(CopiesFields):
 
     @property
     def units(self) -> Units:
-        """The mechanism's units of length, mass and force.
-
-        Moments are in `units.moment`, powers in `units.power`.
-        """
+        """The mechanism's units of length, mass and force. Moments are in `units.moment`, powers in `units.power`."""
         return self.mechanism.stated_units
 
     @cached_property

@@ -197,10 +197,7 @@ def study_text(study: DescribesStudy, form: str) -> str:
 
 
 def study_document(study: DescribesStudy) -> dict[str, Any]:
-    """Return the document of a study, with its mechanism.
-
-    Raises InvalidInput for outputs that are Python functions.
-    """
+    """Return the document of a study, with its mechanism. Raises InvalidInput for outputs that are Python functions."""
     if isinstance(study.outputs, Mapping):
         what, remedy = "a Python function cannot be written to a file", "write outputs by their names"
         raise InvalidInput(Problem(OUTPUTS, what, remedy))

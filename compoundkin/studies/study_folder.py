@@ -87,10 +87,7 @@ _MORE = 3
 
 
 class FolderHead(NamedTuple):
-    """The content of `study.json`: the study's data, its columns, versions.
-
-    `token` identifies this folder.
-    """
+    """The content of `study.json`: the study's data, its columns, versions. `token` identifies this folder."""
 
     study: Mapping[str, Any]
     columns: tuple[StudyColumn, ...]
@@ -240,10 +237,7 @@ _LEFT, _YOUNG = ".*.tmp", 3600
 
 
 class StudyPart(NamedTuple):
-    """A part: its file and its rows.
-
-    `fresh` are the rows that no earlier part has.
-    """
+    """A part: its file and its rows. `fresh` are the rows that no earlier part has."""
 
     path: Path
     rows: range

@@ -33,10 +33,7 @@ ColumnKind: TypeAlias = Literal["dimension", "output", "state"]
 
 
 class StudyColumn(NamedTuple):
-    """A column of a study.
-
-    `width` is the number of poses of a course, None for single values.
-    """
+    """A column of a study. `width` is the number of poses of a course, None for single values."""
 
     name: str
     unit: str
@@ -136,10 +133,7 @@ BOTH = "+-"
 
 
 def design_states(designs: Designs) -> dict[str, Number]:
-    """Return the states of designs by name.
-
-    Arrays (designs,); texts are objects or None.
-    """
+    """Return the states of designs by name. Arrays (designs,); texts are objects or None."""
     found, modes = assembled_range(designs), designs.path.compiled.modes
     branch = modes if isinstance(modes, str) else modes.name
     defect = np.broadcast_to(_turns_back(designs), designs.number)

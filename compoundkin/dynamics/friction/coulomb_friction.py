@@ -42,10 +42,7 @@ ONE, NONE, SEVERAL, UNKNOWN = range(4)
 
 
 class Frictions(NamedTuple):
-    """The sizes of frictions with their signs, (frictions, poses).
-
-    `state` is the number of solutions at each pose.
-    """
+    """The sizes of frictions with their signs, (frictions, poses). `state` is the number of solutions at each pose."""
 
     sizes: Number
     state: Number

@@ -22,10 +22,7 @@ REASONS = {NONE: "no forces satisfy Coulomb's law", SEVERAL: "more than one set 
 
 @dataclass(frozen=True)
 class Wedged:
-    """A stretch of poses at which a mechanism is wedged.
-
-    In its `pair` friction amplifies itself most.
-    """
+    """A stretch of poses at which a mechanism is wedged. In its `pair` friction amplifies itself most."""
 
     pair: str
     stretch: PoseStretch

@@ -100,10 +100,7 @@ def place_in_world(motion: Motion, link: str, point: str | Number) -> Number:
 
 
 def line_of_action(motion: Motion, link: str, wrench: Wrench) -> Number:
-    """Return the point of a line of action nearest to a link's origin.
-
-    It is the origin where there is no force.
-    """
+    """Return the point of a line of action nearest to a link's origin. It is the origin where there is no force."""
     origin, force = motion.poses[link].z.c[0], wrench.force
     square = np.abs(force) ** 2
     arm = -1j * force * wrench.about(origin) / np.where(square == 0.0, 1.0, square)

@@ -325,10 +325,7 @@ class JoinedWrenches(Generic[Key]):
 
 
 def joined_reactions(motion: Motion, parts: Iterable[tuple[LoadedBlock, Reactions]]) -> dict[str, Wrench]:
-    """Return the wrenches in pairs and on the frame, of all blocks.
-
-    Pairs are the mechanism's own.
-    """
+    """Return the wrenches in pairs and on the frame, of all blocks. Pairs are the mechanism's own."""
     store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     for at, reactions in parts:
         for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():

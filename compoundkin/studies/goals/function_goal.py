@@ -48,10 +48,7 @@ class FunctionGoal(Goal):
         return self.at is not None
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
-        """Return the output.
-
-        Raises InvalidInput for a vector, or a function that returns no numbers.
-        """
+        """Return the output. Raises InvalidInput for a vector, or a function that returns no numbers."""
         driver_of(self._where, motion, self.driver)
         if motion_figure(self.output)[1]:
             raise InvalidInput(Problem(self._where, "it is a figure, not a course", "target for a figure"))

@@ -187,10 +187,7 @@ def _ranges(start: int, unknowns: Sequence[tuple[GoalUnknown, ...]]) -> list[ran
 
 
 def checked_goals(objective: object) -> Goal | GoalSum:
-    """Return what shall be least, a figure by its name too.
-
-    Raises InvalidInput for anything else.
-    """
+    """Return what shall be least, a figure by its name too. Raises InvalidInput for anything else."""
     if isinstance(objective, str):
         return least(objective)
     if isinstance(objective, Goal | GoalSum):

@@ -24,10 +24,7 @@ AnyTerm = TypeVar("AnyTerm", bound=Term)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ObjectiveTerm(ShortRepr, Generic[AnyTerm]):
-    """A goal or a constraint with the path that it asks.
-
-    `own` are the numbers of the space that are its unknowns.
-    """
+    """A goal or a constraint with the path that it asks. `own` are the numbers of the space that are its unknowns."""
 
     term: AnyTerm
     path: StudiedPath
@@ -210,10 +207,7 @@ class SearchSpace(ShortRepr):
 
     @classmethod
     def of(cls, variations: Mapping[str, Variation], unknowns: tuple[GoalUnknown, ...]) -> SearchSpace:
-        """Return the space of free dimensions and unknowns.
-
-        Raises InvalidInput for ranges without ends.
-        """
+        """Return the space of free dimensions and unknowns. Raises InvalidInput for ranges without ends."""
         ends = {name: _ends(name, one) for name, one in variations.items()}
         places: dict[str, tuple[int, ...]] = {}
         names: list[str] = []

@@ -230,10 +230,7 @@ SAME = 1e-3
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EndedSearch(ShortRepr):
-    """A design at which searches ended, by parts of the ranges.
-
-    `searches` are those, by number.
-    """
+    """A design at which searches ended, by parts of the ranges. `searches` are those, by number."""
 
     parts: Number
     violation: float

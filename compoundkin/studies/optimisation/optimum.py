@@ -45,10 +45,7 @@ class ChangedDimension:
 
 @dataclass(frozen=True)
 class HeldConstraint:
-    """A constraint at the design that was found.
-
-    `margin` is the least that it has, in its unit.
-    """
+    """A constraint at the design that was found. `margin` is the least that it has, in its unit."""
 
     description: str
     margin: float

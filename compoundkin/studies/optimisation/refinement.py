@@ -162,10 +162,7 @@ EVOLUTION = "differential_evolution"
 
 
 def method_of(problem: DesignProblem, word: str | None, has_slopes: bool) -> str:
-    """Return the word of the method.
-
-    Raises InvalidInput for what is none, or does not fit.
-    """
+    """Return the word of the method. Raises InvalidInput for what is none, or does not fit."""
     fits_squares = problem.is_squares and not problem.constraints
     if word is None:
         return ("least_squares" if fits_squares else "SLSQP") if has_slopes else EVOLUTION

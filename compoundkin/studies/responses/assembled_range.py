@@ -120,10 +120,7 @@ def _first(failed: Number, places: Number) -> tuple[Number, Number]:
 
 
 def is_travel_limit(motion: Motion, number: int) -> bool:
-    """Tell whether it is a guide that is beyond an end.
-
-    Those are numbered behind all groups.
-    """
+    """Tell whether it is a guide that is beyond an end. Those are numbered behind all groups."""
     return number > len(motion.structure.groups)
 
 

@@ -173,10 +173,7 @@ class Designs(ShortRepr):
         return replace(self.picked(rows), inputs=inputs, times=times)
 
     def values_at(self, name: str, rows: Number, places: Number, is_angle: bool = False) -> Number:
-        """Return an output of some of them at places, (rows, places).
-
-        Angles are in the turn of the poses beside.
-        """
+        """Return an output of some of them at places, (rows, places). Angles are in the turn of the poses beside."""
         there = self.between(rows, places).numbers
         # a design that stays in its mode needs no look at limits between its poses
         programs = self.path.compiled.programs
@@ -225,10 +222,7 @@ def inputs_at(inputs: Inputs, rows: Number, places: Number) -> Inputs:
 
 
 def inputs_in_time(motion: Motion, order: int, places: Number) -> tuple[Inputs, Number]:
-    """Return what drivers do at places of a motion in time.
-
-    They follow their laws. The times there come with it.
-    """
+    """Return what drivers do at places of a motion in time. They follow their laws. The times there come with it."""
     one, at = np.zeros(places.size, dtype=int), places.ravel()
     times = times_between(motion, one, at).reshape(places.shape)
     return _laid(inputs_between(motion, one, at, order), places.shape), times

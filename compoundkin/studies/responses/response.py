@@ -34,10 +34,7 @@ class Response(ABC):
 
     @abstractmethod
     def values(self, designs: Designs) -> Number:
-        """Return its values; NaN where there is none.
-
-        They are (designs,) of a figure, (designs, poses) of a course.
-        """
+        """Return its values; NaN where there is none. They are (designs,) of a figure, (designs, poses) of a course."""
 
     @property
     def has_slopes(self) -> bool:
@@ -78,10 +75,7 @@ class SummedResponse(Response):
     given: Mapping[str, Any] = field(default_factory=dict)
 
     def values(self, designs: Designs) -> Number:
-        """Return the sum of each design.
-
-        It is NaN where a pose is lost that the function does not leave out.
-        """
+        """Return the sum of each design. It is NaN where a pose is lost that the function does not leave out."""
         return np.asarray(self._called(designs, designs.path.objective(self.function)))
 
     def slopes(self, designs: Designs) -> Number:
@@ -121,10 +115,7 @@ def summed_response(motion: Motion, name: str, function: object, given: Mapping[
 
 
 class ReadPose:
-    """The first pose of a motion, as a function reads it.
-
-    `read` are the names that it has asked for.
-    """
+    """The first pose of a motion, as a function reads it. `read` are the names that it has asked for."""
 
     def __init__(self, motion: Motion, given: Mapping[str, Any]) -> None:
         self._motion, self._given = motion, given

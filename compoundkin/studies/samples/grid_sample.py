@@ -107,10 +107,7 @@ def _steps(variations: Mapping[str, Variation], wanted: int) -> list[int]:
 
 @dataclass(frozen=True)
 class TableSample(DesignSample):
-    """Designs as they are listed.
-
-    In row 3 every dimension has the value 3 of its list.
-    """
+    """Designs as they are listed. In row 3 every dimension has the value 3 of its list."""
 
     word: ClassVar[str] = "table"
     count: int

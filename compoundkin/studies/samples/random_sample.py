@@ -57,10 +57,7 @@ class LatinHypercubeSample(UnitSample):
     seed: int = 0
 
     def units(self, columns: int, rows: range) -> Number:
-        """Return places in strata.
-
-        Which stratum is a permutation of the row, another one for each column.
-        """
+        """Return places in strata. Which stratum is a permutation of the row, another one for each column."""
         numbers = np.arange(rows.start, rows.stop)
         strata = np.stack([permuted(numbers, self.count, self.seed, k) for k in range(columns)], axis=-1)
         places = RandomSample(self.count, self.seed).units(columns, rows)

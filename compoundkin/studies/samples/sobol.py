@@ -30,10 +30,7 @@ class SobolSample(UnitSample):
 
     @classmethod
     def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
-        """Return the sample; raises InvalidInput.
-
-        It warns where the count is no power of two.
-        """
+        """Return the sample; raises InvalidInput. It warns where the count is no power of two."""
         from scipy.stats import qmc
 
         found, columns = super().of(count, seed, variations), columns_of(variations)
@@ -47,10 +44,7 @@ class SobolSample(UnitSample):
         return found
 
     def units(self, columns: int, rows: range) -> Number:
-        """Return rows of the sequence.
-
-        Each is the one before it with one direction number changed.
-        """
+        """Return rows of the sequence. Each is the one before it with one direction number changed."""
         if not len(rows):
             return np.empty((0, columns))
         first, directions = _directions(columns, self.seed, max(self.count - 1, 1).bit_length())

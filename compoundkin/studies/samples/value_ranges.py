@@ -93,10 +93,7 @@ class ValueRange(Variation):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Levels(ShortRepr, Variation):
-    """Some values, each as likely.
-
-    A grid has all of them, a table one in each row.
-    """
+    """Some values, each as likely. A grid has all of them, a table one in each row."""
 
     keys: ClassVar[tuple[str, ...]] = ("values",)
     listed: Number

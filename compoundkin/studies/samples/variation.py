@@ -68,10 +68,7 @@ class Variation(ABC):
     @property
     @abstractmethod
     def data(self) -> Mapping[str, Any]:
-        """What study files say of it.
-
-        They are plain numbers, texts and lists, read back as an equal variation.
-        """
+        """What study files say of it. They are plain numbers, texts and lists, read back as an equal variation."""
 
     @classmethod
     @abstractmethod

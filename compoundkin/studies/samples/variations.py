@@ -40,10 +40,7 @@ def variations_of(given: Mapping[str, Any] | str | os.PathLike[str]) -> dict[str
 
 
 def variation_of(where: str, given: Any) -> Variation:
-    """Return what is given for a dimension as a variation.
-
-    Raises InvalidInput for what is none.
-    """
+    """Return what is given for a dimension as a variation. Raises InvalidInput for what is none."""
     if isinstance(given, Variation):
         return given
     for kind in VARIATIONS:

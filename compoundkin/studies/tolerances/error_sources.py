@@ -59,10 +59,7 @@ class ErrorSource(ABC):
         """Return the variance of an output."""
 
     def middle(self, slopes: Sequence[Number]) -> Number:
-        """Return the error in the middle of the limits.
-
-        There is none where those lie evenly.
-        """
+        """Return the error in the middle of the limits. There is none where those lie evenly."""
         return 0.0 * slopes[0]
 
     def mean(self, slopes: Sequence[Number]) -> Number:
@@ -75,10 +72,7 @@ MakeSource: TypeAlias = Callable[[tuple[str, ...], str, Number], ErrorSource]
 
 
 class ErrorSpec(NamedTuple):
-    """What is given for a dimension.
-
-    It is a source of errors once the numbers of the dimension are known.
-    """
+    """What is given for a dimension. It is a source of errors once the numbers of the dimension are known."""
 
     dimension: str
     source: MakeSource

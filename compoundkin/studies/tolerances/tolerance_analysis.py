@@ -179,10 +179,7 @@ class Chances:
 
     @classmethod
     def of(cls, count: int, seed: int, percentiles: Sequence[float], sigmas: float) -> Self:
-        """Return what is given.
-
-        Raises InvalidInput for what cannot be, and for too few designs.
-        """
+        """Return what is given. Raises InvalidInput for what cannot be, and for too few designs."""
         found = real_numbers("percentiles", percentiles)
         if found.ndim != 1 or not found.size or not ((found > 0) & (found < 100)).all():
             what = f"{short_repr(percentiles)} are no percentiles"
