@@ -1,4 +1,4 @@
-"""Conditions of full force balance: which moments of mass on links leave the mass centre of the whole mechanism at rest.
+"""Conditions of full force balance: which moments of mass on links keep the mechanism's mass centre at rest.
 
 A link reached from the frame through pins has its origin at a sum of constants times the unit vectors of links; every
 further pin closes a sum of them. Links that slides join turn alike. The mass centre is such a sum, too; it rests where
@@ -107,7 +107,7 @@ DEPENDENT = 1e-9
 
 @dataclass(frozen=True)
 class ReachedLink:
-    """The chain of pins from the frame to a link: its parent, the place `pivot` of the pin on it, the number of pins."""
+    """The chain of pins from the frame to a link: parent, place `pivot` of the pin on it, number of pins."""
 
     parent: str
     pivot: complex

@@ -1,7 +1,7 @@
 """Counterweights that balance the shaking force of a mechanism, fully or as far as possible, and their effect.
 
-Moments of mass become masses at places. Where full balance does not exist, counterweights leave the least shaking force,
-or a slider-crank has the classical one that takes a fraction of it.
+Moments of mass become masses at places. Where full balance does not exist, counterweights leave the least shaking
+force, or a slider-crank has the classical one that takes a fraction of it.
 """
 
 from __future__ import annotations

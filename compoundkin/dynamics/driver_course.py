@@ -1,4 +1,4 @@
-"""The effort of a driver along a motion: the figures by which a motor is chosen, and mechanical advantage with friction.
+"""The effort of a driver along a motion: figures for the choice of a motor, and mechanical advantage with friction.
 
 The effort is a function of the place and is computed between the poses too.
 """
@@ -166,8 +166,8 @@ class DriverCourse(ShortRepr):
 def driver_course(forces: Forces, driver: str | None, of_cycle: bool = False) -> DriverCourse:
     """Return the course of a driver, by default of the only one.
 
-    Raises UnknownName for an unknown driver, InvalidInput for none of several, for a driver that does not move, and with
-    `of_cycle` for a motion that is no closed cycle.
+    Raises UnknownName for an unknown driver, InvalidInput for none of several, for a driver that does not move, and
+    with `of_cycle` for a motion that is no closed cycle.
     """
     motion, name = forces.motion, driver_named(forces.motion, driver)
     if motion.inputs.poses < 2:

@@ -40,7 +40,8 @@ class EquilibriumPosition(ShortRepr):
     """An equilibrium position: the drivers' values and its kind.
 
     It is "stable", "unstable", "saddle" for several drivers, "indifferent" where neighbouring positions are in
-    equilibrium as well, or "half-stable". `stiffness` (free drivers, free drivers) are the derivatives of the holding efforts by the values.
+    equilibrium as well, or "half-stable". `stiffness` (free drivers, free drivers) are the derivatives of the holding
+    efforts by the values.
     """
 
     values: Mapping[str, float]

@@ -1,4 +1,4 @@
-"""Flywheels: the energy that a driver of constant effort lends over a cycle, and the inertia that limits its speed change."""
+"""Flywheels: the fluctuation of energy over a cycle at constant effort, and the inertia that limits that of speed."""
 
 from __future__ import annotations
 
@@ -51,7 +51,8 @@ def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -
     """Return the flywheel that holds a driver's speed within a coefficient of fluctuation.
 
     The driver has its mean effort throughout; its surplus of energy over a cycle is integrated between changes of sign,
-    between the poses too. The inertia of the parts is in the effort at constant speed, and is not counted again. `forces` are of a closed cycle at constant speed. Raises InvalidInput where they are not.
+    between the poses too. The inertia of the parts is in the effort at constant speed, and is not counted again.
+    `forces` are of a closed cycle at constant speed. Raises InvalidInput where they are not.
 
     Source: J = dE / (Cs w^2), e.g. R. L. Norton, Design of Machinery, 5th ed., McGraw-Hill 2012, section 11.11.
 

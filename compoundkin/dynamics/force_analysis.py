@@ -1,4 +1,4 @@
-"""Kinetostatics: the forces in all pairs of a motion, and the efforts of its drivers, with friction where pairs have some.
+"""Kinetostatics: the forces in all pairs of a motion, and the efforts of its drivers, with friction.
 
 A link that turns freely, such as a roller, must have its mass centre at its pin, for its angle is not known.
 """
@@ -45,8 +45,8 @@ from compoundkin.model.mechanism import Mechanism
 def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -> Forces:
     """Return the forces in all pairs at every pose, and the drivers' efforts.
 
-    With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds instead of
-    the moving driver: its effort is `forces.held.effort`, the driver's own is zero.
+    With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds instead
+    of the moving driver: its effort is `forces.held.effort`, the driver's own is zero.
 
     Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, or without
     velocities where loads need them, for a mass centre off the pin of a roller that turns freely, and for a pair that

@@ -31,7 +31,7 @@ class ForceResult(CopiesFields):
     """What an analysis of forces found, with its motion.
 
     `wrenches` are those on the second member of each pair from the first, (designs, poses), about the world's origin;
-    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction; `friction_forces` are the
+    `on_frame` is that on the frame; `more` are further wrenches on links, such as friction; `friction_forces` are the
     frictions of a mechanism that has some. Of a mechanism held by too much they are those with what the structure's
     `relaxation` names left free: one of many possible, which is told only where that is `assumed`.
     At poses that are `singular` they are told where they have a limit. `held` is what holds in the place of a driver.
@@ -63,24 +63,27 @@ class ForceResult(CopiesFields):
 
     @cached_property
     def largest(self) -> float:
-        """The largest force in any pair, beside which others are rounding."""
+        """The largest force in any pair, the scale of rounding."""
         sizes = (np.abs(wrench.force) for wrench in self.wrenches.values())
         found = (float(np.max(size, initial=0.0, where=np.isfinite(size))) for size in sizes)
         return max(found, default=0.0)
 
     @property
     def relaxed(self) -> tuple[Dropped, ...]:
-        """The parts of pairs that, left free, make all forces determined. None unless there is too much that holds."""
+        """The parts of pairs that, left free, make all forces determined.
+
+        None unless the mechanism is overconstrained.
+        """
         relaxation = self.motion.structure.relaxation
         return () if relaxation is None else relaxation.dropped
 
     @cached_property
     def self_stress(self) -> SelfStress:
-        """The states of self-stress. There are none unless the mechanism is held by too much."""
+        """The states of self-stress. There are none unless the mechanism is overconstrained."""
         return self_stress(self.motion)
 
     def left_open(self, parts: Sequence[tuple[str, float]], place: Number) -> UndeterminedPart | None:
-        """Return what equilibrium leaves open of a sum of wrenches. Its moment is about a place."""
+        """Return the undetermined part of a sum of wrenches, with the moment about a place."""
         if not self.relaxed or self.assumed:
             return None
         found, all_open = self.self_stress.open(parts, place), self.friction.left_open

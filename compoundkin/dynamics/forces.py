@@ -79,7 +79,9 @@ class Forces(DisplaysHtml, ForceResult):
 
     @cached_property
     def undetermined(self) -> tuple[Undetermined, ...]:
-        """What equilibrium leaves open, which is NaN in pairs and pins. None unless the mechanism is held by too much.
+        """Parts that equilibrium does not determine, NaN in pairs and pins.
+
+        None unless the mechanism is overconstrained.
 
         >>> from compoundkin.files import load
         >>> from compoundkin.dynamics.force_analysis import force_analysis
@@ -117,7 +119,7 @@ class Forces(DisplaysHtml, ForceResult):
         return ShakingForce(self)
 
     def on(self, link: str) -> LinkForces:
-        """Return all that acts on a link, its free body. Raises UnknownName for a link that there is not.
+        """Return all that acts on a link, its free body. Raises UnknownName for an unknown link.
 
         >>> from compoundkin.model.elements import drive, link
         >>> from compoundkin.model.loads import gravity, mass

@@ -120,8 +120,8 @@ class EquivalentInertia(ShortRepr):
 def equivalent_inertia(motion: Motion) -> EquivalentInertia:
     """Return the equivalent inertia at the drivers for every pose, with its derivatives.
 
-    It depends on the poses only, not on speeds, loads and gravity. The derivatives follow from accelerations at constant
-    unit speeds, without differences. Raises InvalidInput for a mechanism without masses.
+    It depends on the poses only, not on speeds, loads and gravity. The derivatives follow from accelerations at
+    constant unit speeds, without differences. Raises InvalidInput for a mechanism without masses.
 
     Source: reduced mass and its derivative, e.g. F. Wittenbauer, Graphische Dynamik, Springer 1923.
 
@@ -220,7 +220,7 @@ def moving_masses(structure: Structure) -> tuple[MovingMass, ...]:
 
 
 class InertiaTerms(NamedTuple):
-    """The mass matrix by the drivers, the bias (inertia forces without accelerations of the drivers), and the weights."""
+    """The mass matrix, the bias (inertia forces without accelerations of the drivers), and the weights."""
 
     matrix: Number
     bias: Number

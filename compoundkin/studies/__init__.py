@@ -1,11 +1,11 @@
-"""Studies of many designs: what dimensions do to figures, tolerances, better dimensions."""
+"""Studies of many designs: sweeps, tolerance analyses and optimisations of dimensions."""
 
 from __future__ import annotations
 
 from typing import Any
 
 __all__ = ["load_study", "study_schema"]
-# Where each word is, loaded when it is asked for: whoever needs a part of this room needs not all of it.
+# Names loaded on access, so that a part of the room does not import all of it.
 _LATE = {"load_study": "study", "study_schema": "study_document"}
 
 

@@ -1,4 +1,4 @@
-"""`study`: the effect of dimensions on chosen outputs of a mechanism, for many designs; `load_study`: studies of files."""
+"""`study`: the effect of dimensions on outputs of a mechanism, for many designs; `load_study`: studies of files."""
 
 from __future__ import annotations
 
@@ -87,10 +87,11 @@ def study(
     """Return a study of many designs of a mechanism, to be run.
 
     `dimensions` are variations of free dimensions by name: a range (40, 60), a frozen distribution of scipy.stats,
-    levels, `around(centre, within)`; or the path of a CSV or Parquet table of designs, with sample="table". `outputs` are quantities and figures by name; or {"error": function, "G.x.stroke": None}, where
-    functions of a pose, as `CompiledPath.objective` takes them, are summed over the motion and read the data `given`.
-    `sample` is the kind of sample, `count` the number of designs. Drivers move as in `solve`, in the same `modes`.
-    Raises InvalidInput and UnknownName before anything is computed.
+    levels, `around(centre, within)`; or the path of a CSV or Parquet table of designs, with sample="table". `outputs`
+    are quantities and figures by name; or {"error": function, "G.x.stroke": None}, where functions of a pose, as
+    `CompiledPath.objective` takes them, are summed over the motion and read the data `given`. `sample` is the kind of
+    sample, `count` the number of designs. Drivers move as in `solve`, in the same `modes`. Raises InvalidInput and
+    UnknownName before anything is computed.
 
     >>> import compoundkin as ck
     >>> press = ck.load("crank-rocker")
@@ -118,7 +119,8 @@ def study(
 def load_study(path: str | os.PathLike[str]) -> Study:
     """Return the study of a TOML or JSON file, distinguished by the suffix.
 
-    Raises InvalidInput for a file that cannot be read, or listing all problems of its content; and what `study` raises.
+    Raises InvalidInput for a file that cannot be read, or listing all problems of its content; and the errors of
+    `study`.
 
     >>> load_study("no/such.toml")
     Traceback (most recent call last):

@@ -31,7 +31,8 @@ _X, _Y = (f".{axis}" for axis in AXES)
 class StudyResult(DisplaysHtml, ShortRepr):
     """The result of a study: `study` is its definition, `rows` are those computed.
 
-    Angles are radians, vectors complex; a design that does not assemble is NaN, False in "assembled", and has a "reason".
+    Angles are radians, vectors complex; a design that does not assemble is NaN, False in "assembled", and has a
+    "reason".
 
     >>> import compoundkin as ck
     >>> crank_rocker = ck.load("crank-rocker")

@@ -157,7 +157,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"free": {"crank.B.x": [1, 2, 3]}}, "single values"),
     ({"free": {"crank.B": (1, 3)}}, "it is a point"),
     ({"objective": 3}, "objective"),
-    ({"objective": "P.position"}, "no number that could be least"),
+    ({"objective": "P.position"}, "not a single one to minimise"),
     ({"objective": "X.position.length.least"}, "X"),
     ({"objective": ck.goals.path("P", [1, 2])}, "2 points, and 24 poses"),
     ({"subject_to": "crank"}, "subject_to"),

@@ -150,7 +150,7 @@ def test_numbers_that_are_too_large_are_told_so(options: dict[str, Any], told: s
 
 def test_more_random_designs_than_stay_in_memory_are_refused() -> None:
     mechanism = ck.load("crank-rocker")
-    with pytest.raises(InvalidInput, match="count: 100000000 designs of 2 values each do not stay in memory; at most"):
+    with pytest.raises(InvalidInput, match="count: 100000000 designs of 2 values each do not fit in memory; at most"):
         ck.tolerance(mechanism, {"crank.B.x": 0.01}, "rocker.angle", values=[0.0, 0.1], count=10**8)
 
 

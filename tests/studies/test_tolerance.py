@@ -239,8 +239,11 @@ def test_angles_are_counted_by_the_nearest_turn() -> None:
     ("given", "told"),
     [
         ({"tolerances": {"plate.Q": 0.1}}, "tolerances.plate.Q: it has no such dimension.*plate"),
-        ({"tolerances": {"plate.C": -0.1}}, r"tolerances.plate.C: the tolerance -0.1 is less than nothing; give 0.1"),
-        ({"tolerances": {"plate.C": (0.1, -0.1)}}, r"less than nothing; give \(-0.1, 0.1\)"),
+        (
+            {"tolerances": {"plate.C": -0.1}},
+            r"tolerances.plate.C: the tolerance -0.1 has a lower limit above the upper; give 0.1",
+        ),
+        ({"tolerances": {"plate.C": (0.1, -0.1)}}, r"lower limit above the upper; give \(-0.1, 0.1\)"),
         ({"tolerances": {"plate.C": "tight"}}, "tolerances.plate.C: a text is no number"),
         ({"tolerances": {"plate.C": 0.1, "plate.C.x": 0.1}}, "tolerances.plate.C.x: 'plate.C' has a tolerance"),
         ({"tolerances": {}}, "tolerances: nothing has a tolerance"),
@@ -249,7 +252,7 @@ def test_angles_are_counted_by_the_nearest_turn() -> None:
         ({"clearance": {"Q": 0.1}}, "clearance.Q: there is no such pin, slot or guide"),
         ({"clearance": {"rocker.D": 0.1}}, "clearance.rocker.D: there is no such pin, slot or guide; did you mean"),
         ({"clearance": {"block.C": 0.1}}, "clearance.block.C: another pair is at C on block.*'plate.C'"),
-        ({"clearance": {"A": -1}}, "clearance.A: -1 is no clearance"),
+        ({"clearance": {"A": -1}}, "clearance.A: -1 is not a clearance"),
         ({"sigmas": 0}, "sigmas: 0 is no number"),
         ({"count": 700}, "count: 700 random designs are too few for percentile 0.135 or 99.865; count=741 or more"),
         ({"percentiles": (0, 50)}, "percentiles: .* are no percentiles"),
@@ -300,7 +303,7 @@ def test_tables_of_sources_and_of_poses(tmp_path: Path) -> None:
     assert np.array_equal(bands["B.x.percentile_99.865"].values, found["B.x"].sample.percentiles[2])
     ck.save(found.bands("B.x"), tmp_path / "bands.csv")
     assert len((tmp_path / "bands.csv").read_text().splitlines()) == 1 + len(TURN)
-    with pytest.raises(ck.errors.InvalidInput, match=r"B.x.stroke: it is one number of the whole motion"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"B.x.stroke: it is a figure of the whole motion"):
         found.bands("B.x.stroke")
     with pytest.raises(ck.errors.UnknownName, match=r"B.y: there is no such output"):
         found.table("B.y")

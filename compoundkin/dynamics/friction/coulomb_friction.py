@@ -2,9 +2,9 @@
 
 Reactions are linear in the loads, friction among them, at a given pose. So one reverse pass for each friction gives
 everything that the iterations need, in either direction of motion. With m the sums of normal forces and s the senses of
-motion, the frictions are -s m, and m = h(m) are the sums under them. Where the mechanism contracts (nearly always) there
-is one solution, found by Newton's steps, or the image h(m) where that is better. Elsewhere the directions of all normal
-forces are tried; no solution and several solutions are reported.
+motion, the frictions are -s m, and m = h(m) are the sums under them. Where the mechanism contracts (nearly always)
+there is one solution, found by Newton's steps, or the image h(m) where that is better. Elsewhere the directions of all
+normal forces are tried; no solution and several solutions are reported.
 
 Source: Coulomb friction on a reverse pass over Assur groups, e.g. J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of
 Machines and Mechanisms, chapter on static forces; a pin's friction moment is coefficient times radius times force.
@@ -230,8 +230,8 @@ class BlockWithFriction:
     def interval(self, driver: str, moved: LoadedBlock, which: Number) -> tuple[Number, Number]:
         """Return the least and the greatest effort that hold a driver at rest.
 
-        `which` is a mask of poses. The efforts start motion in either direction; the limit is infinite where it is wedged
-        in that direction.
+        `which` is a mask of poses. The efforts start motion in either direction; the limit is infinite where it is
+        wedged in that direction.
         """
         signs = senses(self.contacts, moved)
         ends = []
@@ -337,7 +337,7 @@ class FrictionInfluence:
         return sure
 
     def feeding(self, signs: Number) -> Number:
-        """Return how much frictions amplify each other, (poses, frictions): Perron's vector of the gains, its maximum 1."""
+        """Return Perron's vector of the gains (poses, frictions), its maximum 1: how frictions amplify each other."""
         gains, vector = self.gains(signs), np.ones(signs.T.shape)
         for _ in range(POWER_STEPS):
             vector = np.einsum("pij,pj->pi", gains, vector) + SHIFT * vector

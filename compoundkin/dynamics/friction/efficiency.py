@@ -22,7 +22,7 @@ NO_POWER = 1e-12
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Efficiency(ShortRepr):
-    """How much of the power put in comes out. The rest is lost, by friction.
+    """Output power over input power; friction takes the rest.
 
     At each pose, whatever gives power (a driver, a load, weight or inertia) counts as input, whatever takes it as
     output. Arrays have the motion's shape; NaN where no power flows.
@@ -57,7 +57,7 @@ class Efficiency(ShortRepr):
 
     @property
     def self_locking(self) -> Number:
-        """Where loads cannot move the mechanism in either direction without the drivers; bool, of the motion's shape."""
+        """Where loads cannot move the mechanism without the drivers, in either direction; of the motion's shape."""
         return self.forces.motion.grid.shaped(self._locked)
 
     @property

@@ -1,4 +1,4 @@
-"""Friction forces by name: their sizes and powers, the poses at which pairs wedge, and efforts at rest and in reverse."""
+"""Friction forces by name: their sizes and powers, poses at which pairs wedge, and efforts at rest and in reverse."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ class PoseStretch:
 
 
 def stretches_where(motion: Motion, labels: Number) -> Iterator[tuple[int, PoseStretch]]:
-    """Yield the stretches of poses with equal labels (designs, poses), each with its label; negative labels are skipped."""
+    """Yield the stretches of poses with equal labels (designs, poses) and these; negative labels are skipped."""
     driver = next(iter(motion.inputs.drives))
     values = np.broadcast_to(motion.inputs.drives[driver][0], labels.shape)
     for design in np.flatnonzero((labels >= 0).any(axis=1)).tolist():

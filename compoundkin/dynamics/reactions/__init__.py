@@ -1,1 +1,1 @@
-"""Reactions: the reverse pass over the groups, and what equilibrium leaves open."""
+"""Reactions: the reverse pass over the groups, and undetermined forces."""

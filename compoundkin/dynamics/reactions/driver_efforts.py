@@ -109,8 +109,8 @@ class Powers(DisplaysHtml, CopiesFields):
     """The power of all that acts in a motion, and its energies.
 
     Powers are in the unit of force times length per second, energies in that of moments; arrays have the motion's
-    shape. What is positive drives the mechanism; what goes into speed is `kinetic_rate`. Springs and dampers are loads;
-    the `potential` is that of gravity and of springs, but for those whose force is a function or a table.
+    shape. Positive power drives the mechanism; `kinetic_rate` is the growth of kinetic energy. Springs and dampers are
+    loads; the `potential` is that of gravity and of springs, but for those whose force is a function or a table.
     """
 
     motion: Motion
@@ -124,7 +124,7 @@ class Powers(DisplaysHtml, CopiesFields):
 
     @cached_property
     def sum(self) -> Number:
-        """What drivers, loads, gravity and friction give less what goes into speed. It is zero but for rounding."""
+        """The power of all that acts less the growth of kinetic energy: zero except for rounding."""
         given = sum((*self.drives.values(), *self.loads.values()), start=self.gravity + self.friction)
         return given - self.kinetic_rate
 
@@ -187,7 +187,7 @@ def _loads(at: LoadedBlock) -> dict[str, Number]:
 
 
 def _sums(at: LoadedBlock, forces: ForceResult) -> dict[str, Number]:
-    """Return what is summed over masses and frictions. The power of weights, of inertia, of friction; the energies."""
+    """Return sums over masses and frictions: the powers of weights, inertia and friction, and the energies."""
     found: dict[str, Number] = dict.fromkeys(("gravity", "friction", "rate", "kinetic", "potential"), 0.0)
     free_fall = at.motion.mechanism.free_fall
     for load in at.motion.mechanism.loads.values():

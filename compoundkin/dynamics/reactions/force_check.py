@@ -34,7 +34,7 @@ from compoundkin.structure.parts import LINK_FREEDOMS
 # What is left of forces is relative to the greatest one at the same pose, moments to it times the mechanism's size.
 # Rounding (1e-16) grows over the groups in both directions.
 TOLERANCE = 1e-9
-# Poses at which the greatest force is less than so much of that of the whole motion are held against this.
+# Residuals are relative to the greatest force at a pose, at least to this part of that of the whole motion.
 LEAST = 1e-6
 
 
@@ -48,9 +48,9 @@ def check_forces(forces: ForceResult) -> Check:
     forces, motion = replace(forces, assumed=True), forces.motion
     regular = np.array(motion.regular if motion.order else motion.failed == 0)
     for one in forces.singular:
-        # what has no limit is not there to be checked
+        # infinite forces are not checked
         regular.reshape(motion.shape or (1,))[one.pose] &= one.forces == FINITE
-    # nor is what no forces, or several, satisfy the law of friction at
+    # nor are poses at which the law of friction has no unique solution
     regular &= ~forces.friction.is_wedged
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:
@@ -138,7 +138,7 @@ def _at_least_part(parts: Sequence[Number], regular: Number) -> Number:
 
 
 def link_balances(forces: ForceResult) -> Iterator[tuple[str, Wrench]]:
-    """Yield what forces leave of masses times accelerations. It is by link, moments about its origin."""
+    """Yield the residuals of forces less mass times acceleration by link, moments about its origin."""
     motion, applied = forces.motion, applied_wrenches(forces)
     of_links: dict[str, Wrench] = {link: applied.get(link, Wrench()) for link in motion.poses}
     for name in forces.wrenches:
@@ -153,20 +153,20 @@ def link_balances(forces: ForceResult) -> Iterator[tuple[str, Wrench]]:
         pose = motion.poses[link]
         if link in free:
             middle = pose.at(given_over(motion, motion.mechanism.geometry.points[link][free[link]])).c[0]
-            # what would turn it is left aside: nothing does
+            # moments on a link that turns freely are not counted
             yield link, Wrench(left.force, 0.0 * left.about(middle))
         elif link != FRAME:
             yield link, Wrench(left.force, left.about(pose.z.c[0]))
 
 
 def reported_force(forces: ForceResult, pair: str, link: str) -> Wrench:
-    """Return what a pair does to a link, as told: force, place, moment there. (designs, poses)."""
+    """Return the reported wrench of a pair on a link: force, place, moment there, (designs, poses)."""
     found, shape = PairForce(forces, forces.solving_order.pairs[pair]).on(link), forces.motion.failed.shape
     return Wrench.at(*(np.reshape(value, shape) for value in (found.place, found.force, found.moment)))
 
 
 def applied_wrenches(forces: ForceResult) -> dict[str, Wrench]:
-    """Return what loads do to every link, (designs, poses). What would turn one that turns freely is left aside."""
+    """Return the wrench of loads on every link, (designs, poses), without moments on links that turn freely."""
     store: JoinedWrenches[str] = JoinedWrenches(forces.motion.failed.shape)
     for at in loaded_blocks(forces.motion):
         for load in forces.motion.mechanism.loads.values():
@@ -189,13 +189,13 @@ def inertia_resistance(forces: ForceResult, mass: Mass) -> Wrench:
     if forces.inertia:
         turn, speed_up = cross(pose.u.c[0], pose.u.derivative(1)), cross(pose.u.c[0], pose.u.derivative(2))
         force = force + heavy * (pose.z.derivative(2) + (1j * speed_up - turn**2) * arm)
-        # what turns freely, such as a roller, is not turned
+        # a link that turns freely, such as a roller, has no rotary inertia
         moment = 0.0 if mass.link in free else given_over(motion, mass.inertia) * units.inertia * speed_up
     return Wrench.at(pose.z.c[0] + arm, force, moment)
 
 
 def pin_balances(forces: ForceResult) -> Iterator[tuple[str, Wrench]]:
-    """Yield the sum of the forces of every pin less loads on it. It has no mass; what leads it is among its links."""
+    """Yield the sum of the forces of every pin less the loads on it; a prescribed motion counts as a link."""
     shape = forces.motion.failed.shape
     for letter in forces.mechanism.real_pins:
         pin = PinForces(forces, letter)
@@ -217,7 +217,7 @@ def applied_force(forces: ForceResult, names: Collection[str]) -> Number:
 
 
 def frame_balance(forces: ForceResult) -> Wrench:
-    """Return what is left on the frame of all loads. Weights are among them, less the rate of momentum."""
+    """Return the balance of the frame: all loads and weights less the rate of momentum."""
     left = forces.on_frame
     for wrench in applied_wrenches(forces).values():
         left = left - wrench
@@ -227,7 +227,7 @@ def frame_balance(forces: ForceResult) -> Wrench:
 
 
 def forces_on_frame(forces: ForceResult) -> Wrench:
-    """Return what pairs, frictions and loads do to the frame. It is as they tell."""
+    """Return the reported wrench of pairs, frictions and loads on the frame."""
     found = applied_wrenches(forces).get(FRAME, Wrench())
     for name in forces.wrenches:
         if FRAME in forces.motion.solving_order.pairs[name].members[:2]:
@@ -261,7 +261,7 @@ def uncarried_parts(forces: ForceResult) -> Iterator[tuple[str, Number]]:
 
 
 def _of_two(rows: Number, held: Wrench, pose: Pose, size: float) -> Number:
-    """Return how far a wrench on a link is from the span of what a pair holds there."""
+    """Return the distance of a wrench on a link from the span of the pair's constraint wrenches."""
     force, moment = held.force, held.about(pose.z.c[0]) / size
     given = np.stack(np.broadcast_arrays(force.real, force.imag, moment), axis=-1)
     basis = rows / np.array([1.0, 1.0, size])

@@ -27,7 +27,7 @@ Values = Callable[[Any, str], Number]
 
 
 def force_figure(kind: Kind, word: str) -> Figure:
-    """Return what is known of a figure of forces by its word."""
+    """Return the figure of forces of a word."""
     return _FIGURES[kind][word]
 
 
@@ -64,7 +64,7 @@ def unit_of_force(forces: ForceResult, dimension: Dimension, name: str = "") -> 
 
 
 def scale_of_force(forces: ForceResult, dimension: Dimension) -> float:
-    """Return what the rounding of forces is relative to: the largest of all."""
+    """Return the scale of rounding of forces: the largest of all."""
     of_lengths = 1.0 if dimension == "number" else forces.motion.size
     return {"force": forces.largest, "moment": forces.largest * of_lengths, "power": forces.largest * of_lengths}.get(
         dimension, of_lengths

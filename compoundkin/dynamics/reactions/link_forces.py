@@ -37,7 +37,7 @@ from compoundkin.model.pairs import Pair
 class LinkForces(Sequence[LinkWrench]):
     """All that acts on a link, in order: pairs, efforts, loads, weight, inertia.
 
-    Their sum is zero, but for the frame, where it is what the ground must hold.
+    Their sum is zero, except on the frame, where it is the load on the ground.
     """
 
     forces: ForceResult
@@ -49,7 +49,7 @@ class LinkForces(Sequence[LinkWrench]):
     @overload
     def __getitem__(self, which: slice) -> Sequence[LinkWrench]: ...
     def __getitem__(self, which: int | str | slice) -> LinkWrench | Sequence[LinkWrench]:
-        """Return what acts by its place in the order or by its name."""
+        """Return a wrench by its index or by its name."""
         if not isinstance(which, str):
             return self.entries[which]
         names = [one.name for one in self.entries]
@@ -62,7 +62,7 @@ class LinkForces(Sequence[LinkWrench]):
         return len(self.entries)
 
     def of_kind(self, *kinds: str) -> tuple[LinkWrench, ...]:
-        """Return what acts of some kinds, such as "pair" or "weight"."""
+        """Return the wrenches of some kinds, such as "pair" or "weight"."""
         return tuple(one for one in self.entries if one.kind in kinds)
 
     @property
@@ -94,7 +94,7 @@ def link_forces(forces: ForceResult, link: str) -> LinkForces:
 
 
 def _of_pairs(forces: ForceResult, link: str) -> Iterator[LinkWrench]:
-    """Yield what pairs do, then the efforts that drivers add there."""
+    """Yield the wrenches of pairs, then the efforts of drivers in them."""
     efforts = {one.pair.name: DriverEffort(forces, one) for one in forces.motion.structure.driven.values()}
     driven = []
     for name in forces.wrenches:
@@ -113,7 +113,7 @@ def _of_pairs(forces: ForceResult, link: str) -> Iterator[LinkWrench]:
 
 
 def known_on(forces: ForceResult, link: str) -> Iterator[LinkWrench]:
-    """Yield loads, weight, inertia, then what else was found to act."""
+    """Yield loads, weight, inertia, then further wrenches such as friction."""
     motion = forces.motion
     mass = motion.mechanism.masses.get(link)
     store: JoinedWrenches[tuple[str, Load | Mass]] = JoinedWrenches(motion.failed.shape)
@@ -154,7 +154,7 @@ class PinForces:
 
     @property
     def all_links(self) -> tuple[str, ...]:
-        """The links that it joins, and what leads it."""
+        """The links that it joins, with a prescribed motion."""
         return self.forces.mechanism.pins[self.letter]
 
     @property
@@ -236,7 +236,7 @@ class ShakingForce:
         return as_vectors(self.forces.motion, self.whole.force)
 
     def moment_about(self, point: Any) -> Number:
-        """Return the shaking moment about a letter or a place of the world. It depends on the point: say which."""
+        """Return the shaking moment about a letter or a place of the world. It depends on the point."""
         return moment_about(self.forces.motion, self.whole, point)
 
     def _of(self, kind: str) -> tuple[LinkWrench, ...]:

@@ -15,7 +15,7 @@ from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import vector
 
-# What may act on a link beside loads, which have kinds of their own.
+# Kinds of wrenches on a link besides loads, which have kinds of their own.
 PAIR, DRIVER, WEIGHT, INERTIA, FRICTION = "pair", "driver", "weight", "inertia", "friction"
 UNKNOWN_VECTOR = complex(np.nan, np.nan)
 
@@ -27,7 +27,7 @@ class LinkWrench(ShortRepr):
     Arrays have the motion's shape, NaN where not assembled. `kind` is "pair", "driver", "weight", "inertia",
     "friction" or the kind of a load; `by` is the link it comes from, if it comes from one; `at` names the point of
     attack; `whole` is the wrench about the world's origin (designs, poses), `attack` the point of attack in the world.
-    What equilibrium leaves `open` is told as NaN; `whole` is then one of all that are possible.
+    Parts that equilibrium does not determine (`open`) are NaN; `whole` is then one of the possible wrenches.
     """
 
     motion: Motion = field(repr=False)
@@ -85,7 +85,7 @@ def as_vectors(motion: Motion, value: Number) -> Vectors:
 def moment_about(motion: Motion, wrench: Wrench, point: Any) -> Number:
     """Return a wrench's moment about a letter or a place of the world.
 
-    The wrench is one over (designs, poses). Raises UnknownName for a letter that there is not.
+    The wrench is one over (designs, poses). Raises UnknownName for an unknown letter.
     """
     place = motion.points[point].position if isinstance(point, str) else vector("point", point)
     shown = motion.grid.known

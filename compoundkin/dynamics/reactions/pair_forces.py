@@ -70,7 +70,7 @@ class ForceComponents(ShortRepr):
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The words of what its kind has."""
+        """The words of the components of its kind."""
         return component_words(self.pair)
 
     def part(self, word: str) -> Number:
@@ -183,7 +183,7 @@ class PairForce(ForceComponents):
 
     @property
     def at(self) -> str:
-        """What the point is called about which its moment is told."""
+        """The name of the reference point of the moment."""
         return self.pair.acts_at
 
     @cached_property
@@ -211,7 +211,7 @@ class PairForce(ForceComponents):
 
     @property
     def place(self) -> Vectors:
-        """The point in the world about which its moment is told."""
+        """The reference point of the moment in the world."""
         return self.acting.place
 
     @property
@@ -252,7 +252,7 @@ class PairForce(ForceComponents):
 
     @property
     def lift_off(self) -> LiftOff:
-        """Where a contact lets go, from which speed on, which preload keeps it. Raises UnknownName for another pair."""
+        """Lift-off of a contact: where, at which speed, at which preload. Raises UnknownName for another pair."""
         return lift_off(self.forces, self.name)
 
     @property
@@ -274,7 +274,7 @@ Loads = Callable[[LoadedBlock], Mapping[str, Wrench]]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LiftOffSpeed(ShortRepr):
-    """The speed of the driver at which a contact first lets go, and where.
+    """The speed of the driver at which a contact first lifts off, and where.
 
     It is that of each design, infinite where no speed does it, zero where it is not pressed at rest.
     """
@@ -285,7 +285,7 @@ class LiftOffSpeed(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LiftOff(ShortRepr):
-    """Where a contact lets go, between the poses too.
+    """Lift-off of a contact, between the poses too.
 
     There the force along its normal passes through zero. A pin in a slot, or a roller in a groove, changes its flank
     there.
@@ -301,7 +301,7 @@ class LiftOff(ShortRepr):
 
     @property
     def leaves(self) -> Places:
-        """Where it lets go: places with the drivers' values and the time."""
+        """The places of lift-off, with the drivers' values and the time."""
         return self.zeros.at.some(self.zeros.sense < 0)
 
     @property
@@ -311,12 +311,12 @@ class LiftOff(ShortRepr):
 
     @cached_property
     def least(self) -> Extreme:
-        """The least force along the normal of each design, and where. It is kept where that is positive."""
+        """The least normal force of each design, and where; the contact is closed where it is positive."""
         return extremes(self.forces.motion, f"{self.name}.{NORMAL}")[0].least
 
     @cached_property
     def speed(self) -> LiftOffSpeed:
-        """The constant driver speed at which the contact first lets go, and where.
+        """The constant driver speed at which the contact first lifts off, and where.
 
         At a constant speed the force is that at rest and one in proportion to the square of the speed. Raises
         InvalidInput with friction or loads that depend on rates, and where not just one driver moves.
@@ -337,10 +337,10 @@ class LiftOff(ShortRepr):
         return LiftOffSpeed(value, found.greatest.at)
 
     def preload(self, load: str | None = None) -> Number:
-        """Return the least preload that keeps the contact in this motion, of each design.
+        """Return the least preload of each design that keeps the contact closed in this motion.
 
-        It is the whole preload of a spring named by its `load`; without a name, what a constant force along the
-        follower has to add, zero where nothing. Raises UnknownName for a spring that there is not, InvalidInput with
+        It is the whole preload of a spring named by its `load`; without a name, of a constant force along the
+        follower, zero where none is needed. Raises UnknownName for an unknown spring, InvalidInput with
         friction, and for a follower that does not move straight.
         """
         self._hold_linear()
@@ -362,7 +362,7 @@ class LiftOff(ShortRepr):
         return self.forces.solving_order.pairs[self.name]
 
     def _normal(self, motion: Motion, loads: Loads) -> Number:
-        """Return what loads on links do along the normal, (designs, poses)."""
+        """Return the normal force of loads on links, (designs, poses)."""
         found = np.zeros(motion.failed.shape)
         with np.errstate(all="ignore"):
             for loaded in loaded_blocks(motion):
@@ -405,7 +405,7 @@ class LiftOff(ShortRepr):
 
 
 def lift_off(forces: ForceResult, name: str) -> LiftOff:
-    """Return where a contact lets go. Raises UnknownName for a pair that is no contact."""
+    """Return the lift-off of a contact. Raises UnknownName for another pair."""
     pair = forces.solving_order.pairs[name]
     if as_contact(pair) is None:
         known = [own.name for own in forces.solving_order.pairs.values() if as_contact(own)]
@@ -419,7 +419,7 @@ def _inertia(loaded: LoadedBlock) -> dict[str, Wrench]:
 
 
 def _spring(motion: Motion, name: str) -> Spring | PairSpring:
-    """Return a spring by its name, as one that acts both ways. Raises UnknownName for what has no preload."""
+    """Return a spring by its name, acting in both directions. Raises UnknownName for a load without preload."""
     known = {key: spring for key, load in motion.mechanism.loads.items() if (spring := as_spring(load))}
     if name not in known:
         raise UnknownName(Problem(name, "there is no such spring", suggestion(name, list(known))))
@@ -427,7 +427,7 @@ def _spring(motion: Motion, name: str) -> Spring | PairSpring:
 
 
 def _unit_preload(spring: Spring | PairSpring, loaded: LoadedBlock) -> dict[str, Wrench]:
-    """Return what a unit of preload does to links. It is the difference that one makes."""
+    """Return the wrenches on links by a unit of preload."""
     found: dict[str, Wrench] = {}
     for one, sign in ((replace(spring, preload=spring.preload + 1.0), 1.0), (spring, -1.0)):
         for link, wrench in one.wrenches(loaded):
@@ -435,7 +435,7 @@ def _unit_preload(spring: Spring | PairSpring, loaded: LoadedBlock) -> dict[str,
     return found
 
 
-# A force below this part of itself and what it is a part of is rounding.
+# A component below this part of the whole force is rounding.
 ROUNDING = 1e-12
 
 
@@ -451,7 +451,7 @@ class GuideContacts(NamedTuple):
 
 
 def component_words(pair: Pair) -> tuple[str, ...]:
-    """Return the words of what a pair's force has beside force and moment."""
+    """Return the words of a pair's components besides force and moment."""
     words = list(pair.force_words)
     if NORMAL in words and TANGENTIAL in words:
         words.append(NEEDED_FRICTION)
@@ -490,7 +490,7 @@ def _flank(of: ForceComponents) -> Number:
 
 
 def _pull(side: float, of: ForceComponents) -> Number:
-    """Return the pull of a strand, from the sum of both, which the force tells, and their difference."""
+    """Return the pull of a belt span from the sum and the difference of both."""
     pair = as_belt_drive(of.pair)
     assert pair is not None
     one, two = pair.strands(of.ends, of.poses)

@@ -60,7 +60,7 @@ def all_reactions(at: LoadedBlock, loads: Mapping[str, Wrench]) -> Reactions:
 
 
 def accompanying(at: LoadedBlock, found: Reactions) -> dict[str, Wrench]:
-    """Return what comes with forces in pairs and does no work. It is on second members, by the pairs' names."""
+    """Return the workless forces that accompany those in pairs, on second members, by the pairs' names."""
     beside: dict[str, Wrench] = {}
     pretensions = at.motion.mechanism.pretensions
     for name, wrench in found.pairs.items():
@@ -78,7 +78,7 @@ def reverse_pass(order: SolvingOrder, block: Block, loads: Mapping[str, Wrench])
     They are linear in the loads: without those that come with others and do no work.
     """
     block = block.leading()
-    # what would turn rollers is left aside
+    # without moments on rollers
     on = {link: without_free_turning(order.structure, block, link, wrench) for link, wrench in loads.items()}
     found: dict[str, Wrench] = {}
     for solver in reversed(order.solvers):
@@ -93,14 +93,14 @@ def reverse_pass(order: SolvingOrder, block: Block, loads: Mapping[str, Wrench])
 
 
 def _add(on: dict[str, Wrench], pair: Pair, wrench: Wrench) -> None:
-    """Add what a pair does to its two links. A carrier is passed by."""
+    """Add the wrench of a pair to its two links; a carrier is skipped."""
     first, second = pair.members[:2]
     on[second] = on.get(second, Wrench()) + wrench
     on[first] = on.get(first, Wrench()) - wrench
 
 
 def _cut_at_drivers(body: Body, on: dict[str, Wrench], found: dict[str, Wrench]) -> None:
-    """Find what each driven pair of a composite link passes on, from its ends to its base."""
+    """Find the wrench in each driven pair of a composite link, from its ends to its base."""
     for step in reversed(body.driven):
         held = -on.get(step.link, Wrench())
         wrench = held if step.link == step.pair.members[1] else -held
@@ -111,7 +111,7 @@ def _cut_at_drivers(body: Body, on: dict[str, Wrench], found: dict[str, Wrench])
 # A force is determined where no state has more than this part of its own greatest force there: dimensions that make a
 # mechanism move though it is overconstrained are given to some five digits.
 NEGLIGIBLE_PART = 1e-4
-# Forces of several states are along one line where their squares say so to this.
+# Forces of several states are along one line where the sum of their squares is, to this part.
 ALIGNED = 1e-6
 
 
@@ -127,7 +127,7 @@ class UndeterminedPart(NamedTuple):
 class SelfStress:
     """The states of self-stress of a motion. Each has the wrench on the second member of every pair by its name.
 
-    They are for a unit of what was left out, `freed`: that is a force of `units`.
+    Each is for a unit of the part in `freed`: a force of `units`.
     """
 
     motion: Motion
@@ -136,7 +136,7 @@ class SelfStress:
     units: tuple[float, ...]
 
     def open(self, parts: Sequence[tuple[str, float]], place: Number) -> UndeterminedPart:
-        """Return what is open of a sum of wrenches. Its moment is about a place."""
+        """Return the undetermined part of a sum of wrenches, with the moment about a place."""
         shape = self.motion.failed.shape
         forces, moments = [np.zeros(shape, dtype=complex)], [np.zeros(shape)]
         for state, greatest in zip(self.states, self._greatest, strict=True):
@@ -151,14 +151,14 @@ class SelfStress:
         is_line = (size > 0.0) & (np.abs(squares) > (1.0 - ALIGNED) * size**2)
         with np.errstate(all="ignore"):
             line = np.sqrt(squares) / np.where(is_line, size, np.nan)
-        # so is what is not known of a pose at which the states themselves are singular
+        # states that are singular at a pose leave its forces undetermined
         closed = self.motion.failed == 0
         return UndeterminedPart(
             closed & ~(size <= NEGLIGIBLE_PART), closed & ~(np.max(np.abs(moments), axis=0) <= NEGLIGIBLE_PART), line
         )
 
     def sharing(self, pair: str) -> tuple[tuple[str, ...], tuple[Dropped, ...]]:
-        """Return the other pairs in the states of a pair. With them, what was left out there."""
+        """Return the other pairs in the states of self-stress of a pair, and the parts left out in these states."""
         found, freed = dict[str, None](), dict[str, Dropped]()
         for state, greatest, dropped in zip(self.states, self._greatest, self.freed, strict=True):
             there = [
@@ -198,7 +198,7 @@ def self_stress(motion: Motion) -> SelfStress:
     states: dict[int, dict[str, Wrench]] = {}
     for (number, name), wrench in store.wrenches().items():
         states.setdefault(number, {})[name] = wrench
-    # a state without any force is that of a coordinate which the part that was kept holds too
+    # a state without any force is that of a coordinate that the remaining part constrains too
     there = [
         number
         for number, (_, unit) in units.items()
@@ -217,14 +217,14 @@ def as_force(motion: Motion, pair: str, wrench: Wrench) -> Number:
 
 
 def _units(at: LoadedBlock, parts: Sequence[LeftOut]) -> Iterator[tuple[LeftOut, Wrench]]:
-    """Yield units of what was left out, on the second link."""
+    """Yield unit wrenches of the parts left out, on the second link."""
     for part in parts:
         kept, (pair, _) = part.dropped.kept, part.way[0]
         if part.dropped.off and kept is not None:
             # a pin in a slot: along the slot
             yield part, _unit_wrenches(at, kept)[-1]
         else:
-            # what the kept part holds does nothing to the others
+            # the remaining part does not load the others
             yield from ((part, unit) for unit in _unit_wrenches(at, pair)[: pair.held])
 
 
@@ -247,12 +247,12 @@ class LeftOut:
 
 
 def parts_left_out(structure: Structure) -> tuple[LeftOut, ...]:
-    """Return what was left out of an overconstrained mechanism's pairs."""
+    """Return the parts left out of an overconstrained mechanism's pairs."""
     return tuple(_left_out(structure, one) for one in structure.relaxation.dropped) if structure.relaxation else ()
 
 
 def own_wrenches(structure: Structure, wrenches: Mapping[str, Wrench], shape: tuple[int, int]) -> dict[str, Wrench]:
-    """Return the wrenches of a mechanism's own pairs. What was kept of a pair is the force in it.
+    """Return the wrenches of a mechanism's own pairs; of a partly used pair that of the used part.
 
     Pairs without any have zeros of a shape.
     """

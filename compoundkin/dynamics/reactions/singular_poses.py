@@ -1,7 +1,7 @@
 """Poses at which a group is singular: whether its forces are finite there, without limit, or left open.
 
-At a change point the equations of a group leave its forces open, though beside it they are determined. What they come
-to from both sides is taken there. At a limit position forces grow without limit unless the loads let go.
+At a change point the equations of a group do not determine its forces, though they do nearby; the limit from both sides
+is taken. At a limit position forces grow without limit unless the loads vanish.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class SingularPose:
     """A pose at which forces follow from the equations of a group no more.
 
     `pose` is the index into the motion's shape, `kind` "change point" or "limit position", `links` those of the groups.
-    `forces` are "finite", what they come to from the poses beside it; "infinite", then those that are so are NaN; or
+    `forces` are "finite", the limit from neighbouring poses; "infinite", then these are NaN; or
     "undetermined", where that differs by side.
     """
 
@@ -116,7 +116,7 @@ class _Beside:
 
     @classmethod
     def of(cls, motion: Motion, at: tuple[Number, Number], found: WrenchesOf) -> _Beside:
-        """Find the wrenches. Beside limit positions all goes by the root of the distance."""
+        """Compute the wrenches; near limit positions they depend on the root of the distance."""
         powers, last = np.arange(1.0, PLACES + 1.0), motion.inputs.poses - 1
         is_limit = ~motion.regular[at] if motion.order else np.zeros(len(at[0]), dtype=bool)
         steps = np.where(is_limit[:, None], powers**2, powers)
@@ -166,7 +166,7 @@ def _parts(wrench: Wrench, size: float, shape: tuple[int, ...]) -> Number:
 
 
 def _extrapolated(values: Number) -> Number:
-    """Return what the polynomial through equidistant places 1, 2 ... has at 0. Places are the axis before the last."""
+    """Return the value at 0 of the polynomial through equidistant places 1, 2 ..., the axis before the last."""
     count = values.shape[-2]
     weights = np.array([(-1.0) ** k * comb(count, k + 1) for k in range(count)])
     return np.asarray(np.sum(weights[:, None] * values, axis=-2))

@@ -15,7 +15,7 @@ from compoundkin.dynamics.reactions.reverse_pass import UndeterminedPart
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.parts import Dropped
 
-# A force is along a line of a link where it is at every pose to so much of an angle.
+# The angle within which a force is along a line of a link at every pose.
 ALONG = 1e-3
 
 
@@ -40,7 +40,7 @@ class Undetermined:
 
 
 def undetermined_forces(forces: ForceResult) -> tuple[Undetermined, ...]:
-    """Return what equilibrium leaves open of the forces in all pairs."""
+    """Return the undetermined parts of the forces in all pairs."""
     if not forces.relaxed:
         return ()
     held = {name: PairForce(forces, forces.solving_order.pairs[name]) for name in forces.wrenches}
@@ -54,7 +54,7 @@ def _parts(forces: ForceResult, held: PairForce, left: UndeterminedPart) -> Iter
     if np.any(left.force):
         part = _direction(forces, held.pair, left)
         yield Undetermined(held.name, part, others, freed, line, shown(left.force))
-    # that of a single force goes with it
+    # the moment of a single force is undetermined with it
     if np.any(left.moment) and held.pair.held_angles:
         part = f"the moment about {held.at}"
         yield Undetermined(held.name, part, others, freed, UNKNOWN_VECTOR + 0.0 * line, shown(left.moment))

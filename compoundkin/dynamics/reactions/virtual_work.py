@@ -1,7 +1,8 @@
 """Efforts by virtual work, without reactions: of drivers, and of a pair that holds in the place of the driver.
 
 When one driver alone moves at unit rate, the work of all that acts on the links is that of its effort. Unit rates make
-dwells like other poses. Reactions do no work, so that this checks the reverse pass; friction does some, and is not in it.
+dwells like other poses. Reactions do no work, so that this checks the reverse pass; friction does some, and is not in
+it.
 
 Source: the principle of virtual work, e.g. R. L. Norton, Design of Machinery, section 11.10.
 """
@@ -53,7 +54,7 @@ def work(wrenches: Mapping[str, Wrench], moving: LoadedBlock) -> Number:
 
 
 def free_wrenches(at: LoadedBlock, inertia: bool) -> dict[str, Wrench]:
-    """Return what is known to act on every link."""
+    """Return the known wrench on every link."""
     return {link: at.freed(link, wrench) for link, wrench in at.known(inertia).items()}
 
 
@@ -83,7 +84,7 @@ class HoldingEffort(ShortRepr):
 
     @property
     def power(self) -> Number:
-        """Effort times rate: what the driver would give."""
+        """Effort times rate: the power that the driver would give."""
         with np.errstate(all="ignore"):
             return self.effort * self.motion.grid.shaped(self.rate) * self.motion.drives[self.instead_of].rate
 
@@ -102,7 +103,7 @@ def is_resting(rate: Number) -> Number:
 def holding_effort(motion: Motion, inertia: bool, name: str) -> HoldingEffort:
     """Return the effort by which a pair, a pin or a driver holds.
 
-    Raises UnknownName for a name that there is not, InvalidInput for a pair along which nothing acts, with friction,
+    Raises UnknownName for an unknown name, InvalidInput for a pair without a coordinate, with friction,
     and where not just one driver moves.
     """
     _check_holding_pair(motion, name)
@@ -119,7 +120,7 @@ def holding_effort(motion: Motion, inertia: bool, name: str) -> HoldingEffort:
 
 
 def holding_wrenches(motion: Motion, held: HoldingEffort) -> Iterator[LinkWrench]:
-    """Yield what the effort does to both links of its pair."""
+    """Yield the wrenches of the effort on both links of its pair."""
     store: JoinedWrenches[tuple[str, str]] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
         for at in loaded_blocks(motion):

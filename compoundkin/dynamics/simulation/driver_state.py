@@ -1,4 +1,4 @@
-"""A state of a mechanism by its drivers: the terms of its equation of motion, its accelerations, its loads and quantities."""
+"""A state of a mechanism by its drivers: its equation of motion, accelerations, loads and quantities."""
 
 from __future__ import annotations
 
@@ -172,8 +172,8 @@ class TrueRates(dict[str, Pose]):
 class LoadedState(LoadedBlock):
     """A single pose as loads see it, and their forces along each of `count` coordinates.
 
-    The rates of each pose of `columns` are those at unit rate of every coordinate, and last the true ones; the block has
-    the true ones alone. `turns` adds to an angle of a pair its full turns.
+    The rates of each pose of `columns` are those at unit rate of every coordinate, and last the true ones; the block
+    has the true ones alone. `turns` adds to an angle of a pair its full turns.
     """
 
     columns: dict[str, Pose] | None = None

@@ -62,8 +62,8 @@ def simulate(
 ) -> Simulation:
     """Simulate a mechanism under its masses and loads until a time in seconds.
 
-    The coordinates of its drivers are the unknowns. `start` gives each its value (radians, lengths) or (value, speed), a
-    single driver without its name; by default they rest at the drawn pose, else at the first. Drivers with a law are
+    The coordinates of its drivers are the unknowns. `start` gives each its value (radians, lengths) or (value, speed),
+    a single driver without its name; by default they rest at the drawn pose, else at the first. Drivers with a law are
     `prescribed`, and so are those to which the call gives a law, a function of time, or a constant value. `modes` are
     those of `solve`.
 

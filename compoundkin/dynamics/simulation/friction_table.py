@@ -1,7 +1,8 @@
 """One free driver with Coulomb friction: accelerations at which the driver has no effort, and where it sticks.
 
 Normal forces are affine in the acceleration at a given pose and speed, so that two of them determine all; friction
-follows from the normal forces by Coulomb's law, and the acceleration is the one at which no effort is left to the driver.
+follows from the normal forces by Coulomb's law, and the acceleration is the one at which no effort is left to the
+driver.
 """
 
 from __future__ import annotations
@@ -111,7 +112,7 @@ class FrictionTable(TabulatedChart):
         return -1.0 if efforts[0] is not None and efforts[0] > 0.0 else 0.0
 
     def released(self, time: float, values: Number, until: float) -> float:
-        """Return the time at which friction releases the driver, by loads that depend on time; at the latest the end."""
+        """Return the time at which loads overcome friction at rest, at the latest the end."""
         if not self.has_others:
             return until
 

@@ -1,1 +1,1 @@
-"""Goals and constraints of an optimisation, which have values and slopes along a motion or at driver values of their own."""
+"""Goals and constraints of an optimisation, with values and slopes along a motion or at driver values of their own."""

@@ -91,7 +91,8 @@ def _bound(where: str, name: str, value: float, sign: int) -> FigureBound:
 def at_least(name: str, value: float) -> DesignConstraint:
     """Return the constraint that a figure is at least a value.
 
-    For a quantity at every pose and between. Angles are in radians. Raises InvalidInput for a number that is not finite.
+    For a quantity at every pose and between. Angles are in radians. Raises InvalidInput for a number that is not
+    finite.
 
     >>> at_least("ram.displacement.stroke", 60.0).description
     'ram.displacement.stroke at least 60'
@@ -103,7 +104,8 @@ def at_least(name: str, value: float) -> DesignConstraint:
 def at_most(name: str, value: float) -> DesignConstraint:
     """Return the constraint that a figure is at most a value.
 
-    For a quantity at every pose and between. Angles are in radians. Raises InvalidInput for a number that is not finite.
+    For a quantity at every pose and between. Angles are in radians. Raises InvalidInput for a number that is not
+    finite.
 
     >>> at_most("crank.effort", 120.0).description
     'crank.effort at most 120'
@@ -115,7 +117,8 @@ def at_most(name: str, value: float) -> DesignConstraint:
 def transmits(link: str, least: float) -> DesignConstraint:
     """Return the constraint of a least transmission angle in the dyad that moves a link.
 
-    Radians, folded to 0 to pi / 2, where a right angle is best. Raises InvalidInput for an angle outside this range. Source: H. Alt, 1932.
+    Radians, folded to 0 to pi / 2, where a right angle is best. Raises InvalidInput for an angle outside this range.
+    Source: H. Alt, 1932.
 
     >>> transmits("rocker", 0.7).description
     'rocker.transmission_angle at least 40.107 deg'
@@ -195,8 +198,8 @@ class DistanceConstraint(DesignConstraint):
 def distance(one: str, other: str, *, at_least: float | None = None, at_most: float | None = None) -> DesignConstraint:
     """Return the constraint that the distance of two points is within bounds at all poses.
 
-    For points of one link it is a length, of a bar or between two pivots. Raises InvalidInput for invalid bounds, and for
-    none.
+    For points of one link it is a length, of a bar or between two pivots. Raises InvalidInput for invalid bounds, and
+    for none.
 
     >>> distance("A", "B", at_least=5.0, at_most=60.0).description
     'A from B at least 5 and at most 60'
@@ -219,7 +222,7 @@ MARGIN = 0.05
 
 @dataclass(frozen=True)
 class AssemblyConstraint(DesignConstraint):
-    """The least transmission index of every group is above a margin, along the motion or over a full turn of a driver."""
+    """The transmission index of every group is above a margin, along the motion or over a full turn."""
 
     margin: float = MARGIN
     turned: bool = False
@@ -295,8 +298,8 @@ def full_turn(driver: str | None = None, margin: float = MARGIN) -> DesignConstr
     """Return the constraint that a driver can make a full turn.
 
     Independent of the range of the motion; all other drivers stay where the motion begins. For a four-bar it is
-    Grashof's condition, with the driver on the shortest link or the frame the shortest. Raises InvalidInput for a margin
-    outside 0 to 1.
+    Grashof's condition, with the driver on the shortest link or the frame the shortest. Raises InvalidInput for a
+    margin outside 0 to 1.
 
     >>> full_turn("crank").description
     'a full turn of the driver'

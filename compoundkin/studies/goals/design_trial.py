@@ -39,7 +39,7 @@ class DesignTrial(ShortRepr):
         return tuple(self.designs.inputs.drives)
 
     def values(self, name: str) -> Number:
-        """Return the values of an output: (designs,) of a figure, (designs, poses) of a course; NaN where not assembled."""
+        """Return an output: (designs,) of a figure, (designs, poses) of a course; NaN where not assembled."""
         return self.responses[name].values(self.designs)
 
     def slopes(self, name: str) -> Number:

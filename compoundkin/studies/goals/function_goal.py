@@ -103,7 +103,8 @@ def function(output: str, wanted: object, *, driver: str | None = None, free_zer
     """Return the goal that an output is a function of the driver.
 
     `wanted` are pairs (driver value, output), or a function of the driver's values at the poses of the motion; radians
-    for angles. With `free_zero` only changes of the output count. Raises InvalidInput for other objects. Source: F. Freudenstein 1955, of four-bars.
+    for angles. With `free_zero` only changes of the output count. Raises InvalidInput for other objects. Source: F.
+    Freudenstein 1955, of four-bars.
 
     >>> function("rocker.angle", [(0.0, 0.1), (0.2, 0.15), (0.4, 0.28)]).description
     'rocker.angle as 3 values of the driver'

@@ -52,8 +52,8 @@ class Term(ABC):
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return the names of the outputs that it needs of a trial.
 
-        `motion` is that of the original mechanism. Raises InvalidInput for a goal that does not fit it, such as a target
-        with another number of poses.
+        `motion` is that of the original mechanism. Raises InvalidInput for a goal that does not fit it, such as a
+        target with another number of poses.
         """
 
     def unknowns(self, motion: Motion) -> tuple[GoalUnknown, ...]:
@@ -61,7 +61,7 @@ class Term(ABC):
         return ()
 
     def guesses(self, trial: DesignTrial) -> Number:
-        """Return initial unknowns of each design (designs, unknowns), by default those of the sample, `trial.unknowns`."""
+        """Return initial unknowns (designs, unknowns), by default those of the sample, `trial.unknowns`."""
         return trial.unknowns
 
     def has_slopes(self, trial: DesignTrial) -> bool:

@@ -138,9 +138,9 @@ def straight_line(point: str, between: object = None, *, angle: float | None = N
     """Return the goal that a point goes along a straight line.
 
     Between two values of the driver, or over all poses. The squared distances from the line of best fit are summed;
-    `angle` fixes its direction (radians). Combine it with a length, `at_least("G.x.stroke", 20)`: a point at rest has no
-    distance from a line. Raises InvalidInput for an invalid stretch. Source of the fit: K. Pearson,
-    Phil. Mag. 2 (1901) 559-572.
+    `angle` fixes its direction (radians). Combine it with a length, `at_least("G.x.stroke", 20)`: a point at rest has
+    no distance from a line. Raises InvalidInput for an invalid stretch. Source of the fit: K. Pearson, Phil. Mag. 2
+    (1901) 559-572.
 
     >>> straight_line("G", (1.0, 2.0)).description
     'G along a straight line between 1 and 2'
@@ -186,7 +186,10 @@ class DriverStretch:
 
 
 def driver_stretch(where: str, between: object, driver: str | None) -> DriverStretch:
-    """Return the stretch between two values of a driver, by default the whole motion. Raises InvalidInput for other objects."""
+    """Return the stretch between two values of a driver, by default the whole motion.
+
+    Raises InvalidInput for other objects.
+    """
     if between is None:
         return DriverStretch(where, None, driver)
     try:

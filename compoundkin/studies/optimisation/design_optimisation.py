@@ -1,4 +1,4 @@
-"""Optimisation of dimensions: the problem checked against the mechanism, the search from many starts, and its result."""
+"""Optimisation of dimensions: the checked problem, the search from many starts, and its result."""
 
 from __future__ import annotations
 
@@ -59,19 +59,19 @@ def optimise(
     method: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Optimum:
-    """Return the mechanism with better dimensions: those at which an objective is least.
+    """Return the mechanism with the dimensions that minimise an objective.
 
     `free` has the ranges of dimensions by name, `objective` is a goal of `ck.goals`, a sum of goals by weights, or the
-    name of a figure that shall be least; `subject_to` are constraints of `ck.goals`. `values`, rates, `time` and
-    `modes` are those of `solve`: the motion along which goals ask. Lengths are in the mechanism's unit, angles radians.
+    name of a figure to minimise; `subject_to` are constraints of `ck.goals`. `values`, rates, `time` and
+    `modes` are those of `solve` and define the motion. Lengths are in the mechanism's unit, angles radians.
 
-    Many designs are looked at, searches begin at the best `starts` of them, and the best ends are refined by a method
+    Many designs are sampled, searches begin at the best `starts` of them, and the best ends are refined by a method
     of SciPy: "least_squares", "SLSQP", "trust-constr" or "differential_evolution", by default the one that fits. The
-    answer is the same for a `seed`. `progress(done, total)` is told of every step.
+    result is reproducible for a `seed`. `progress(done, total)` is called after every step.
 
-    Raises UnknownName for dimensions and figures that there are not, InvalidInput for what does not fit the mechanism,
+    Raises UnknownName for unknown dimensions and figures, InvalidInput for arguments that do not fit the mechanism,
     NotAssembled where no design within the ranges is assembled; warns UnmetConstraints where they hold nowhere,
-    UnassembledPoses where the best design goes through all that is asked, and is lost in between.
+    UnassembledPoses where the best design is not assembled between the poses of its goals.
 
     >>> from compoundkin.files import shipped_mechanisms
     >>> from compoundkin.studies.goals.value_goals import least
@@ -93,7 +93,7 @@ def optimise(
 
 
 def _warn(found: Optimum) -> None:
-    """Warn of an answer that is not what was asked, or cannot be made."""
+    """Warn of violated constraints, and of a design that cannot be assembled or verified."""
     if not found.is_held:
         broken = [one.description for one in found.constraints if not one.is_held]
         warn(f"no design was found at which all constraints hold: not {', '.join(broken)}", UnmetConstraints)
@@ -102,21 +102,21 @@ def _warn(found: Optimum) -> None:
         remedy = "subject_to=compoundkin.goals.assembles() leads to one that can"
         warn(f"the design that was found cannot be assembled all along the motion; {remedy}", UnassembledPoses)
     if found.is_whole and not found.check.passed:
-        # so near to a limit position the motion goes on in another branch, or not, by how its poses lie
+        # near a limit position the branch of the motion depends on its poses
         failed = ", ".join(found.check.failed)
         remedy = "subject_to=compoundkin.goals.assembles() keeps clear of limit positions"
         warn(f"the design that was found does not pass its verification ({failed}); {remedy}", UnassembledPoses)
 
 
 def _check_search_numbers(starts: int, seed: int) -> None:
-    """Raise InvalidInput for numbers that no search can begin with."""
+    """Raise InvalidInput for an invalid number of starts or seed."""
     if not 1 <= starts <= MOST_STARTS:
         raise InvalidInput(Problem("starts", f"{starts} is no number of starts", f"1 to {MOST_STARTS}"))
     if seed < 0:
         raise InvalidInput(Problem("seed", f"{seed} is no seed", "0 or more"))
 
 
-# More starts than that would not all be assembled designs of those that are looked at.
+# With more starts not all of them would be assembled designs of the sample.
 MOST_STARTS = 1 << 12
 
 
@@ -127,9 +127,9 @@ def stated_problem(
     constraints: tuple[DesignConstraint, ...],
     **moved: Any,
 ) -> DesignProblem:
-    """Return the problem, with the paths of all that is asked.
+    """Return the problem, with the compiled paths of all goals and constraints.
 
-    `moved` is what `solve` is told of the motion: values, modes, rates. Raises what `solve` and `compile` raise, and
+    `moved` are the arguments of `solve`: values, modes, rates. Raises what `solve` and `compile` raise, and
     InvalidInput for goals that do not fit the motion.
     """
     if not free:
@@ -178,7 +178,7 @@ def _paths(
 
 
 def _ranges(start: int, unknowns: Sequence[tuple[GoalUnknown, ...]]) -> list[range]:
-    """Return which numbers of the space are each term's own."""
+    """Return the indices in the space of each term's unknowns."""
     found = []
     for own in unknowns:
         found.append(range(start, start + len(own)))
@@ -187,33 +187,33 @@ def _ranges(start: int, unknowns: Sequence[tuple[GoalUnknown, ...]]) -> list[ran
 
 
 def checked_goals(objective: object) -> Goal | GoalSum:
-    """Return what shall be least, a figure by its name too. Raises InvalidInput for anything else."""
+    """Return the goals, also for the name of a figure. Raises InvalidInput for other objects."""
     if isinstance(objective, str):
         return least(objective)
     if isinstance(objective, Goal | GoalSum):
         return objective
     remedy = 'give a goal, such as ck.goals.path("G", points), or the name of a figure, "G.velocity.length.greatest"'
-    raise InvalidInput(Problem("objective", f"{short_repr(objective)} is nothing that could be least", remedy))
+    raise InvalidInput(Problem("objective", f"{short_repr(objective)} is not an objective", remedy))
 
 
 def checked_constraints(subject_to: object) -> tuple[DesignConstraint, ...]:
-    """Return the constraints; raises InvalidInput for what is none."""
+    """Return the constraints; raises InvalidInput for other objects."""
     if isinstance(subject_to, DesignConstraint):
         return (subject_to,)
     found = tuple(subject_to) if isinstance(subject_to, Sequence) and not isinstance(subject_to, str) else (subject_to,)
     for place, one in enumerate(found):
         if not isinstance(one, DesignConstraint):
             remedy = "give constraints of ck.goals"
-            raise InvalidInput(Problem(f"subject_to[{place}]", f"{short_repr(one)} is no constraint", remedy))
+            raise InvalidInput(Problem(f"subject_to[{place}]", f"{short_repr(one)} is not a constraint", remedy))
     return found
 
 
-# What ends so near to a bound, or to the end of a margin, as a part of its range or size, is bound by it.
+# A bound or constraint is active within this part of the range or of the margin's size.
 AT_END = 1e-4
 
 
 def optimum_of_search(search: DesignSearch, ends: list[EndedSearch], moved: Mapping[str, Any], began: float) -> Optimum:
-    """Return what a search has found. `moved` is what `solve` is told of the motion."""
+    """Return the result of a search. `moved` are the arguments of `solve`."""
     problem, begun = search.problem, search.begun
     best = problem.at(ends[0].parts)
     minima = tuple(_minimum(problem, one, moved) for one in ends if one.is_refined or one is ends[0])
@@ -255,7 +255,7 @@ def _search_ends(starts: int, ends: list[EndedSearch]) -> Number:
 
 
 def _value_before(problem: DesignProblem) -> float:
-    """Return the objective of the mechanism as it stands, perhaps outside the bounds."""
+    """Return the objective of the original mechanism, perhaps outside the bounds."""
     space = problem.space
     parts = space.parts(problem.own_dimensions, inside=False)[None, :]
     return float(problem.at(problem.guessed(parts)).values[0])
@@ -292,7 +292,7 @@ def _held_constraints(problem: DesignProblem, best: SearchedDesigns, scales: Num
 
 
 def _unit(problem: DesignProblem, term: Term) -> str:
-    """Return the unit of a term: its own, or that of what it asks."""
+    """Return the unit of a term: its own, or that of its outputs."""
     reference = problem.path.reference
     units = {quantity(reference, name).unit for name in term.outputs(reference)}
     return term.unit or (units.pop() if len(units) == 1 else "")

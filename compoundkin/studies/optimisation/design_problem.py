@@ -1,4 +1,4 @@
-"""An optimisation as numbers: goals and constraints over a space of free dimensions between bounds, scaled to 0 to 1."""
+"""An optimisation as numbers: goals and constraints over free dimensions between bounds, scaled to 0 to 1."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ AnyTerm = TypeVar("AnyTerm", bound=Term)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ObjectiveTerm(ShortRepr, Generic[AnyTerm]):
-    """A goal or a constraint with the path that it asks. `own` are the numbers of the space that are its unknowns."""
+    """A goal or a constraint with its compiled path; `own` are the indices of its unknowns in the space."""
 
     term: AnyTerm
     path: StudiedPath
@@ -44,7 +44,7 @@ ConstraintSpec: TypeAlias = ObjectiveTerm[DesignConstraint]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DesignProblem(ShortRepr):
-    """Goals and constraints over a space. `count` is of the designs that were looked at."""
+    """Goals and constraints over a space; `count` is the number of evaluated designs."""
 
     space: SearchSpace
     goals: tuple[GoalSpec, ...]
@@ -68,13 +68,13 @@ class DesignProblem(ShortRepr):
 
     @cached_property
     def own_dimensions(self) -> dict[str, Number]:
-        """The free dimensions as they stand."""
+        """The free dimensions of the original mechanism."""
         programs = self.path.compiled.programs
         return {one.name: programs.stated.own(one) for one in programs.dimensions}
 
     @property
     def own_parts(self) -> Number:
-        """The design as it stands, within the bounds, (1, numbers)."""
+        """The original design, clipped to the bounds, (1, numbers)."""
         return self.space.parts(self.own_dimensions)[None, :]
 
     @cached_property
@@ -90,7 +90,7 @@ class DesignProblem(ShortRepr):
         return found
 
     def guessed(self, parts: Number) -> Number:
-        """Return the same designs, with the unknowns that goals say are good."""
+        """Return the same designs with the initial unknowns of their goals."""
         if self.space.own == self.space.size:
             return parts
         found, trials = parts.copy(), self.at(parts)
@@ -103,7 +103,7 @@ class DesignProblem(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SearchedDesigns(ShortRepr):
-    """Some designs of a search; what is computed of them is computed once. NaN where they are not assembled."""
+    """Some designs of a search, with results computed once; NaN where they are not assembled."""
 
     problem: DesignProblem
     parts: Number
@@ -156,14 +156,14 @@ class SearchedDesigns(ShortRepr):
         return np.isfinite(self.values) & np.isfinite(self.margins).all(axis=1)
 
     def trial(self, one: GoalSpec | ConstraintSpec) -> DesignTrial:
-        """Return the designs as a goal or constraint sees them."""
+        """Return the trial designs of a goal or constraint."""
         if one not in self._trials:
             own = self.problem.space.numbers(self.parts)[:, one.own]
             self._trials[one] = DesignTrial(self.designs(one.path), one.responses, own)
         return self._trials[one]
 
     def designs(self, path: StudiedPath) -> Designs:
-        """Return the designs of a path, the same for all that ask it."""
+        """Return the designs of a path, shared by its terms."""
         if path not in self._designs:
             self._designs[path] = path.designs(self._dimensions)
         return self._designs[path]
@@ -193,10 +193,10 @@ class SearchedDesigns(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SearchSpace(ShortRepr):
-    """All numbers that a search changes.
+    """All numbers that a search changes, scaled to parts of their ranges.
 
-    It sees them in parts of their ranges, so that all are of one size. `names` are the coordinates, two of a point,
-    and then the unknowns; `dimensions` tell which coordinates each free dimension is.
+    `names` are the coordinates, two of a point, and then the unknowns; `dimensions` has the indices of the coordinates
+    of each free dimension.
     """
 
     dimensions: Mapping[str, tuple[int, ...]]
@@ -253,10 +253,7 @@ class SearchSpace(ShortRepr):
         }
 
     def parts(self, dimensions: Mapping[str, Number], inside: bool = True) -> Number:
-        """Return one design as parts of the ranges, within the bounds or not.
-
-        All unknowns are in the middle of theirs.
-        """
+        """Return one design as parts of the ranges, clipped if `inside`; unknowns are in the middle."""
         numbers = self.numbers(np.full(self.size, 0.5))
         for name, at in self.dimensions.items():
             value = dimensions[name]
@@ -270,7 +267,7 @@ def _ends(name: str, variation: Variation) -> tuple[list[float], list[float]]:
     low, high = ([one.real, one.imag][: variation.coordinates] for one in map(complex, variation.ends))
     where, remedy = f"free.{name}", "give a range (40, 60)"
     if not np.isfinite(low + high).all():
-        raise InvalidInput(Problem(where, "its values have no ends", remedy))
+        raise InvalidInput(Problem(where, "its values are unbounded", remedy))
     if any(a >= b for a, b in zip(low, high, strict=True)):
         raise InvalidInput(Problem(where, "its range has no width", "leave it out where it is not free"))
     beside = np.array([0.5, 0.5 + SIDE])[:, None] * np.ones(variation.coordinates)

@@ -30,21 +30,21 @@ from compoundkin.studies.optimisation.simultaneous_descent import STEPS, descend
 from compoundkin.studies.responses.assembled_range import failed_name
 from compoundkin.studies.samples.sobol import SobolSample
 
-# Of the ends of searches led on at once so many different ones are refined, the best.
+# The number of best distinct ends of the simultaneous descent that are refined.
 REFINED = 8
-# So many where slopes are differences, which take long.
+# The number where slopes are differences, which take long.
 BY_DIFFERENCES = 2
-# Before that, violations of constraints below this part of their size do not matter: refinement ends them.
+# Before refinement, violations of constraints below this part of their size are accepted.
 NEARLY = 1e-2
-# Ends that violate constraints by more than this part of their size do not come to hold them.
+# Ends that violate constraints by more than this part of their size are not refined.
 FAR = 0.2
-# Progress is told in so many parts; so many of them are told when the starts are known, and when they were led on.
+# Parts of progress: all, after sampling, after the descent.
 PARTS, STARTED, LED = 100, 10, 50
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DesignSearch(ShortRepr):
-    """A search from many starts, the same for a seed. `progress` is told of its parts."""
+    """A search from many starts, reproducible for a seed; `progress` is called with its parts."""
 
     problem: DesignProblem
     starts: int
@@ -59,12 +59,12 @@ class DesignSearch(ShortRepr):
 
     @cached_property
     def begun(self) -> StartingDesigns:
-        """Where its searches begin."""
+        """The starts of its searches."""
         return starting_designs(self.problem, self.starts, self.seed, self.problem.own_parts)
 
     @property
     def leads_on(self) -> bool:
-        """Whether all starts are led on at once, before the best ends are refined."""
+        """Whether all starts descend together before the best ends are refined."""
         return self.word == EVOLUTION or self.problem.has_slopes
 
     def ends(self) -> list[EndedSearch]:
@@ -87,13 +87,13 @@ class DesignSearch(ShortRepr):
         return [replace(one, is_refined=not refined.isdisjoint(one.searches)) for one in found]
 
     def _worth(self, close: list[EndedSearch]) -> int:
-        """Return how many of the ends are worth refining: none where constraints hold nowhere near."""
+        """Return the number of ends to refine, none where constraints are violated by far."""
         if not self.leads_on:
             return len(close)
         return min(sum(one.violation < FAR for one in close), REFINED if self.problem.has_slopes else BY_DIFFERENCES)
 
     def _descended(self) -> Number:
-        """Return where all starts lead at once."""
+        """Return the ends of the simultaneous descent or evolution."""
         if self.word == EVOLUTION:
             found = evolve(
                 self.problem, self.begun.parts, self.begun.scales, self.seed, self._step_counter(GENERATIONS)
@@ -104,7 +104,7 @@ class DesignSearch(ShortRepr):
         return self.begun.parts
 
     def _step_counter(self, steps: int) -> Callable[[], None]:
-        """Return what is called after each of some steps that lead all starts on."""
+        """Return a function to call after each of so many steps of the descent."""
         done = [0]
 
         def tell() -> None:
@@ -119,14 +119,14 @@ class DesignSearch(ShortRepr):
                 self.progress(done, PARTS)
         except Exception as error:  # whatever a user's function does
             remedy = "give a function of two numbers: how much is done, of how much"
-            raise InvalidInput(Problem("progress", f"it cannot be told: {error}", remedy)) from error
+            raise InvalidInput(Problem("progress", f"it cannot be called: {error}", remedy)) from error
 
 
-# So many designs are looked at for each start, at least and at most so many in all.
+# The number of sampled designs for each start, and bounds of their total.
 SAMPLED_FOR_EACH, LEAST_SAMPLED, MOST_SAMPLED = 16, 1 << 10, 1 << 16
-# So many at once: their curves stay in the cache of a processor, or near it.
+# Designs evaluated together: their curves fit in a processor's cache.
 AT_ONCE = 1 << 10
-# A start is worth a search where it is better than so many of its neighbours.
+# A promising start is better than so many neighbours.
 NEIGHBOURS = 8
 
 
@@ -134,8 +134,8 @@ NEIGHBOURS = 8
 class StartingDesigns(ShortRepr):
     """The designs at which searches begin, the most promising first.
 
-    They are parts of the ranges. `screened` designs were looked at, `assembled` of them were. `scales` are the sizes of
-    margins among those. What `matters` are the numbers by which anything changes that is asked.
+    `parts` are parts of the ranges. `screened` designs were sampled, `assembled` of them are assembled; `scales` are
+    the sizes of their margins. `matters` is a mask of the numbers that influence goals or constraints.
     """
 
     parts: Number
@@ -147,9 +147,9 @@ class StartingDesigns(ShortRepr):
 
 
 def starting_designs(problem: DesignProblem, starts: int, seed: int, own: Number) -> StartingDesigns:
-    """Return so many starts, and with them a design of one's own. Raises NotAssembled where there are none.
+    """Return the starts, the given design among the candidates. Raises NotAssembled where none is assembled.
 
-    Best of all are designs that are better than their neighbours. Source: A. Törn, S. Viitanen, Topographical global
+    Designs better than their neighbours come first. Source: A. Törn, S. Viitanen, Topographical global
     optimization, in: Recent Advances in Global Optimization, Princeton 1992.
     """
     total = min(max(LEAST_SAMPLED, 1 << (SAMPLED_FOR_EACH * starts - 1).bit_length()), MOST_SAMPLED)
@@ -176,13 +176,13 @@ def starting_designs(problem: DesignProblem, starts: int, seed: int, own: Number
 
 
 def _matters(problem: DesignProblem, parts: Number) -> Number:
-    """Tell by which numbers anything changes: those of which some slope is not nothing."""
+    """Return the numbers that influence goals or constraints: those with a nonzero slope."""
     designs = problem.at(parts)
     return (designs.value_slopes != 0.0).any(axis=0) | (designs.margin_slopes != 0.0).any(axis=(0, 1))
 
 
 def _scales(margins: Number) -> Number:
-    """Return the size of each margin: what half of the designs are within."""
+    """Return the scale of each margin: its median over the designs."""
     middle = np.median(np.abs(margins), axis=0)
     return np.where(middle > 0.0, middle, 1.0)
 
@@ -202,7 +202,7 @@ def _promising(parts: Number, values: Number, held: Number) -> Number:
 
 
 def _failed(designs: SearchedDesigns) -> Counter[str]:
-    """Count designs by the group that first cannot be assembled, or the guide that is beyond an end."""
+    """Count designs by the group that fails first, or the guide beyond its travel limit."""
     counted: Counter[str] = Counter()
     path = designs.problem.path
     failed = designs.designs(path).outputs.failed
@@ -217,20 +217,20 @@ def _none(screened: int, failures: Counter[str]) -> NotAssembled:
     which = f"none of {screened} designs within the ranges"
     remedy = "give ranges around dimensions that can be assembled, or drive over a smaller range"
     if not failures:
-        # at all poses each of them is: it is lost in between, or a number is beyond all bounds
-        what = f"{which} is assembled between all poses too, with a finite number for all that is asked"
+        # each is assembled at all poses, but not between them, or has an infinite number
+        what = f"{which} is assembled between all poses too, with finite goals and constraints"
         return NotAssembled(Problem("free", what, remedy))
     told = ", ".join(f"{name} in {count}" for name, count in failures.most_common(3))
     return NotAssembled(Problem("free", f"{which} can be assembled at all poses: it fails at {told}", remedy))
 
 
-# Ends are the same design where all their dimensions are within this part of the ranges: searches end far closer.
+# Ends are equal where all their dimensions agree to this part of the ranges: searches end far closer.
 SAME = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EndedSearch(ShortRepr):
-    """A design at which searches ended, by parts of the ranges. `searches` are those, by number."""
+    """A design at which the numbered `searches` ended, by parts of the ranges."""
 
     parts: Number
     violation: float
@@ -240,7 +240,7 @@ class EndedSearch(ShortRepr):
 
     @property
     def rank(self) -> tuple[float, float]:
-        """What ends are compared by."""
+        """The key by which ends are compared."""
         return self.violation, self.value
 
 

@@ -30,7 +30,8 @@ from compoundkin.studies.goals.goal import Goal
 class ChangedDimension:
     """A free number before and after, and its bounds.
 
-    `binds` is "low" or "high" where it ended at one; what does not matter changes nothing that is asked, and is kept.
+    `binds` is "low" or "high" at an active bound. A dimension that does not matter influences no goal or constraint,
+    and is unchanged.
     """
 
     name: str
@@ -45,7 +46,7 @@ class ChangedDimension:
 
 @dataclass(frozen=True)
 class HeldConstraint:
-    """A constraint at the design that was found. `margin` is the least that it has, in its unit."""
+    """A constraint at the optimum, with its least `margin` in its unit."""
 
     description: str
     margin: float
@@ -67,19 +68,19 @@ class LocalMinimum(ShortRepr):
 
     @cached_property
     def motion(self) -> Motion:
-        """Its motion, in the configuration that the search kept to."""
+        """Its motion, in the configuration of the search."""
         with suppress_pose_warnings():
             return solve(self._designed, **self._solve_arguments)
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """The mechanism with its dimensions, which moves as it did in the search."""
+        """The mechanism with its dimensions, which moves as in the search."""
         with suppress_pose_warnings():
             return with_modes(self._designed, self.motion, self._solve_arguments)
 
     @property
     def modes(self) -> str | Configuration:
-        """The configuration that the search kept to."""
+        """The configuration of the search."""
         return self._path.modes
 
     @property
@@ -98,7 +99,7 @@ class LocalMinimum(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Optimum(DisplaysHtml, ShortRepr):
-    """The best design that was found.
+    """The best design of a search.
 
     `value` is its objective, `value_before` that of the mechanism as it stood (NaN where it is not assembled), `goals`
     say what it is; `changes` tell what became of the free numbers, `constraints` how they hold, `unknowns` what goals
@@ -158,7 +159,7 @@ class Optimum(DisplaysHtml, ShortRepr):
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """What keeps it from being better: bounds and constraints, in words."""
+        """Active bounds and constraints, as text."""
         bounds = [f"{one.name} at its {one.binds} bound" for one in self.changes if one.binds]
         return (*bounds, *(one.description for one in self.constraints if one.binds))
 
@@ -168,7 +169,7 @@ class Optimum(DisplaysHtml, ShortRepr):
         return all(one.is_held for one in self.constraints)
 
     def plot(self, *names: str, **options: Any) -> Any:
-        """Plot what became better; see `plots.improvement`."""
+        """Plot the improvement; see `plots.improvement`."""
         return display_function("study_plot")(self, *names, **options)
 
     @property
@@ -181,15 +182,15 @@ class Optimum(DisplaysHtml, ShortRepr):
         return f"Optimum({self.value_before:.6g} -> {self.value:.6g}, {searches}{bound})"
 
 
-# Searches agree where their objectives do to so many parts; of objectives that become nothing, of those at the start.
+# Searches agree where their objectives differ by less than this part, or by this part of the initial objectives.
 AGREED, NOTHING = 1e-4, 1e-12
 
 
 def with_modes(mechanism: Mechanism, motion: Motion, moved: Mapping[str, Any]) -> Mechanism:
-    """Return the mechanism, with its modes where it would not move so by itself.
+    """Return the mechanism, with its assembly modes if it would otherwise move differently.
 
-    `moved` is what `solve` is told of the motion. Configurations that are numbered cannot be written: such a mechanism
-    is returned as it is.
+    `moved` are the arguments of `solve`. Numbered configurations cannot be written: such a mechanism is returned
+    unchanged.
     """
     modes, alone = moved["modes"], {**moved, "modes": None}
     if not isinstance(modes, str) or _moves_so(mechanism, motion, alone):
@@ -199,7 +200,7 @@ def with_modes(mechanism: Mechanism, motion: Motion, moved: Mapping[str, Any]) -
 
 
 def _modes(mechanism: Mechanism, motion: Motion, modes: str) -> list[Any]:
-    # as they are asked for: at a change point the motion itself has neither sign
+    # by the name: at a change point the motion itself has neither sign
     found = []
     for index, sign in read_name(motion.solving_order, modes).items():
         links = motion.structure.groups[index].links
@@ -209,7 +210,7 @@ def _modes(mechanism: Mechanism, motion: Motion, modes: str) -> list[Any]:
 
 
 def _moves_so(mechanism: Mechanism, motion: Motion, moved: Mapping[str, Any]) -> bool:
-    """Tell whether a mechanism takes the motion by itself."""
+    """Return whether a mechanism has this motion by itself."""
     try:
         own = solve(mechanism, **moved)
     except CompoundkinError:

@@ -19,13 +19,13 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns, SearchSpace
 
-# A search ends where a step changes the objective or the design by less than this part.
+# Tolerance of the objective and the design.
 ENOUGH = 1e-12
-# Where the objective is measured anew a coarser end will do.
+# Tolerance where the objective is rescaled in rounds.
 FINE = 1e-9
-# Objectives become much less than they were: so often they are measured anew, and the search begun again there.
+# The objective may fall by orders: the greatest number of rounds in which it is rescaled and the search restarted.
 ROUNDS = 4
-# It is begun again while a round makes it less by this part.
+# Rounds continue while one reduces the objective by this part.
 WORTH = 1e-2
 STEPS = 100
 
@@ -91,7 +91,7 @@ def _bounds(problem: DesignsOfSearch) -> list[tuple[float | None, float | None]]
 
 
 class DesignsOfSearch(Protocol):
-    """The problem as a search of one design sees it, alone or beside others."""
+    """The problem of a search of one design, alone or with others side by side."""
 
     @property
     def space(self) -> SearchSpace:
@@ -103,7 +103,7 @@ class DesignsOfSearch(Protocol):
 
 @dataclass(eq=False, repr=False)
 class SingleDesign(ShortRepr):
-    """Objective and constraints at parts of the ranges, both in sizes of their own."""
+    """Scaled objective and constraints of one design, by parts of the ranges."""
 
     problem: DesignsOfSearch
     scales: Number
@@ -118,7 +118,7 @@ class SingleDesign(ShortRepr):
         self.size = max(abs(float(self._last.values[0])), np.finfo(float).tiny)
 
     def value(self, parts: Number) -> float:
-        """Return the objective; of what cannot be assembled a great one."""
+        """Return the objective, a large one where it cannot be assembled."""
         at = self._at(parts)
         if not at.assembled[0]:
             return float(np.abs(self._known.values[0])) / self.size + WORSE
@@ -137,7 +137,7 @@ class SingleDesign(ShortRepr):
         return _finite(self._at(parts).residual_slopes[0])
 
     def margins(self, parts: Number) -> Number:
-        """Return the margins; of what cannot be assembled those of the design before."""
+        """Return the margins, those of the last assembled design where it cannot be assembled."""
         at = self._at(parts)
         return (at if at.assembled[0] else self._known).margins[0] / self.scales
 
@@ -162,7 +162,7 @@ EVOLUTION = "differential_evolution"
 
 
 def method_of(problem: DesignProblem, word: str | None, has_slopes: bool) -> str:
-    """Return the word of the method. Raises InvalidInput for what is none, or does not fit."""
+    """Return the word of the method. Raises InvalidInput for an unknown or unsuitable one."""
     fits_squares = problem.is_squares and not problem.constraints
     if word is None:
         return ("least_squares" if fits_squares else "SLSQP") if has_slopes else EVOLUTION
@@ -176,12 +176,12 @@ def method_of(problem: DesignProblem, word: str | None, has_slopes: bool) -> str
 
 
 GENERATIONS = 300
-# A population has at least so many designs: fewer have no differences to speak of.
+# The least size of a population: fewer designs have too few differences.
 FEWEST = 16
 
 
 def evolve(problem: DesignProblem, parts: Number, scales: Number, seed: int, tell: Callable[[], None]) -> Number:
-    """Return the last population, the best design first. It begins with the given one.
+    """Return the last population of differential evolution, the best design first, from an initial one.
 
     Source: R. Storn, K. Price, J. Global Optimization 11 (1997) 341. Constraints after K. Deb: a design that violates
     less is better, whatever its objective.
@@ -192,12 +192,12 @@ def evolve(problem: DesignProblem, parts: Number, scales: Number, seed: int, tel
 
     def value(columns: Number) -> Number:
         found = merit(problem.at(columns.T), scales)
-        # above all objectives so far, that violations are always worse
+        # above all objectives so far, so that violations are always worse
         return np.array([inner if off == 0.0 else 1e6 * worst * (1.0 + off) for off, inner in found])
 
     first = np.resize(parts, (max(len(parts), FEWEST), parts.shape[1]))
     first = np.clip(first, 0.0, 1.0)
-    # older versions of scipy know no `rng` and no `intermediate_result`, and tell the best design alone
+    # older versions of scipy have no `rng` and no `intermediate_result`, and return the best design alone
     source = np.random.default_rng(seed)
     found = differential_evolution(
         value, [(0.0, 1.0)] * parts.shape[1], init=first, seed=source, maxiter=GENERATIONS, vectorized=True,
@@ -214,9 +214,9 @@ Refine = Callable[[DesignsOfSearch, Number, Number], Number]
 
 @dataclass(eq=False, repr=False)
 class _Round(ShortRepr):
-    """What all searches ask for; it is computed when the last of those that go on has asked.
+    """Requests of all searches, computed together when the last live search has made one.
 
-    So each round has the same designs whatever the threads do, and the answer does not depend on them.
+    So each round has the same designs, and results do not depend on threads.
     """
 
     problem: DesignProblem
@@ -238,7 +238,7 @@ class _Round(ShortRepr):
         return found
 
     def leave(self) -> None:
-        """Note that a search has ended."""
+        """Record that a search has ended."""
         with self.changed:
             self.live -= 1
             self._compute()
@@ -251,7 +251,7 @@ class _Round(ShortRepr):
             designs = self.problem.at(np.stack([self.asked[one] for one in searches]))
             _ = designs.assembled
             self.answers.update({one: (designs, place) for place, one in enumerate(searches)})
-        except Exception as error:  # each search ends by it, and none waits for ever
+        except Exception as error:  # raised in each search, so that none waits for ever
             self.answers.update(dict.fromkeys(searches, error))
         self.asked.clear()
         self.changed.notify_all()
@@ -259,7 +259,7 @@ class _Round(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SharedProblem(ShortRepr):
-    """The problem as one of the searches sees it."""
+    """The problem of one of the searches."""
 
     space: SearchSpace
     together: _Round
@@ -289,7 +289,7 @@ class SharedDesign(ShortRepr):
 def refine_together(
     problem: DesignProblem, parts: list[Number], scales: Number, refine: Refine, tell: Callable[[int], None]
 ) -> list[Number]:
-    """Return designs refined by a method of SciPy, each from its own start. `tell` is told how many are done."""
+    """Return designs refined by a method of SciPy, each from its own start; `tell` is called with the number done."""
     if not parts:
         return []
     together, done = _Round(problem, len(parts)), []
@@ -302,7 +302,7 @@ def refine_together(
             together.leave()
 
     with warnings.catch_warnings(), ThreadPoolExecutor(len(parts)) as threads:
-        # SciPy says where slopes did not change from one step to the next
+        # SciPy warns where slopes do not change between steps
         warnings.simplefilter("ignore", UserWarning)
         for found in threads.map(work, range(len(parts))):
             done.append(found)
@@ -312,15 +312,12 @@ def refine_together(
 
 # Margins violated by less than this part of their size hold: SciPy's methods end so near.
 HOLDS_WITHIN = 1e-7
-# What a design that cannot be assembled is worse by, in sizes of the objective: a line search takes a shorter step.
+# The penalty of a design that cannot be assembled, in sizes of the objective: a line search shortens its step.
 WORSE = 10.0
 
 
 def merit(designs: SearchedDesigns, scales: Number, held: float = HOLDS_WITHIN) -> list[tuple[float, float]]:
-    """Return what designs are compared by.
-
-    It is violation first where there is more than `held`, then the objective.
-    """
+    """Return the keys by which designs are compared: violation if above `held`, then the objective."""
     violated = np.maximum(-designs.margins / scales, 0.0).sum(axis=1)
     pairs = zip(np.where(violated > held, violated, 0.0), designs.values, designs.assembled, strict=True)
     return [(float(off), float(value)) if good else (np.inf, np.inf) for off, value, good in pairs]

@@ -1,4 +1,4 @@
-"""Objectives made less from many starts at once, by the steps of Levenberg and Marquardt between bounds."""
+"""Simultaneous descent from many starts by the method of Levenberg and Marquardt between bounds."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
 
-# So many steps at most.
+# The greatest number of steps.
 STEPS = 100
-# It is enough where a step makes the sum less by so little a part of it, or is so short.
+# A descent ends at a step that reduces the sum by less than this part, or is shorter than this.
 LITTLE, SHORT = 1e-9, 1e-9
-# What is no sum of squares is only led near: its figures have corners, at which such steps are many and small.
+# Other objectives than sums of squares descend coarsely: figures have corners, at which steps become small.
 STEPS_NEAR, LITTLE_NEAR = 30, 1e-4
-# Damping at first, and at most: beyond it no step is of use.
+# Initial and greatest damping.
 DAMPING, MOST_DAMPED = 1e-2, 1e12
-# What a curvature of nothing is replaced by, as a part of the greatest.
+# The least curvature, as a part of the greatest.
 FLAT = 1e-12
-# What is asked of violated constraints, as parts of the middle sum: first to be near, then to hold.
+# Weights of violated constraints, relative to the median sum: first approximate, then exact.
 WEIGHTS = (1.0, 100.0)
-# What is no sum of squares is led towards a value that is lower than that of all starts by so many times their spread.
+# Other objectives descend towards an aim below all starts by so many times their spread.
 BELOW = 3.0
 
 
@@ -46,7 +46,7 @@ class _Descent(ShortRepr):
         self.live = np.flatnonzero(np.isfinite(self.sums) & np.isfinite(self.slopes).all(axis=(1, 2)))
 
     def step(self) -> None:
-        """Take a step from every start that still moves."""
+        """Take a step from every live start."""
         rows = self.live
         there, foreseen = self._ahead(rows)
         at = self.problem.at(there)
@@ -63,7 +63,7 @@ class _Descent(ShortRepr):
         self.live = rows[~enough & (self.damping[rows] < MOST_DAMPED) & (self.sums[rows] > 0.0)]
 
     def _accept(self, at: SearchedDesigns, rows: Number, better: Number, ratio: Number) -> None:
-        """Move on; the better a step was foreseen the less the next is damped."""
+        """Accept steps; the better a step was predicted, the less the next is damped."""
         residuals, slopes = self._residuals(at), self._slopes(at)
         known = better & np.isfinite(slopes).all(axis=(1, 2))
         rows, ratio = rows[known], ratio[known]
@@ -74,7 +74,7 @@ class _Descent(ShortRepr):
         self.growth[rows] = 2.0
 
     def _ahead(self, rows: Number) -> tuple[Number, Number]:
-        """Return where damped steps lead, within the bounds, and how much less the sums should be there."""
+        """Return the ends of damped steps, within the bounds, and the predicted decrease of the sums."""
         low, high = self.problem.space.bounds
         here, slopes, residuals = self.parts[rows], self.slopes[rows], self.residuals[rows]
         gradient = np.einsum("kmn,km->kn", slopes, residuals)
@@ -107,7 +107,7 @@ class _Descent(ShortRepr):
 
 
 def descend(problem: DesignProblem, parts: Number, scales: Number, tell: Callable[[], None]) -> Number:
-    """Return where searches from all starts end, by parts of the ranges.
+    """Return the ends of descents from all starts, by parts of the ranges.
 
     Violated constraints are added as squares. `tell` is called after each step.
     """

@@ -1,4 +1,4 @@
-"""What studies find of each design: one file for each kind; of this registry the first that fits is taken."""
+"""Responses: what studies compute for each design; the first kind of the registry that fits is used."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
 
 
 def response_of(motion: Motion, name: str) -> Response:
-    """Return what a name asks of every design. Raises UnknownName with the nearest there is."""
+    """Return the response of a name. Raises UnknownName with the nearest name."""
     found = quantity(motion, name)
     of, figure = motion_figure(name)
     if not _is_computed(motion, of):
@@ -44,7 +44,7 @@ def _solved(found: Quantity, is_course: bool) -> Response:
 
 
 def _is_computed(motion: Motion, name: str) -> bool:
-    """Tell whether programs have an output."""
+    """Return whether programs can compute an output."""
     try:
         output = output_of(motion, name)
         if output.is_derived:
@@ -65,11 +65,11 @@ def studied_path(
     modes: Mapping[str, int] | str | Configuration | None = None,
     **rates: Any,
 ) -> tuple[StudiedPath, tuple[Response, ...]]:
-    """Return the compiled path over one motion for what is asked, and the responses.
+    """Return the compiled path over one motion, and the responses of the outputs.
 
     `outputs` are names, or functions of a pose by names of their own, summed over the motion; these read what is
     `given` besides. `values` and rates (`speed`, `acceleration`, `jerk`, `time`) are those of `solve`. Raises
-    UnknownName for what there is not, and for what is given and not read.
+    UnknownName for unknown outputs, and for given data that no function reads.
     """
     reference = solve(mechanism, values, modes=modes, **rates)
     responses = _responses(reference, outputs, given or {})

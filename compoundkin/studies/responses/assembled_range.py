@@ -1,4 +1,4 @@
-"""The part of a motion over which designs are assembled, between the poses too, and which part of the mechanism fails."""
+"""The part of a motion over which designs are assembled, between the poses too, and which part fails."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.responses.designs import Designs, design_blocks
 
-# Margins are looked at so many times as densely as `solve` looks for change points.
+# Margins are sampled so many times as densely as change points in `solve`.
 FINER = 5
 # Where the least margin may be below that of a sample, between its neighbours, so many samples follow, so often: to
 # 1e-6 of a sample's spacing.
@@ -27,7 +27,7 @@ class AssembledRange(ShortRepr):
     """Where designs are not assembled.
 
     `failed` (designs, poses) is the index of the first group that does not close plus one, else 0. `between` (designs,)
-    is the same of those that are lost between two poses only, after the pose `after`. `handed` are the designs, by
+    is the same for designs that fail between two poses only, after the pose `after`. `handed` are the designs, by
     index, that were solved.
     """
 
@@ -43,7 +43,7 @@ class AssembledRange(ShortRepr):
 
 
 def assembled_range(designs: Designs) -> AssembledRange:
-    """Return where designs are not assembled; it is looked at once."""
+    """Return where designs are not assembled, computed once."""
     return designs.computed_once(AssembledRange, lambda: _search_failures(designs))
 
 
@@ -109,18 +109,18 @@ def _margins(designs: Designs, rows: Number, places: Number) -> tuple[Number, Nu
     """Return which group fails at places plus one, else 0, and the least margins, (rows, places)."""
     numbers = designs.between(rows, places).numbers
     failed, margin = designs.path.compiled.programs.limits.at_poses(numbers)
-    # through a change point a motion goes on
+    # a motion continues through a change point
     return np.where(np.abs(margin) < ROUNDING, 0, failed), margin
 
 
 def _first(failed: Number, places: Number) -> tuple[Number, Number]:
-    """Return the first failure of each row, 0 where there is none, and its place."""
+    """Return the first failure of each row, 0 for none, and its place."""
     index, k = np.arange(len(failed)), np.argmax(failed != 0, axis=1)
     return failed[index, k].copy(), places[index, k].copy()
 
 
 def is_travel_limit(motion: Motion, number: int) -> bool:
-    """Tell whether it is a guide that is beyond an end. Those are numbered behind all groups."""
+    """Return whether a failure is a guide beyond its travel limit; these are numbered after all groups."""
     return number > len(motion.structure.groups)
 
 

@@ -17,10 +17,9 @@ from compoundkin.studies.responses.designs import Designs
 
 # A window is narrowed so often at most: at a kink to 1e-10 of it.
 NARROWINGS = 20
-# At a kink a course is farther from the polynomial through its samples than these tell: by so many times the sum of
-# so many of the last coefficients.
+# The error of a polynomial at a kink is estimated by this factor times the sum of so many last coefficients.
 SURE, LAST = 8.0, 3
-# Between the places at which a polynomial is looked at it rises by less than this part of its range.
+# Between its samples a polynomial rises by less than this part of its range.
 MISSED = 0.01
 AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
 
@@ -82,7 +81,7 @@ class CourseSearch(ShortRepr):
             doubt = window.doubt
             trusted = doubt <= TRUSTED * span[rows] + ROUNDING * large[rows]
             self._vertices(window.some(trusted), rows[trusted], offers)
-            # what cannot become the greatest any more is left
+            # windows that cannot contain the greatest value are dropped
             going = ~trusted & ~(window.most < offers.value[rows]) & (high - low > 0.0)
             _offer_samples(window.some(~trusted), rows[~trusted], offers)
             rows, window = rows[going], window.some(going)
@@ -103,7 +102,7 @@ class CourseSearch(ShortRepr):
 
     @staticmethod
     def _poles(course: Number, offers: CourseOffers, rows: Number) -> None:
-        """Make infinite what passes through infinity, as the reciprocal of a rate."""
+        """Set values at poles to infinity, such as the reciprocal of a rate."""
         far = rows[offers.value[rows] > POLE * np.median(np.abs(course[rows]), axis=1)] if len(rows) else rows
         offers.value[far] = np.inf
 
@@ -116,7 +115,7 @@ class CourseOffers(ShortRepr):
     place: Number
 
     def take(self, rows: Number, values: Number, places: Number) -> None:
-        """Take what is greater; a design may be offered several values."""
+        """Store greater values; there may be several for one design."""
         in_order = np.lexsort((values, rows))
         rows, values, places = rows[in_order], values[in_order], places[in_order]
         last = np.append(rows[1:] != rows[:-1], True) & (values > self.value[rows])
@@ -182,7 +181,7 @@ def _offer_samples(window: PeakWindow, rows: Number, offers: CourseOffers) -> No
 
 
 def _peaks(course: Number) -> Number:
-    """Tell at which poses the greatest value may be near: no neighbour is higher, and it bends so much."""
+    """Return the poses near which the greatest value may be: no neighbour is higher, and the bend is large enough."""
     rising, poses = np.diff(course, axis=1), course.shape[1]
     peak = np.ones(course.shape, dtype=bool)
     peak[:, 1:] &= rising >= 0.0
@@ -195,12 +194,12 @@ def _peaks(course: Number) -> Number:
     return peak & (course + added >= best) & (added > ROUNDING * np.abs(best))
 
 
-# What lies between poses is sought in so many steps of a motion at least: ten degrees of a turn.
+# The least number of steps in which a motion is searched between its poses: ten degrees of a turn.
 FINE_SAMPLES = 36
 
 
 def refinement_parts(poses: int) -> int:
-    """Return in how many parts steps between poses are cut, to look closely.
+    """Return the number of parts into which steps between poses are divided.
 
     >>> refinement_parts(4), refinement_parts(361), refinement_parts(1)
     (12, 1, 1)

@@ -29,7 +29,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudiedPath(ShortRepr):
-    """A compiled path over one motion: `reference` says what its drivers do.
+    """A compiled path over the motion `reference`.
 
     `given` are the values and rates that it was solved with.
     `coordinates` are the names that slopes are by, two of a free point.
@@ -55,7 +55,7 @@ class StudiedPath(ShortRepr):
         }
 
     def scale(self, coordinate: str) -> float:
-        """Return what is a large change of a coordinate. It is the mechanism's size, or a radian."""
+        """Return the scale of a coordinate: the mechanism's size, or a radian."""
         programs = self.compiled.programs
         one = next(one for one in programs.dimensions if one.name == self.directions[coordinate][0])
         own = np.abs(programs.stated.own(one)) if one.is_of_law else 0.0
@@ -80,7 +80,7 @@ class StudiedPath(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Designs(ShortRepr):
-    """Designs by their free dimensions, (designs,) each; `inputs` tell what the drivers do.
+    """Designs by their free dimensions, (designs,) each; `inputs` are the drivers' values and rates.
 
     Poses are the last axis; `times` are those of a motion in time. What is computed of them is computed once.
     """
@@ -149,8 +149,8 @@ class Designs(ShortRepr):
         return replace(self, dimensions=dimensions, inputs=inputs_of_designs(self.inputs, rows))
 
     def computed_once(self, key: Hashable, make: Callable[[], Result]) -> Result:
-        """Return what is made once, under a key."""
-        # `cached_property` would let one thread compute at a time, whatever the designs: its lock is that of the class
+        """Return the result of `make`, computed once for a key."""
+        # the lock of `cached_property` in Python 3.11 is that of the class: one thread would compute at a time
         if key not in self._computed:
             self._computed[key] = make()
         found: Result = self._computed[key]
@@ -173,7 +173,7 @@ class Designs(ShortRepr):
         return replace(self.picked(rows), inputs=inputs, times=times)
 
     def values_at(self, name: str, rows: Number, places: Number, is_angle: bool = False) -> Number:
-        """Return an output of some of them at places, (rows, places). Angles are in the turn of the poses beside."""
+        """Return an output of some designs at places, (rows, places), angles in the turn of the neighbouring poses."""
         there = self.between(rows, places).numbers
         # a design that stays in its mode needs no look at limits between its poses
         programs = self.path.compiled.programs
@@ -212,17 +212,17 @@ class Designs(ShortRepr):
 
 
 def inputs_of_designs(inputs: Inputs, rows: Number) -> Inputs:
-    """Return what drivers do in some designs, by index."""
+    """Return the inputs of some designs, by index."""
     return inputs.driven({name: tuple(_of(one, rows) for one in rates) for name, rates in inputs.drives.items()})
 
 
 def inputs_at(inputs: Inputs, rows: Number, places: Number) -> Inputs:
-    """Return what drivers do at places (rows, places), linearly from pose to pose."""
+    """Return the inputs at places (rows, places), linear between poses."""
     return _laid(inputs.pick(np.repeat(rows, places.shape[1]), places.ravel()), places.shape)
 
 
 def inputs_in_time(motion: Motion, order: int, places: Number) -> tuple[Inputs, Number]:
-    """Return what drivers do at places of a motion in time. They follow their laws. The times there come with it."""
+    """Return the inputs at places of a motion in time, by the driving laws, and the times there."""
     one, at = np.zeros(places.size, dtype=int), places.ravel()
     times = times_between(motion, one, at).reshape(places.shape)
     return _laid(inputs_between(motion, one, at, order), places.shape), times
@@ -249,12 +249,12 @@ MOST_POSES = 2**19
 
 
 def designs_at_once(poses: int, most: int = MOST_POSES) -> int:
-    """Return how many designs of so many poses are a block: one at least."""
+    """Return the number of designs in a block, at least one."""
     return max(1, most // max(1, poses))
 
 
 def design_blocks(count: int, poses: int, most: int = MOST_POSES) -> Iterator[range]:
-    """Yield so many designs in blocks.
+    """Yield ranges of designs that are computed together.
 
     >>> list(design_blocks(5, 10, 20))
     [range(0, 2), range(2, 4), range(4, 5)]
@@ -264,13 +264,13 @@ def design_blocks(count: int, poses: int, most: int = MOST_POSES) -> Iterator[ra
         yield range(start, min(start + step, count))
 
 
-# The argument of `compile` that frees them, by which it tells their problems.
+# The argument of `compile` for free dimensions, which its errors name.
 FREE = "free"
 
 
 @contextmanager
 def name_freeing_argument(argument: str) -> Iterator[None]:
-    """Tell what is wrong with free dimensions by the argument that has them."""
+    """Name another argument in errors about free dimensions."""
     try:
         yield
     except CompoundkinError as error:

@@ -27,7 +27,7 @@ PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0),
 class FigureResponse(Response):
     """A figure of the course of a quantity, (designs,).
 
-    It is none of designs that are not assembled at all poses. A length of a vector is `squared` to be smooth.
+    NaN for designs that are not assembled at all poses. The length of a vector is `squared` to be smooth.
     """
 
     of: str = ""
@@ -64,7 +64,7 @@ class FigureResponse(Response):
         return designs.computed_once((self.of, sign), lambda: self._search(designs, sign))
 
     def _search(self, designs: Designs, sign: float) -> CourseExtreme:
-        """Search them; what passes change points, where a mode ends, is solved."""
+        """Search them; designs that pass change points are solved."""
         found = CourseSearch(designs, self.of, sign, self.is_angle, self.squared).extreme()
         handed = assembled_range(designs).to_solve
         handed = handed[~np.isnan(found.value[handed])]
@@ -75,7 +75,7 @@ class FigureResponse(Response):
         return found
 
 
-# Slopes beside an extreme are told by samples so far apart, in parts of the cycle: 2.4 degrees of a crank.
+# The spacing of samples for slopes near an extreme, in parts of the cycle: 2.4 degrees of a crank.
 SPACING = 1.0 / 150.0
 # Weights of samples at 1 to 4 spacings, for the first derivative (odd) and the second (even, with that in the middle):
 # right to the eighth power of the spacing. Source: B. Fornberg, Mathematics of Computation 51 (1988), table 1.
@@ -92,7 +92,7 @@ ENDS = (1.0, -1.0)
 class StrokeRatioResponse(Response):
     """The time ratio or imbalance angle of an output over a closed cycle, (designs,).
 
-    `stroke` is its stroke. It is none of designs that rest, or do not go to and fro.
+    `stroke` is its stroke. NaN for designs that rest, or do not oscillate.
     """
 
     stroke: FigureResponse = field(default_factory=lambda: FigureResponse(""))
@@ -115,7 +115,7 @@ class StrokeRatioResponse(Response):
         return np.asarray(rise * sense * moved)
 
     def _part(self, designs: Designs) -> Number:
-        """Return which part of the cycle leads from the least to the greatest value."""
+        """Return the part of the cycle from the least to the greatest value."""
         high, low = (self._progress(designs, self.stroke.extreme(designs, sign).place) for sign in ENDS)
         stroke, course = self.stroke.values(designs), designs.outputs[self.stroke.of]
         with np.errstate(invalid="ignore"):

@@ -19,7 +19,7 @@ from compoundkin.studies.responses.designs import Designs
 
 @dataclass(frozen=True)
 class Response(ABC):
-    """What is asked of every design by a name: "G.position", "ram.stroke".
+    """An output of every design by its name: "G.position", "ram.stroke".
 
     `needs` are the outputs of the compiled path that it reads. A course has a value at every pose, a figure one for
     each design. `unit` is that of its values, radians for angles.
@@ -34,7 +34,7 @@ class Response(ABC):
 
     @abstractmethod
     def values(self, designs: Designs) -> Number:
-        """Return its values; NaN where there is none. They are (designs,) of a figure, (designs, poses) of a course."""
+        """Return its values, NaN where undefined: (designs,) of a figure, (designs, poses) of a course."""
 
     @property
     def has_slopes(self) -> bool:
@@ -68,14 +68,14 @@ class CourseResponse(Response):
 class SummedResponse(Response):
     """A function of each pose, summed over the poses, (designs,).
 
-    The function reads outputs by name, and what is `given` with it: numbers, or arrays along the motion.
+    The function reads outputs by name, and the data `given`: numbers, or arrays along the motion.
     """
 
     function: Callable[[Any], Any] = abs
     given: Mapping[str, Any] = field(default_factory=dict)
 
     def values(self, designs: Designs) -> Number:
-        """Return the sum of each design. It is NaN where a pose is lost that the function does not leave out."""
+        """Return the sum of each design, NaN where a pose is not assembled, unless the function skips it."""
         return np.asarray(self._called(designs, designs.path.objective(self.function)))
 
     def slopes(self, designs: Designs) -> Number:
@@ -95,8 +95,8 @@ class SummedResponse(Response):
 def summed_response(motion: Motion, name: str, function: object, given: Mapping[str, Any]) -> Response:
     """Return a function of each pose as a response.
 
-    Only those of the given numbers are kept that it reads. Raises UnknownName for what the motion does not have,
-    InvalidInput for what is no function.
+    It has only those of the given data that it reads. Raises UnknownName for unknown quantities, InvalidInput for an
+    object that is not callable.
     """
     if not callable(function):
         what = f"{function!r} is no function of a pose"
@@ -108,21 +108,21 @@ def summed_response(motion: Motion, name: str, function: object, given: Mapping[
     except CompoundkinError:
         raise
     except (TypeError, AttributeError, ValueError, ArithmeticError):
-        # it is told when the function is recorded, in the words of objectives
+        # reported when the function is recorded, as for objectives
         pass
     own = {one: given[one] for one in given if one in pose.read}
     return SummedResponse(name, tuple(one for one in pose.read if one not in given), function=function, given=own)
 
 
 class ReadPose:
-    """The first pose of a motion, as a function reads it. `read` are the names that it has asked for."""
+    """The first pose of a motion for a user's function; `read` are the names that it has used."""
 
     def __init__(self, motion: Motion, given: Mapping[str, Any]) -> None:
         self._motion, self._given = motion, given
         self.read: list[str] = []
 
     def __getitem__(self, name: str) -> Any:
-        """Return a quantity at the first pose, or what is given under the name."""
+        """Return a quantity at the first pose, or given data, by name."""
         if name == "assembled":
             return self.assembled
         if name not in self.read:

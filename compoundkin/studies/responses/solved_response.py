@@ -1,4 +1,4 @@
-"""What only solving can tell of designs: forces, and figures of groups without a closed form."""
+"""Responses that need `solve`: forces, and figures of groups without a closed form."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from compoundkin.kinematics.quantities import quantity
 from compoundkin.studies.responses.designs import Designs, design_blocks
 from compoundkin.studies.responses.response import Response
 
-# So many poses are solved at once, so that a motion with all its forces stays in memory.
+# The number of poses solved together, so that a motion with all its forces fits in memory.
 MOST_POSES = 2**15
-# The step of a central difference, as a part of what is a large change: truncation and rounding are then alike.
+# The step of a central difference relative to the scale: truncation and rounding errors are alike.
 STEP = 1e-5
-# A design of which nothing can be found must not take the others with it.
+# Errors of one design, which must not stop the others.
 UNSOLVED = (InvalidInput, InvalidMechanism, NotAssembled, NotDetermined)
 
 
@@ -26,7 +26,7 @@ class SolvedResponse(Response):
     """A quantity or figure found by `solve`. Its slopes are differences."""
 
     def values(self, designs: Designs) -> Number:
-        """Return it; figures of designs that are not assembled at all poses are none."""
+        """Return its values; figures are NaN for designs that are not assembled at all poses."""
         shape = (designs.number, designs.poses) if self.is_course else (designs.number,)
         found = np.full(shape, np.nan, dtype=complex if self.is_vector else float)
         for block in design_blocks(designs.number, designs.poses, MOST_POSES):
@@ -35,7 +35,7 @@ class SolvedResponse(Response):
         return found
 
     def _parts(self, designs: Designs, rows: Number) -> Iterator[tuple[Number, Number]]:
-        """Yield what is found of some designs, in halves where one of them cannot be solved."""
+        """Yield the values of some designs, in halves where one of them cannot be solved."""
         try:
             with np.errstate(all="ignore"):
                 yield rows, self._solved(designs.picked(rows))
@@ -54,7 +54,7 @@ class SolvedResponse(Response):
 
     @property
     def has_slopes(self) -> bool:
-        """Whether its slopes are known exactly: they are differences."""
+        """False: its slopes are differences."""
         return False
 
     def slopes(self, designs: Designs) -> Number:

@@ -42,7 +42,7 @@ def sample_of(
 
 
 def sample_from(data: Mapping[str, Any]) -> DesignSample:
-    """Return the sample of what its `data` say; raises InvalidInput.
+    """Return the sample of plain `data`; raises InvalidInput.
 
     It was held against variations when it was made: nothing is warned of, and they are not needed.
     """

@@ -29,12 +29,12 @@ class DesignSample(ABC):
     @classmethod
     @abstractmethod
     def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
-        """Return the sample of so many designs; raises InvalidInput where that cannot be."""
+        """Return the sample of a number of designs; raises InvalidInput for an invalid number."""
 
     @classmethod
     @abstractmethod
     def read(cls, data: Mapping[str, Any]) -> Self:
-        """Return the sample of what `data` say, without asking variations; raises InvalidInput."""
+        """Return the sample of plain `data`; raises InvalidInput."""
 
     @abstractmethod
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:
@@ -43,7 +43,7 @@ class DesignSample(ABC):
     @property
     @abstractmethod
     def data(self) -> Mapping[str, Any]:
-        """What study files say of it; read back as an equal sample."""
+        """Its plain data in study files, read back as an equal sample."""
 
 
 class UnitSample(DesignSample):
@@ -57,7 +57,7 @@ class UnitSample(DesignSample):
 
     @classmethod
     def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
-        """Return the sample of so many designs; raises InvalidInput where that cannot be."""
+        """Return the sample of a number of designs; raises InvalidInput for an invalid number."""
         return cls.read({"count": count, "seed": seed})
 
     @classmethod
@@ -87,7 +87,7 @@ def columns_of(variations: Mapping[str, Variation]) -> int:
 
 
 def checked_count(count: object) -> int:
-    """Return a number of designs; raises InvalidInput for what is none."""
+    """Return a number of designs; raises InvalidInput for other objects."""
     if count is None:
         raise InvalidInput(Problem("count", "it is not said how many designs", "count=2**16"))
     if not is_whole(count) or not 1 <= int(str(count)) <= MOST_DESIGNS:
@@ -97,7 +97,7 @@ def checked_count(count: object) -> int:
 
 
 def checked_seed(seed: object) -> int:
-    """Return a seed; raises InvalidInput for what is none."""
+    """Return a seed; raises InvalidInput for other objects."""
     if not is_whole(seed) or int(str(seed)) < 0:
         raise InvalidInput(Problem("seed", f"{short_repr(seed)} is no seed", "a whole number from 0"))
     return int(str(seed))

@@ -100,7 +100,7 @@ def _size(variations: Mapping[str, Variation], levels: Mapping[str, Any]) -> int
 
 
 def _steps(variations: Mapping[str, Variation], wanted: int) -> list[int]:
-    """Return how many levels in all dimensions make so many designs or just more, and one fewer."""
+    """Return the number of levels that makes at least so many designs, and one fewer."""
     least = bisect_left(range(1, wanted + 1), wanted, key=lambda k: _size(variations, dict.fromkeys(variations, k)))
     return sorted({max(least, 1), least + 1})
 
@@ -130,7 +130,7 @@ class TableSample(DesignSample):
 
     @classmethod
     def read(cls, data: Mapping[str, Any]) -> Self:
-        """Return the table of so many rows."""
+        """Return the sample of so many rows."""
         return cls(checked_count(data.get("count")))
 
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:

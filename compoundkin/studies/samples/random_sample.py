@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.studies.samples.design_sample import UnitSample
 
-# Each count of Philox gives so many numbers.
+# Random numbers for each count of Philox.
 NUMBERS_OF_A_COUNT = 4
 
 
@@ -88,7 +88,7 @@ def permuted(numbers: Number, count: int, seed: int, column: int) -> Number:
 
 
 def _ciphered(numbers: Number, amounts: tuple[Number, Number]) -> Number:
-    """Return numbers of a rectangle moved in it: each half in turn around its range, as far as the other half says."""
+    """Return permuted numbers of a rectangle: each half is shifted around by an amount that the other gives."""
     of_high, of_low = amounts
     high, low = of_low.shape[1], of_high.shape[1]
     one, other = np.divmod(numbers, low)

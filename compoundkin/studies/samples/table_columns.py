@@ -18,7 +18,7 @@ from compoundkin.base.suffixes import file_format
 from compoundkin.files.parquet_library import parquet
 from compoundkin.model.attributes import DEGREES
 
-# What heads of CSV files say, as `save` writes them: a name, and perhaps its unit.
+# Headers of CSV files, as `save` writes them: a name, and perhaps its unit.
 _HEAD = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?")
 
 
@@ -27,7 +27,7 @@ def table_columns(path: str | os.PathLike[str]) -> dict[str, Number]:
 
     Coordinates of points are columns of their own, "plate.C.x". Columns in degrees say so, as tables that `save`
     writes do: "slot.angle [deg]" in the head of a CSV file, the unit of a field in Parquet; they are returned in
-    radians. Raises InvalidInput for what is no such table.
+    radians. Raises InvalidInput for an invalid table.
     """
     form = file_format("table", path)
     if form not in _READERS:
@@ -62,7 +62,7 @@ def _csv_columns(path: str | os.PathLike[str]) -> list[tuple[str, str, Number]]:
 
 
 def _csv_message(error: str) -> str:
-    """Return what NumPy says, with its rows as lines of the file, of which the first has the names."""
+    """Return NumPy's message with lines of the file instead of rows."""
     shorter = error.partition(";")[0].replace(" to float64", "").rstrip(".")
     # it counts rows from 1 where their lengths differ, else from 0
     before = 1 if "changed" in shorter else 2

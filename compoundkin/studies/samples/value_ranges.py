@@ -133,7 +133,7 @@ class Levels(ShortRepr, Variation):
         return np.asarray(self.listed[np.minimum((units[:, 0] * count).astype(np.int64), count - 1)])
 
     def levels(self, count: int) -> Number:
-        """Return all of its values, whatever the count."""
+        """Return all of its values, for any count."""
         return self.listed
 
     def number_of_levels(self, count: int) -> int:
@@ -238,7 +238,7 @@ def _place(where: str, word: str) -> str:
 
 @checked
 def around(centre: Number, within: float, *, sigmas: float | None = None) -> AroundCentre:
-    """Return what a dimension may be around a value, for studies and tolerances.
+    """Return a variation around a value, for studies and tolerances.
 
     `centre` is a number, or a point, complex or (x, y), of which each coordinate is around its own. All values within
     `within` of it are as likely; with `sigmas` they are normally distributed, and `within` is so many standard

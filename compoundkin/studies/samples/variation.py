@@ -68,23 +68,23 @@ class Variation(ABC):
     @property
     @abstractmethod
     def data(self) -> Mapping[str, Any]:
-        """What study files say of it. They are plain numbers, texts and lists, read back as an equal variation."""
+        """Its plain data in study files: numbers, texts and lists, read back as an equal variation."""
 
     @classmethod
     @abstractmethod
     def read(cls, where: str, data: Mapping[str, Any]) -> Self:
-        """Return what study files say, by its keys, as a variation; raises InvalidInput."""
+        """Return the variation of plain data; raises InvalidInput."""
 
     @classmethod
     def from_argument(cls, where: str, given: Any) -> Self | None:
-        """Return what is given in Python as this kind, if it is."""
+        """Return a Python object as a variation of this kind, None if it is of another."""
         return None
 
 
 def number_or_point(where: str, given: Any) -> float | complex:
     """Return a number as a float, a point as a complex number.
 
-    A point may be two coordinates. Raises InvalidInput, also for what is not finite.
+    A point may be two coordinates. Raises InvalidInput, also for infinite numbers.
 
     >>> number_or_point("centre", 3), number_or_point("centre", (1, 2))
     (3.0, (1+2j))

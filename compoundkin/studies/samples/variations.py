@@ -19,7 +19,7 @@ _REMEDY = "give a range (40, 60), a distribution scipy.stats.norm(40, 0.1), comp
 
 
 def variations_of(given: Mapping[str, Any] | str | os.PathLike[str]) -> dict[str, Variation]:
-    """Return what is given for some dimensions as variations.
+    """Return the variations of dimensions.
 
     Of a file with a table they are its columns. Raises InvalidInput with all that is wrong, each with its place, as
     dimensions.crank.B.
@@ -40,7 +40,7 @@ def variations_of(given: Mapping[str, Any] | str | os.PathLike[str]) -> dict[str
 
 
 def variation_of(where: str, given: Any) -> Variation:
-    """Return what is given for a dimension as a variation. Raises InvalidInput for what is none."""
+    """Return the variation of a dimension. Raises InvalidInput for other objects."""
     if isinstance(given, Variation):
         return given
     for kind in VARIATIONS:
@@ -51,7 +51,7 @@ def variation_of(where: str, given: Any) -> Variation:
 
 
 def variation_from(where: str, data: Mapping[str, Any]) -> Variation:
-    """Return what study files say of a dimension as a variation.
+    """Return the variation of plain data in a study file.
 
     Raises InvalidInput. Angles are in radians here, as in `Variation.data`.
     """

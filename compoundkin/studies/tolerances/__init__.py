@@ -1,1 +1,1 @@
-"""Tolerances: what errors of dimensions and loose pins do to a motion, at worst and by chance."""
+"""Tolerance analysis: the effect of errors of dimensions and of clearances, worst case and statistical."""

@@ -23,10 +23,10 @@ from compoundkin.studies.tolerances.error_sources import ErrorSource, ErrorSpec
 
 
 def clearance_specs(mechanism: Mechanism, clearances: Mapping[str, Any]) -> list[ErrorSpec]:
-    """Return what clearances of pins, slots and guides are.
+    """Return the error sources of clearances of pins, slots and guides.
 
-    Pins are named "C", or "plate.C" where the plate is loose on it; slots and guides by their names. Raises UnknownName
-    for what there is not, InvalidInput where it is open which link is loose, and for no clearance.
+    Pins are named "C", or "plate.C" where the plate has clearance; slots and guides by their names. Raises UnknownName
+    for unknown names, InvalidInput for an ambiguous link and an invalid clearance.
     """
     return [_clearance(mechanism, name, given) for name, given in clearances.items()]
 
@@ -45,15 +45,12 @@ def _half(name: str, given: Any) -> float:
     where = f"clearance.{name}"
     found = real_numbers(where, given)
     if found.shape != () or not np.isfinite(found) or found < 0:
-        raise InvalidInput(Problem(where, f"{short_repr(given)} is no clearance", "give half the play, 0.02"))
+        raise InvalidInput(Problem(where, f"{short_repr(given)} is not a clearance", "give half the play, 0.02"))
     return float(found)
 
 
 def clearance_point(mechanism: Mechanism, name: str) -> str:
-    """Return the name of the point that a loose pin moves.
-
-    Of a pin of two links it is that of one which no other pair uses: the pin alone is then off.
-    """
+    """Return the name of the point that the clearance of a pin moves, on a link where no other pair uses it."""
     where, pins = f"clearance.{name}", mechanism.real_pins
     link, _, letter = name.rpartition(".")
     if letter not in pins or (link and link not in pins[letter]):
@@ -64,7 +61,7 @@ def clearance_point(mechanism: Mechanism, name: str) -> str:
         what = f"another pair is at {letter} on {link}, and would be moved too"
         raise InvalidInput(Problem(where, what, _others(able, letter)))
     if not link and len(pins[letter]) > 2:
-        what = f"{count_phrase(len(pins[letter]), 'link')} meet there, and it is open which are loose on the pin"
+        what = f"{count_phrase(len(pins[letter]), 'link')} meet there, and it is ambiguous which has clearance"
         raise InvalidInput(Problem(where, what, _others(able, letter)))
     if not able:
         raise InvalidInput(Problem(where, "other pairs are at this point on each of its links", _others(able, letter)))
@@ -72,7 +69,7 @@ def clearance_point(mechanism: Mechanism, name: str) -> str:
 
 
 def _is_alone(mechanism: Mechanism, link: str, letter: str) -> bool:
-    """Whether a pin is all that is at a point of a link, whose place is written out."""
+    """Return whether a pin is the only pair at a point of a rigid link."""
     pairs = mechanism.written_pairs
     return link in mechanism.rigid_links and not any(link in one.members and letter in one.letters for one in pairs)
 
@@ -85,11 +82,10 @@ def _others(able: list[str], letter: str) -> str:
 
 @dataclass(frozen=True)
 class PinClearance(ErrorSource):
-    """One link's copy of a pinned point, off in any direction.
+    """One link's copy of a pinned point, displaced by the radial clearance in any direction.
 
-    It is off by the radial clearance. The pin touches the hole, so each coordinate has the variance of a cosine, half
-    the square of the clearance. Source: S. J. Lee, B. J. Gilmore, Trans. ASME J. Mech. Des. 113 (1991) 84-90, the
-    effective length of loose links.
+    The pin touches the hole, so each coordinate has the variance of a cosine, half the square of the clearance. Source:
+    S. J. Lee, B. J. Gilmore, Trans. ASME J. Mech. Des. 113 (1991) 84-90, the effective length of loose links.
     """
 
     radius: float
@@ -101,11 +97,11 @@ class PinClearance(ErrorSource):
 
     @property
     def columns(self) -> int:
-        """The angle at which it lies."""
+        """One: the angle of contact."""
         return 1
 
     def errors(self, units: Number) -> Number:
-        """Return places on the circle, all as likely."""
+        """Return places on the circle, uniformly distributed."""
         angle = 2.0 * np.pi * units[:, 0]
         return self.radius * np.array([np.cos(angle), np.sin(angle)])
 
@@ -120,9 +116,9 @@ class PinClearance(ErrorSource):
 
 @dataclass(frozen=True)
 class FlankClearance(ErrorSource):
-    """The offset of a slot or guide, off to either side.
+    """The offset of a slot or guide, displaced by half the play to either side with equal probability.
 
-    It is off by half the play, to both as likely. A block does not tilt by it: its angle has a tolerance of its own.
+    A block does not tilt by it: its angle has a tolerance of its own.
     """
 
     half: float
@@ -145,7 +141,7 @@ class FlankClearance(ErrorSource):
         return (slopes[0] * self.half) ** 2
 
 
-# The number of slots and guides that their clearance changes.
+# The dimension of slots and guides that their clearance changes.
 OFFSET = "offset"
 
 
@@ -156,9 +152,7 @@ def straight_guides(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def with_stated_offsets(mechanism: Mechanism, names: Sequence[str]) -> Mechanism:
-    """Return the mechanism with the offsets stated that are among some names of dimensions.
-
-    One that is neither written nor read off the drawing is 0.
+    """Return the mechanism with the named offsets stated; one neither written nor read off the drawing is 0.
 
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.model.pairs import slide

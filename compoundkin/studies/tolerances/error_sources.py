@@ -22,11 +22,10 @@ from compoundkin.studies.samples.variations import variation_of
 
 @dataclass(frozen=True)
 class ErrorSource(ABC):
-    """Errors of one dimension, in one coordinate or both.
+    """Errors of one dimension, in one coordinate or both, independent of other sources.
 
-    They do not depend on those of others. `name` is what tables call it, `coordinates` are the numbers that it changes.
-    The slopes of an output by those, in this order, are what it is asked with, arrays of any shape; its answers are
-    those to first order.
+    `name` is its name in tables, `coordinates` are the numbers that it changes. Methods take the slopes of an output by
+    these, in this order, arrays of any shape; results are to first order.
     """
 
     name: str
@@ -36,19 +35,16 @@ class ErrorSource(ABC):
     @property
     @abstractmethod
     def limits(self) -> tuple[float, float]:
-        """Between which two errors each coordinate lies."""
+        """The least and greatest error of each coordinate."""
 
     @property
     def columns(self) -> int:
-        """How many numbers between 0 and 1 a random design takes of it."""
+        """The number of random numbers that it takes for a design."""
         return len(self.coordinates)
 
     @abstractmethod
     def errors(self, units: Number) -> Number:
-        """Return the errors at numbers between 0 and 1.
-
-        Those are (designs, columns); the errors (coordinates, designs).
-        """
+        """Return the errors (coordinates, designs) at numbers (designs, columns) between 0 and 1."""
 
     @abstractmethod
     def worst(self, slopes: Sequence[Number]) -> Number:
@@ -59,7 +55,7 @@ class ErrorSource(ABC):
         """Return the variance of an output."""
 
     def middle(self, slopes: Sequence[Number]) -> Number:
-        """Return the error in the middle of the limits. There is none where those lie evenly."""
+        """Return the error in the middle of the limits, zero for symmetric limits."""
         return 0.0 * slopes[0]
 
     def mean(self, slopes: Sequence[Number]) -> Number:
@@ -79,10 +75,10 @@ class ErrorSpec(NamedTuple):
 
 
 def tolerance_specs(tolerances: Mapping[str, Any], sigmas: float) -> list[ErrorSpec]:
-    """Return what tolerances are.
+    """Return the error sources of tolerances.
 
-    They are 0.05 to either side, two deviations (-0.02, 0.05), or variations of the whole dimension. Raises
-    InvalidInput for what is none.
+    A tolerance is 0.05 to either side, two deviations (-0.02, 0.05), or a variation of the whole dimension. Raises
+    InvalidInput for other objects.
     """
     for name in tolerances:
         point = _point(name)
@@ -105,19 +101,19 @@ def _limits(where: str, given: Any) -> tuple[float, float]:
     found = real_numbers(where, given)
     if found.shape not in ((), (2,)) or not np.isfinite(found).all():
         raise InvalidInput(
-            Problem(where, f"{short_repr(given)} is no tolerance", "give 0.05, or deviations (-0.02, 0.05)")
+            Problem(where, f"{short_repr(given)} is not a tolerance", "give 0.05, or deviations (-0.02, 0.05)")
         )
     low, high = (-found, found) if found.ndim == 0 else found
     if low > high:
         remedy = f"give {-float(found)}" if found.ndim == 0 else f"give ({high}, {low})"
-        raise InvalidInput(Problem(where, f"the tolerance {short_repr(given)} is less than nothing", remedy))
+        raise InvalidInput(
+            Problem(where, f"the tolerance {short_repr(given)} has a lower limit above the upper", remedy)
+        )
     return float(low), float(high)
 
 
 def free_dimension_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Return the dimensions that must be free for some names.
-
-    A point that is among them has both coordinates.
+    """Return the dimensions to free; a point among them includes its coordinates.
 
     >>> free_dimension_names(["plate.C.x", "plate.C", "crank.B.x"])
     ('plate.C', 'crank.B.x')
@@ -156,10 +152,7 @@ def error_sources(path: StudiedPath, given: Sequence[ErrorSpec]) -> tuple[ErrorS
 
 @dataclass(frozen=True)
 class DimensionTolerance(ErrorSource):
-    """Errors of each coordinate by itself, normal about the middle of two limits.
-
-    Those are `sigmas` standard deviations away.
-    """
+    """Independent errors of each coordinate, normal about the middle of limits `sigmas` deviations away."""
 
     low: float
     high: float
@@ -198,10 +191,10 @@ STEPS = np.linspace(-8.0, 8.0, 801)
 
 @dataclass(frozen=True)
 class VariedDimension(ErrorSource):
-    """Errors of each coordinate by itself, those of a variation.
+    """Independent errors of each coordinate, by a variation about the dimension's own value.
 
-    It is off from the dimension's own value. Each array has an entry for every coordinate. Where there is no least or
-    greatest value, those that are so many standard deviations from the mean count.
+    Each tuple has an entry for every coordinate. Without a least or greatest value the limits are `sigmas` standard
+    deviations from the mean.
     """
 
     variation: Variation
@@ -246,7 +239,7 @@ class VariedDimension(ErrorSource):
         return min(self.lows), max(self.highs)
 
     def errors(self, units: Number) -> Number:
-        """Return what the values of the variation are off."""
+        """Return the deviations of the variation from the own value."""
         return _parts(self.variation.values(units), len(self.coordinates)) - np.reshape(self.own, (-1, 1))
 
     def worst(self, slopes: Sequence[Number]) -> Number:
@@ -267,7 +260,7 @@ class VariedDimension(ErrorSource):
 
 
 def _warn_middle(where: str, lows: Number, highs: Number) -> None:
-    """Warn LikelySlip where none of the values is the mechanism's own, as where deviations were meant."""
+    """Warn LikelySlip where the values exclude the mechanism's own, as if deviations were meant."""
     if np.any((lows > 0.0) | (highs < 0.0)):
         told = (
             f"{where}: the mechanism's own value is not among these; they are values of the dimension, not its errors"

@@ -19,9 +19,9 @@ from compoundkin.studies.tolerances.error_sources import ErrorSource
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OutputTolerance(ShortRepr):
-    """An output by its name.
+    """The tolerance of an output: numbers for figures, arrays over the poses for courses; angles are radians.
 
-    Figures have numbers, courses arrays over the poses; angles are radians. `nominal` is its value at the mechanism's
+    `nominal` is its value at the mechanism's
     own dimensions, `slopes` are by the coordinates that have tolerances, in units of the output by those of the
     dimension. All else is to first order, but `sample`, which is the output in random designs.
     """
@@ -41,7 +41,7 @@ class OutputTolerance(ShortRepr):
 
     @cached_property
     def worst_parts(self) -> Mapping[str, Number]:
-        """What each source adds to `worst`."""
+        """The part of each source in `worst`."""
         return self._of_each(lambda source, slopes: source.worst(slopes))
 
     @cached_property
@@ -61,12 +61,12 @@ class OutputTolerance(ShortRepr):
 
     @cached_property
     def mean(self) -> Number:
-        """The mean value: the nominal one where tolerances lie evenly."""
+        """The mean value, the nominal one for symmetric tolerances."""
         return self.nominal + sum(self._of_each(lambda source, slopes: source.mean(slopes)).values())
 
     @cached_property
     def variances(self) -> Mapping[str, Number]:
-        """What each source adds to the square of the deviation."""
+        """The part of each source in the variance."""
         return self._of_each(lambda source, slopes: source.variance(slopes))
 
     @cached_property
@@ -76,7 +76,7 @@ class OutputTolerance(ShortRepr):
 
     @cached_property
     def contributions(self) -> Mapping[str, Number]:
-        """The share of each source in the variance; zeros where there is none."""
+        """The share of each source in the variance, zero where the variance is."""
         whole = sum(self.variances.values())
         return {name: part / np.where(whole > 0, whole, 1.0) for name, part in self.variances.items()}
 
@@ -93,7 +93,7 @@ class OutputTolerance(ShortRepr):
 class SampledOutput(ShortRepr):
     """An output in the random designs that assemble over the whole motion.
 
-    `values` are (designs,) of a figure, (designs, poses) of a course; `percents` say which percentiles there are.
+    `values` are (designs,) of a figure, (designs, poses) of a course; `percents` are the levels of percentiles.
     """
 
     values: Number
@@ -101,7 +101,7 @@ class SampledOutput(ShortRepr):
 
     @property
     def count(self) -> int:
-        """How many designs it is of."""
+        """The number of designs."""
         return len(self.values)
 
     @cached_property
@@ -134,7 +134,7 @@ class SampledOutput(ShortRepr):
 
     @cached_property
     def percentile_errors(self) -> Number:
-        """The standard errors of `percentiles`, whatever the distribution is.
+        """The standard errors of `percentiles` for any distribution.
 
         As many designs lie below a percentile as a binomial distribution has: half of the distance between those that
         are one standard deviation of it apart to either side. Source: W. J. Conover, Practical Nonparametric

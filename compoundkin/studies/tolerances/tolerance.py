@@ -1,4 +1,4 @@
-"""`tolerance`: the effect of errors of dimensions and of loose pins on outputs of a mechanism, by slopes and at random."""
+"""`tolerance`: the effect of errors of dimensions and of loose pins on outputs of a mechanism."""
 
 from __future__ import annotations
 
@@ -58,16 +58,16 @@ def tolerance(
     sigmas: float = 3.0,
     percentiles: Sequence[float] = (0.135, 50.0, 99.865),
 ) -> ToleranceAnalysis:
-    """Return what tolerances of dimensions do to outputs of a mechanism.
+    """Return the effect of tolerances of dimensions and of clearances on outputs of a mechanism.
 
     `tolerances` are by the names of dimensions, as those that `compile` frees: 0.05 to either side, of a point in each
-    coordinate; deviations (-0.02, 0.05); or what the whole dimension may be, `around` a value or a distribution of
+    coordinate; deviations (-0.02, 0.05); or a variation of the whole dimension, `around` a value or a distribution of
     scipy.stats. Lengths are in the mechanism's unit, angles in radians. Limits lie `sigmas` standard deviations from
     the middle. `clearance` is half the play of pins, slots and guides by their names; a pin of more than two links is
-    named "plate.C", for each that is loose. `outputs` are quantities at every pose, or figures of the motion
+    named "plate.C" for each link with clearance. `outputs` are quantities at every pose, or figures of the motion
     ("ram.stroke"), for which a pin stays at its place in the link; of vectors both components. Motion and modes are
-    those of `solve`. All is found to first order from exact slopes, and beside it in `count` random designs, of which
-    `percentiles` are told. Raises UnknownName and InvalidInput for what there is not, and what `solve` raises; warns
+    those of `solve`. Results are to first order from exact slopes, and statistical from `count` random designs with
+    `percentiles`. Raises UnknownName and InvalidInput for invalid arguments, and what `solve` raises; warns
     UnassembledPoses of designs that cannot be assembled.
 
     >>> from compoundkin.model.elements import drive, link
@@ -102,7 +102,7 @@ def _check_tolerances(names: Sequence[str], given: Sequence[ErrorSpec]) -> None:
 def output_tolerances(
     designs: TolerancedDesigns, responses: Sequence[Response], percents: tuple[float, ...]
 ) -> tuple[dict[str, OutputTolerance], int]:
-    """Return the outputs by name, and how many random designs are left out.
+    """Return the outputs by name, and the number of random designs left out.
 
     A vector is two outputs. Raises NotAssembled where the mechanism itself or too many random designs are not assembled
     over the whole motion; warns UnassembledPoses of some.
@@ -135,10 +135,7 @@ def _outputs(
 
 
 def _near(name: str, values: Number, nominal: Number, unit: str) -> Number:
-    """Return the values of designs that have one wherever the mechanism itself does.
-
-    Angles are counted by the turn that is nearest to the nominal one.
-    """
+    """Return the values of designs that have one wherever the mechanism has; angles in the nominal turn."""
     has = ~(np.isnan(values) & ~np.isnan(nominal)).reshape(len(values), -1).any(axis=1)
     if np.count_nonzero(has) < 2:
         what = f"it has no value in {np.count_nonzero(~has)} of {len(has)} random designs"
@@ -151,8 +148,8 @@ def _report_slopes(one: OutputTolerance) -> None:
     lacking = np.isnan(one.deviation) & ~np.isnan(one.nominal)
     if lacking.any():
         where = f" at {np.count_nonzero(lacking)} of {lacking.size} poses" if one.is_course else ""
-        told = f"{one.name} has no slopes{where}, at a limit or a change point; only the random designs tell there"
-        warn(told, FewDigits)
+        what = f"{one.name} has no slopes{where}, at a limit position or a change point; use the random designs there"
+        warn(what, FewDigits)
 
 
 def _check_nominal(designs: TolerancedDesigns) -> None:
@@ -175,13 +172,13 @@ def _report_progress(assembled: Number) -> None:
         warn(told + "percentiles are those of the others", UnassembledPoses)
 
 
-# The values of all random designs are kept: so many numbers at most, a gibibyte.
+# The greatest number of values in memory: a gibibyte.
 MOST_VALUES = 2**27
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TolerancedDesigns(ShortRepr):
-    """The mechanism as it stands, and random designs within the tolerances."""
+    """The original mechanism, and random designs within the tolerances."""
 
     path: StudiedPath
     sources: tuple[ErrorSource, ...]
@@ -200,7 +197,7 @@ class TolerancedDesigns(ShortRepr):
 
     def values(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
         """Return the values of responses by name, and which designs assemble."""
-        self._hold_room(responses)
+        self._check_memory(responses)
         parts: dict[str, list[Number]] = {one.name: [] for one in responses}
         assembled = []
         for rows in design_blocks(self.sample.count, self.path.reference.inputs.poses):
@@ -212,16 +209,18 @@ class TolerancedDesigns(ShortRepr):
                     parts[one.name].append(np.broadcast_to(one.values(designs), shape))
         return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(assembled)
 
-    def _hold_room(self, responses: Sequence[Response]) -> None:
-        """Raise InvalidInput where the values of all designs would not stay in memory."""
+    def _check_memory(self, responses: Sequence[Response]) -> None:
+        """Raise InvalidInput where the values of all designs do not fit in memory."""
         poses = self.path.reference.inputs.poses
         each = sum((poses if one.is_course else 1) * (1 + one.is_vector) for one in responses)
         if self.sample.count * each > MOST_VALUES:
-            what = f"{self.sample.count} designs of {each} values each do not stay in memory"
-            raise InvalidInput(Problem("count", what, f"at most {MOST_VALUES // each}; a study keeps more in a folder"))
+            what = f"{self.sample.count} designs of {each} values each do not fit in memory"
+            raise InvalidInput(
+                Problem("count", what, f"at most {MOST_VALUES // each}; a study stores more in a folder")
+            )
 
     def designs(self, rows: range) -> Designs:
-        """Return some of them."""
+        """Return some random designs."""
         errors = self._errors(rows)
         found = {}
         for one in self.path.compiled.programs.dimensions:

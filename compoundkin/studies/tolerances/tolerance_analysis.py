@@ -26,9 +26,9 @@ from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ToleranceAnalysis(Mapping[str, OutputTolerance], DisplaysHtml):
-    """Outputs by name, each with what tolerances do to it.
+    """The effect of tolerances on outputs by name.
 
-    `motion` is that of the mechanism as it stands, `sources` are what errors come from. `unassembled` of the random
+    `motion` is that of the original mechanism, `sources` are the sources of errors. `unassembled` of the random
     designs could not be assembled over the whole motion, and are left out.
     """
 
@@ -40,32 +40,31 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance], DisplaysHtml):
 
     @property
     def mechanism(self) -> Mechanism:
-        """The mechanism as it stands."""
+        """The original mechanism."""
         return self.motion.mechanism
 
     @property
     def count(self) -> int:
-        """How many random designs were made."""
+        """The number of random designs."""
         return self.chances.sample.count
 
     @property
     def percentiles(self) -> tuple[float, ...]:
-        """Which percentiles are told of them."""
+        """The levels of their percentiles."""
         return self.chances.percentiles
 
     def table(self, *names: str) -> Table:
-        """Return a row for each source, with what it contributes to outputs.
+        """Return a row for each source, with its contributions to the named outputs, by default to all.
 
-        These are all outputs without names. Of a course they are those at the pose where its deviation is greatest.
-        Raises UnknownName.
+        For a course they are at the pose with the greatest deviation. Raises UnknownName.
         """
         chosen = [self[name] for name in names or self]
         return contribution_table(self.mechanism.title, self.sources, chosen)
 
     def bands(self, *names: str) -> Table:
-        """Return a row for each pose, with the bands of courses.
+        """Return a row for each pose, with the bands of the named courses, by default of all.
 
-        These are all courses without names. Raises UnknownName, and InvalidInput for a figure.
+        Raises UnknownName, and InvalidInput for a figure.
         """
         chosen = [self[name] for name in names] or [one for one in self.values() if one.is_course]
         return band_table(self.motion, chosen)
@@ -99,11 +98,11 @@ LOWER, UPPER, UNIT = "lower", "upper", "unit"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContributionTable(Table):
-    """A row for each source of errors. The limits of each are in a `unit` of their own."""
+    """A row for each source of errors, with limits in its own `unit`."""
 
     @property
     def shown(self) -> Table:
-        """As it is shown to people: angles in degrees."""
+        """The table for display, with angles in degrees."""
         rows = self[UNIT].values == RADIANS
         columns = [column.shown for column in self.columns]
         for k, column in enumerate(columns):
@@ -117,8 +116,8 @@ class ContributionTable(Table):
 def contribution_table(title: str, sources: Sequence[ErrorSource], outputs: Sequence[OutputTolerance]) -> Table:
     """Return a row for each source of errors.
 
-    It has its limits, and of each output its part of the worst case, its deviation and its share of the variance. Of a
-    course they are those of the pose with the greatest deviation.
+    Columns are its limits, and for each output its part of the worst case, its deviation and its share of the variance;
+    for a course at the pose with the greatest deviation.
     """
     limits = np.array([one.limits for one in sources])
     columns = [
@@ -146,12 +145,11 @@ def _contributions(one: OutputTolerance) -> Iterator[Quantity]:
 def band_table(motion: Motion, outputs: Sequence[OutputTolerance]) -> Table:
     """Return a row for each pose.
 
-    It has the drivers, and of each course its values with their bands. Raises InvalidInput for a figure, which has no
-    poses.
+    Columns are the drivers, and the values of each course with their bands. Raises InvalidInput for a figure.
     """
     for one in outputs:
         if not one.is_course:
-            what = "it is one number of the whole motion, and has no bands over the poses"
+            what = "it is a figure of the whole motion, and has no bands over the poses"
             raise InvalidInput(Problem(one.name, what, f"take [{one.name!r}].sample.percentiles"))
     drivers = motion.table(next(iter(motion.drives))).columns[:-2]
     return Table(motion.mechanism.title, (*drivers, *(column for one in outputs for column in _bands(one))))
@@ -168,10 +166,7 @@ def _bands(one: OutputTolerance) -> Iterator[Quantity]:
 
 @dataclass(frozen=True)
 class Chances:
-    """Random designs, and the percentiles that are told of them.
-
-    Limits lie `sigmas` standard deviations from the middle.
-    """
+    """The random sample, its percentiles, and `sigmas`, the standard deviations from the middle to the limits."""
 
     sample: RandomSample
     percentiles: tuple[float, ...]
@@ -179,7 +174,7 @@ class Chances:
 
     @classmethod
     def of(cls, count: int, seed: int, percentiles: Sequence[float], sigmas: float) -> Self:
-        """Return what is given. Raises InvalidInput for what cannot be, and for too few designs."""
+        """Return checked arguments. Raises InvalidInput for invalid ones, and for too few designs."""
         found = real_numbers("percentiles", percentiles)
         if found.ndim != 1 or not found.size or not ((found > 0) & (found < 100)).all():
             what = f"{short_repr(percentiles)} are no percentiles"
@@ -189,7 +184,7 @@ class Chances:
             raise InvalidInput(Problem("sigmas", what, "give 3"))
         sample = RandomSample(checked_count(count), checked_seed(seed))
         outermost = float(np.minimum(found, 100 - found).min())
-        # of fewer designs none lies beyond the percentile on the average, so that the sample does not tell it
+        # with fewer designs none lies beyond the percentile on average
         needed = max(2, ceil(100 / outermost))
         if sample.count < needed:
             what = f"{sample.count} random designs are too few for percentile {outermost:g} or {100 - outermost:g}"
