@@ -13,7 +13,7 @@ from compoundkin.analysis.centres.derivation import derive
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.structure import Structure
-from compoundkin.view.sketch.labels import Label, label_around, text_half
+from compoundkin.view.sketch.labels import Label, label_around, names_at_places, text_half
 from compoundkin.view.sketch.picture import Picture, checked_size
 from compoundkin.view.sketch.scene import Scene, Window
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, ShapeGroup, Text, sheet
@@ -78,8 +78,7 @@ def centre_places(scene: Scene) -> list[complex]:
 
 def centre_number(scene: Scene, one: str, two: str) -> str:
     """Return the name of a centre by the numbers of its links. It is 13, or 3,12."""
-    first, second = sorted((scene.numbers[one], scene.numbers[two]))
-    return f"{first}{second}" if second < 10 else f"{first},{second}"
+    return _name((one, two), scene.numbers)
 
 
 def _at(scene: Scene, values: Number) -> Number:
@@ -125,14 +124,7 @@ def centre_shapes(found: VisibleCentres) -> list[Shape]:
 
 def centre_labels(found: VisibleCentres) -> list[Label]:
     """Return the names of the centres, those at one place together."""
-    places: list[tuple[list[str], complex]] = []
-    for name, place in found.places.items():
-        same = next((names for names, other in places if abs(other - place) < TOGETHER), None)
-        if same is None:
-            places.append(([name], place))
-        else:
-            same.append(name)
-    joined = [(" ".join(names), place) for names, place in places]
+    joined = [(" ".join(names), place) for names, place in names_at_places(found.places.items(), TOGETHER)]
     return [label_around(f"centre {text}", place, text_half(text, SMALL), 5.0, 1 + 1j) for text, place in joined]
 
 

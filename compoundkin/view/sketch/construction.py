@@ -12,19 +12,19 @@ from compoundkin.kinematics.dyad_loci import CircleLocus, Loci, Locus, same_locu
 from compoundkin.kinematics.groups import DyadSolver, as_dyad
 from compoundkin.structure import Group
 from compoundkin.view.sketch.kinematic_sketch import layered, nearby
-from compoundkin.view.sketch.labels import Label, label_around, placed, point_letters, text_half
+from compoundkin.view.sketch.labels import Label, label_around, label_beside, placed, point_letters, text_half
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import SIDE, Picture, checked_size, lines_below, lines_of_text, width_with
 from compoundkin.view.sketch.picture_options import Drawable, PictureOptions, pose_notes, scene_of
 from compoundkin.view.sketch.scene import Scene, Window, fitted_window, window_around
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, shape_corners, sheet
-from compoundkin.view.sketch.sketch_style import LETTER, PIN, SMALL, STUD, style_of
+from compoundkin.view.sketch.sketch_style import LETTER, PIN, STUD, style_of
 
 # Loci of both modes that differ by less than this part of the size are one.
 SAME = 1e-6
 # Places along a radius for its length, the middle first, and how far beside it, in picture units.
 ALONG = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2)
-BESIDE = 12.0
+BESIDE = 6.0
 # On the side of the other link a length is worse than outside by this.
 INSIDE = 24.0
 # A dyad without circles, such as two blocks on one pin, that reaches over less than this part of the mechanism's size
@@ -181,19 +181,10 @@ def _labels(drawn: DrawnDyad) -> list[Label]:
     # rather outside the triangle of the links
     middle = complex(np.mean([place for line in lines for place in line] or [0j]))
     pairs = zip(named, lines, strict=True)
-    return found + [_length(f"number {curve.name}", line, curve.name, middle) for curve, line in pairs]
-
-
-def _length(key: str, line: tuple[complex, complex], text: str, middle: complex) -> Label:
-    """A label beside a radius, rather away from the middle."""
-    start, way = line[0], line[1] - line[0]
-    half, across = text_half(text, SMALL), 1j * way / (abs(way) or 1.0)
-    outside = 1.0 if (np.conjugate(across) * (start + way / 2.0 - middle)).real >= 0 else -1.0
-    reach = abs(across.real) * half.real + abs(across.imag) * half.imag + BESIDE / 2.0
-    tried = [(share, side) for share in ALONG for side in (outside, -outside)]
-    places = tuple(start + way * share + across * side * reach for share, side in tried)
-    costs = tuple(20.0 * abs(share - 0.5) + (INSIDE if side != outside else 0.0) for share, side in tried)
-    return Label(key, half, places, costs)
+    return found + [
+        label_beside(f"number {curve.name}", curve.name, line, middle, ALONG, (BESIDE,), INSIDE)
+        for curve, line in pairs
+    ]
 
 
 def _notes(scene: Scene, modes: Sequence[Loci]) -> list[str]:

@@ -21,13 +21,11 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.view.sketch.labels import Label, label_around, text_half
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import (
-    HEAD,
-    ArcShape,
     Shape,
     ShapeGroup,
     Text,
-    arrow_head,
     arrow_shapes,
+    curved_arrow,
     unit_direction,
 )
 from compoundkin.view.sketch.sketch_style import INERTIA, LOAD, REACTION, SMALL
@@ -99,21 +97,12 @@ def force_arrow(one: ActingForce, at: complex, scale: VectorScale, middle: compl
 
 
 def moment_arc(one: ActingForce, at: complex, radius: float, toward: complex) -> tuple[Shape, ...]:
-    """Draw a moment as an arc with a head beside its place.
-
-    It is not to scale.
-    """
+    """Draw a moment as an arc with a head beside its place. It is not to scale."""
     # counterclockwise is clockwise in coordinates whose y points downward
-    way = -float(np.sign(one.moment))
-    start = unit_direction(toward) * np.exp(-0.5j * way * SWEEP)
-    stop, back = start * np.exp(1j * way * SWEEP), HEAD / radius
-    end = at + stop * np.exp(-1j * way * back * 0.8) * radius
-    heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
-    arc = ArcShape(complex(at + start * radius), complex(end), radius, way > 0, one.kind)
-    tip = arrow_head(complex(at + stop * radius), complex(heading), f"{one.kind}-head")
-    return (
-        ShapeGroup((arc, tip), title=f"moment, {one.description}: {force_text(abs(one.moment))}", links=(one.link,)),
-    )
+    sweep = -float(np.sign(one.moment)) * SWEEP
+    arrow = curved_arrow(at, unit_direction(toward) * np.exp(-0.5j * sweep), sweep, radius, one.kind)
+    title = f"moment, {one.description}: {force_text(abs(one.moment))}"
+    return (ShapeGroup(arrow, title=title, links=(one.link,)),)
 
 
 def moment_arcs(

@@ -30,6 +30,7 @@ from compoundkin.view.sketch.labels import (
     WIDE,
     Label,
     label_around,
+    label_beside,
     label_shapes,
     labels_of,
     placed,
@@ -309,7 +310,7 @@ def _sides(
             ShapeGroup(arrow_shapes(start, stop, one.kind), title=f"{one.description}: {force_text(abs(one.force))}")
         )
         text = f"{one.name} {force_text(abs(one.force))}"
-        labels.append(_beside(f"side {k}", text, start, stop, middle))
+        labels.append(label_beside(f"side {k}", text, (start, stop), middle, ALONG, BESIDE, 6.0))
         texts.append((text, one.kind))
     return shapes, labels, texts
 
@@ -319,17 +320,6 @@ def _is_flat(corner: Sequence[complex]) -> bool:
     longest = max((end - corner[0] for end in corner), key=abs)
     e = unit_direction(longest)
     return bool(max(abs((np.conjugate(e) * (end - corner[0])).imag) for end in corner) < ASIDE)
-
-
-def _beside(key: str, text: str, start: complex, stop: complex, middle: complex) -> Label:
-    """A label beside a force, rather outside of the polygon."""
-    half, across = text_half(text, SMALL), 1j * unit_direction(stop - start)
-    outside = 1.0 if (np.conjugate(across) * ((start + stop) / 2.0 - middle)).real >= 0 else -1.0
-    reach = abs(across.real) * half.real + abs(across.imag) * half.imag
-    tried = [(share, side, off) for share in ALONG for off in BESIDE for side in (outside, -outside)]
-    places = tuple(start + (stop - start) * share + across * side * (reach + off) for share, side, off in tried)
-    costs = tuple(20.0 * abs(share - 0.5) + off + (6.0 if side != outside else 0.0) for share, side, off in tried)
-    return Label(key, half, places, costs)
 
 
 # Links are drawn in this part of the size of a sketch; a single one in this.

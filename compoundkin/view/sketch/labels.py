@@ -28,8 +28,18 @@ from compoundkin.view.sketch.painter import (
     visible_points,
 )
 from compoundkin.view.sketch.scene import Scene, Window
-from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
-from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, PIN, style_of
+from compoundkin.view.sketch.shapes import (
+    ArcShape,
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    ShapeGroup,
+    Strokes,
+    Text,
+    unit_direction,
+)
+from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, PIN, SMALL, style_of
 
 # Places along a bar for its number, the middle first; and how far beside it, in picture units.
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
@@ -381,6 +391,41 @@ def label_around(key: str, at: complex, half: complex, clear: float, prefer: com
     places = (at + AROUND * (clear + reach + rings)).ravel()
     costs = (FAR * rings + 2.5 * (1.0 - (np.conjugate(better) * AROUND).real)).ravel()
     return Label(key, half, tuple(places.tolist()), tuple(costs.tolist()))
+
+
+def label_beside(
+    key: str,
+    text: str,
+    line: tuple[complex, complex],
+    middle: complex,
+    shares: Sequence[float],
+    offsets: Sequence[float],
+    inside: float,
+) -> Label:
+    """Return a label beside a line, at shares of its length and distances from it.
+
+    Rather away from the `middle` of a figure: on the side towards it places cost more by `inside`.
+    """
+    start, way = line[0], line[1] - line[0]
+    half, across = text_half(text, SMALL), 1j * unit_direction(way)
+    outside = 1.0 if (np.conjugate(across) * (start + way / 2.0 - middle)).real >= 0 else -1.0
+    reach = abs(across.real) * half.real + abs(across.imag) * half.imag
+    tried = [(share, off, side) for share in shares for off in offsets for side in (outside, -outside)]
+    places = tuple(start + way * share + across * side * (reach + off) for share, off, side in tried)
+    costs = tuple(20.0 * abs(share - 0.5) + off + (inside if side != outside else 0.0) for share, off, side in tried)
+    return Label(key, half, places, costs)
+
+
+def names_at_places(named: Iterable[tuple[str, complex]], nearest: float) -> list[tuple[list[str], complex]]:
+    """Return the names of places; those of places nearer to each other than `nearest` are together."""
+    found: list[tuple[list[str], complex]] = []
+    for name, place in named:
+        same = next((names for names, other in found if abs(other - place) < nearest), None)
+        if same is None:
+            found.append(([name], place))
+        else:
+            same.append(name)
+    return found
 
 
 def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:

@@ -18,21 +18,18 @@ from compoundkin.view.sketch.painter import Laid, Layer, Painter, guide_line, sl
 from compoundkin.view.sketch.scene import PairMark
 from compoundkin.view.sketch.shapes import (
     HATCH,
-    HEAD,
-    ArcShape,
     CircleShape,
     Polygon,
     Polyline,
     Shape,
     Strokes,
-    arrow_head,
     arrow_shapes,
+    curved_arrow,
     hatching,
     rectangle_corners,
     unit_direction,
 )
 from compoundkin.view.sketch.sketch_style import BLOCK, PIN, STUD, style_of
-from compoundkin.view.sketch.traced_numbers import as_place
 from compoundkin.view.sketch.wheel_shapes import (
     follower_stem,
     geneva_of,
@@ -346,15 +343,7 @@ def turning_arrow(painter: Painter, step: DrivenPair, at: complex, sense: float,
     others = [painter.place(link, p) for k, p in painter.scene.points[link].items() if k != letter]
     toward = unit_direction(max((p - at for p in others), key=abs, default=1 + 0j))
     # counterclockwise is clockwise in coordinates whose y points downward
-    way = -sense
-    start = toward * np.exp(1j * way * 0.45)
-    stop = start * np.exp(1j * way * TURN)
-    tip = at + stop * TURN_RADIUS
-    back = HEAD / TURN_RADIUS
-    end = at + stop * np.exp(-1j * way * back * 0.8) * TURN_RADIUS
-    heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
-    arc = ArcShape(at + start * TURN_RADIUS, as_place(end), TURN_RADIUS, way > 0, "drive")
-    return arc, arrow_head(as_place(tip), as_place(heading), "drive-head")
+    return curved_arrow(at, toward * np.exp(-0.45j * sense), -sense * TURN, TURN_RADIUS, "drive")
 
 
 def sliding_arrow(painter: Painter, at: complex, e: complex, room: float = BLOCK[1] / 2.0) -> tuple[Shape, ...]:

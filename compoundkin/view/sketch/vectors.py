@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, with_superscripts
 from compoundkin.model.geometry import FRAME
-from compoundkin.view.sketch.labels import label_around, placed, text_half
+from compoundkin.view.sketch.labels import label_around, names_at_places, placed, text_half
 from compoundkin.view.sketch.painter import link_corners
 from compoundkin.view.sketch.picture import SEPARATOR, SIDE, Picture, checked_size, lines_below, width_with
 from compoundkin.view.sketch.picture_options import Drawable, PictureOptions, pose_notes, scene_of
@@ -101,7 +101,7 @@ def round_below(value: float) -> float:
 
 
 def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], scale: VectorScale) -> list[Shape]:
-    """Return an arrow for each vector that is long enough visible."""
+    """Return an arrow for each vector that is long enough to be drawn."""
     found: list[Shape] = []
     for letter, rate in rates.items():
         way = complex(np.conjugate(rate)) * scale.per_unit
@@ -172,13 +172,8 @@ def _rays(ends: Mapping[str, complex], pole: complex, kind: str) -> list[Shape]:
 def _names(ends: Mapping[str, complex], pole: complex, kind: str) -> list[tuple[str, complex]]:
     """The names of the images: those at one place together, those at the pole after it."""
     mark = "'" * (KINDS_OF_VECTOR[kind][0] - 1)
-    found: list[tuple[list[str], complex]] = [([f"o{mark}"], pole)]
-    for letter, end in ends.items():
-        same = next((names for names, place in found if abs(place - end) < SAME), None)
-        if same is None:
-            found.append(([letter.lower() + mark], end))
-        else:
-            same.append(letter.lower() + mark)
+    images = ((letter.lower() + mark, end) for letter, end in ends.items())
+    found = names_at_places([(f"o{mark}", pole), *images], SAME)
     return [(", ".join(dict.fromkeys(names)), place) for names, place in found]
 
 
