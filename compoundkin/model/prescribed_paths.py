@@ -32,7 +32,7 @@ class Path(CopiesFields, ComparedByValue, ABC):
     @property
     @abstractmethod
     def span(self) -> tuple[float, float] | None:
-        """The first and the last time of it; None where it has none."""
+        """Its first and last time, or None."""
 
     @abstractmethod
     def place(self, t: Number, order: int) -> Series:
@@ -40,7 +40,7 @@ class Path(CopiesFields, ComparedByValue, ABC):
 
     @property
     def laws(self) -> tuple[Any, ...]:
-        """The laws in time that it is made of."""
+        """Its laws in time."""
         return ()
 
     def problems(self, where: str) -> Iterator[Problem]:

@@ -14,15 +14,15 @@ from compoundkin.base.arrays import Number
 
 # Terms that cancel leave no more than this part of their sizes: a few units in the last place.
 ROUNDING = 1e-15
-# Rounding leaves no jump of a derivative where there is none above this part of what is natural for the program.
+# Jumps of a derivative below this part of its scale in the program are rounding.
 JUMP = 1e-9
 
 
 @dataclass(frozen=True)
 class AccelerationPiece:
-    """A part of a law. Its span, the acceleration ``sum a[k] u**k + A sin(w u + phase)``, u from its start.
+    """A piece of a law: its span, the acceleration ``sum a[k] u**k + A sin(w u + phase)``, u from its start.
 
-    `wave` is (A, w, phase); `leap` a velocity taken on at once at the start.
+    `wave` is (A, w, phase); `leap` a jump of the velocity at the start.
     """
 
     span: float
@@ -81,7 +81,7 @@ class PositionPiece:
         return smooth + amplitude * frequency**k * sin(frequency * u + phase + k * pi / 2)
 
     def scaled(self, start: float, over: float, place: float, rise: float) -> PositionPiece:
-        """Return the piece for a span and rise that are not 1. It begins at a place."""
+        """Return the piece scaled to a span and a rise, beginning at a place."""
         amplitude, frequency, phase = self.wave
         polynomial = [c * rise / over**k for k, c in enumerate(self.polynomial)]
         polynomial[0] += place
@@ -90,7 +90,7 @@ class PositionPiece:
 
 @cache
 def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
-    """Return a law with a rise of 1 over a span of 1. Raises KeyError for one that there is not.
+    """Return a law with a rise of 1 over a span of 1. Raises KeyError for an unknown one.
 
     >>> [piece.start for piece in unit_pieces("modified-sine")]
     [0.0, 0.125, 0.875]
@@ -115,7 +115,7 @@ def integrate_acceleration(parts: Sequence[AccelerationPiece]) -> tuple[Position
 
 
 def _integrate_piece(part: AccelerationPiece, start: float, place: float, speed: float) -> PositionPiece:
-    """Return the position of a part that begins at a place with a speed."""
+    """Return the position of a piece that begins at a place with a speed."""
     amplitude, frequency, phase = part.wave
     wave = -amplitude / frequency**2
     fixed = (place - wave * sin(phase), speed - wave * frequency * cos(phase))
@@ -125,7 +125,7 @@ def _integrate_piece(part: AccelerationPiece, start: float, place: float, speed:
 
 @dataclass(frozen=True)
 class Discontinuity:
-    """A place of a program where a derivative jumps. Order 1 is the velocity, 2 the acceleration."""
+    """A place of a program where a derivative jumps: order 1 is the velocity, 2 the acceleration."""
 
     place: float
     order: int
@@ -135,9 +135,9 @@ class Discontinuity:
 def jumps(
     pieces: Sequence[PositionPiece], end: float, natural: Sequence[float], goes_on: bool
 ) -> tuple[Discontinuity, ...]:
-    """Find where derivatives of order 1, 2 ... jump. They do from piece to piece, and at both ends.
+    """Return where derivatives of order 1, 2 ... jump, from piece to piece and at both ends.
 
-    `natural` is what is natural for each order. If it `goes_on`, the end is joined to the beginning.
+    `natural` is the scale of each order. If it `goes_on`, the end is joined to the beginning.
     """
     ends = [*(piece.start for piece in pieces[1:]), end]
     found = []
@@ -152,7 +152,7 @@ def jumps(
 
 
 class Spots(NamedTuple):
-    """Where places are in a program: their pieces by index, and which are outside."""
+    """Places in a program: the index of their pieces, and which are outside."""
 
     index: Number
     before: Number
@@ -160,7 +160,7 @@ class Spots(NamedTuple):
 
 
 class PieceTable:
-    """The pieces of a program as arrays, to look them up by index."""
+    """The pieces of a program as arrays."""
 
     def __init__(self, pieces: Sequence[PositionPiece], end: float) -> None:
         self.starts = np.array([piece.start for piece in pieces])
@@ -173,12 +173,12 @@ class PieceTable:
         self.waves = np.array([piece.wave for piece in pieces]).T.copy()
 
     def spots(self, x: Number) -> Spots:
-        """Return where places x are."""
+        """Return the pieces of places x."""
         index = np.clip(np.searchsorted(self.starts, x, side="right") - 1, 0, len(self.starts) - 1)
         return Spots(index, x < 0.0, x > self.end)
 
     def taylor(self, x: Number, spots: Spots, order: int, stops: bool) -> list[Number]:
-        """Return the Taylor coefficients at places x; outside it stands still, if it `stops`."""
+        """Return the Taylor coefficients at places x; constant outside, if it `stops`."""
         index, before, after = spots
         place = np.where(before, 0.0, np.where(after, self.end, x)) if stops else x
         u = place - self.starts[index]
@@ -186,7 +186,7 @@ class PieceTable:
         if self.waves[0].any():
             out = [a + b for a, b in zip(out, self._waves(index, u, order), strict=True)]
         if stops and order:
-            # not a number stays what it is
+            # NaN stays NaN
             out[1:] = [np.where(before | after, 0.0, c) for c in out[1:]]
         return [out[0], *(np.where(np.abs(c) <= self._rounding(k)[index], 0.0, c) for k, c in enumerate(out[1:], 1))]
 
@@ -220,7 +220,7 @@ NOTHING = 1e-13
 
 @dataclass(frozen=True)
 class LeastTime:
-    """How a distance is gone in the least time. A limit that is infinite does not count.
+    """Motion over a distance in the least time; an infinite limit has no effect.
 
     The speed grows over `ramp` (the jerk is greatest), `hold` (the acceleration is) and a ramp again; then `cruise`;
     then the same backwards.
@@ -272,7 +272,7 @@ class LeastTime:
 
     @property
     def _least(self) -> float:
-        """A time that the whole one is not below: that of the greatest acceleration alone."""
+        """A lower bound of the whole time: that of the greatest acceleration alone."""
         return 2.0 * sqrt(self.distance / self.peak)
 
     def _time(self, found: float) -> float:

@@ -16,7 +16,7 @@ from compoundkin.model.fields import Key
 
 
 class ComparedByValue:
-    """Laws are equal if they say the same, array by array."""
+    """Laws are equal if their fields are, array by array."""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and all(
@@ -29,7 +29,7 @@ class ComparedByValue:
 
 
 def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
-    """Return a coordinate at times t with all its derivatives. It has this value, speed, acceleration ... at time 0.
+    """Return a coordinate at times t with its derivatives, from its value, speed, acceleration ... at time 0.
 
     >>> taylor((1.0, 2.0, 6.0), 2.0, order=2).c
     (17.0, 14.0, 3.0)
@@ -62,13 +62,13 @@ def as_number(value: Number) -> Number:
 
 
 def check_law_numbers(law: Any, *names: str) -> None:
-    """Make the numbers of a law floats or arrays that cannot be written to. Raises InvalidMechanism."""
+    """Convert the numbers of a law to floats or read-only arrays. Raises InvalidMechanism."""
     for name in names or [f.name for f in fields(law)]:
         given = getattr(law, name)
         held = np.array(real_numbers(f"law.{name}", given, InvalidMechanism))
         if held.size == 0 or not np.isfinite(held).all():
             raise InvalidMechanism(Problem(f"law.{name}", "the value is empty or not finite"))
-        if not names and held.ndim and held.shape[-1] > 1:  # not a table, but what holds all along the motion
+        if not names and held.ndim and held.shape[-1] > 1:  # not a table, but constant along the motion
             what = f"it holds {held.shape[-1]} numbers along the motion, in which it cannot change"
             remedy = "give one number, or one for each design: [[1.0], [2.0]]"
             raise InvalidMechanism(Problem(f"law.{name}", what, remedy))

@@ -24,7 +24,7 @@ NODES = np.arange(-4.0, 5.0)
 # The steps tried, as parts of the range of times; the best is about a fiftieth of the function's own time scale.
 # Their ratio is no simple fraction: else steps of whole periods of the function agree with each other.
 STEPS = 0.0625 * 0.618 ** np.arange(18.0)
-# Differences of neighbouring steps that disagree by more than this part of the derivative show that there is none.
+# If differences of neighbouring steps disagree by more than this part of the derivative, there is none.
 AGREEMENT = 1e-2
 # Two ways to the same value differ by rounding only.
 SAME = 1e-9
@@ -66,12 +66,12 @@ class FunctionLaw(CopiesFunction, ComparedByValue):
         return from_derivatives([as_number(values) for values in given])
 
     def _component(self, times: Any, k: int) -> Any:
-        """Return one of what the function returns, unchecked."""
+        """Return one component of the result, unchecked."""
         made = self.f(times)
         return made[k] if isinstance(made, tuple) else made
 
     def _called(self, times: Array) -> list[Array]:
-        """Return what the function returns, checked."""
+        """Return the checked result of the function."""
         try:
             made = self.f(times.copy())
         except Exception as error:
@@ -123,13 +123,13 @@ def differentiate_function(f: Callable[[Any], Any], times: Array, order: int) ->
 
 
 def _by_series(f: Callable[[Any], Any], times: Array, order: int) -> list[Array] | None:
-    """Differentiate by series arithmetic. None where the function does something that it does not know."""
+    """Differentiate by series arithmetic; None where the function uses an unknown operation."""
     plain = np.asarray(f(times.copy()), dtype=float)
     try:
         with np.errstate(all="ignore"):
             made = f(Jet(Series((times, 1.0, *[0.0] * (order - 1))[: order + 1])))
     except Exception:
-        # whatever it does to an array that is none
+        # whatever it does to an object that is not an array
         return None
     if not isinstance(made, Jet):
         return None
@@ -162,16 +162,16 @@ def _sampled(f: Callable[[Any], Any], places: Array) -> Array:
 def _weights(order: int) -> list[Array]:
     """Return the weights of the nodes for derivatives 1 to `order` at step 1."""
     powers = NODES[None, :] ** np.arange(len(NODES))[:, None]
-    wanted = np.zeros((len(NODES), order))
+    right = np.zeros((len(NODES), order))
     factor = 1.0
     for k in range(1, order + 1):
         factor *= k
-        wanted[k, k - 1] = factor
-    return list(np.linalg.solve(powers, wanted).T)
+        right[k, k - 1] = factor
+    return list(np.linalg.solve(powers, right).T)
 
 
 def _best_difference(found: Array, tried: list[Array], steps: Array, times: Array, k: int) -> Array:
-    """Return the difference that the next two smaller steps change least."""
+    """Return the difference that changes least with the next two smaller steps."""
     change = np.abs(np.diff(found, axis=0))
     change = np.maximum(change[:-1], change[1:])
     index = np.argmin(np.where(np.isnan(change), np.inf, change), axis=0)[None]
@@ -257,7 +257,7 @@ def _where(condition: Any, yes: Any, no: Any) -> Series:
 
 
 def _constant(function: Any) -> Callable[..., Any]:
-    """Return the rule of a function that only looks at values."""
+    """Return the rule of a function that depends on values only."""
     return lambda *operands: function(*map(_leading, operands))
 
 

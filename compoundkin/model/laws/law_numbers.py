@@ -22,14 +22,14 @@ SEGMENTS = "segments"
 # Differences are taken over this part of a number, or of the shortest piece where pieces move; each level of
 # extrapolation halves it. Four levels leave the eighth power of it, some 1e-13 of the slope, and as much of rounding.
 STEP, LEVELS = 0.02, 4
-# Where a law has other pieces, or is none, so near to a number, it is not smooth there.
+# Where a law has other pieces, or is invalid, so near to a number, it is not smooth there.
 NEAREST = 1e-6
 
 
 def law_numbers(law: Any) -> dict[str, Number]:
-    """Return the numbers that a law states: "speed", or "segments.0.rise". Tables and functions state none.
+    """Return the numbers of a law by name: "speed", or "segments.0.rise". Tables and functions have none.
 
-    What follows from other numbers is none: the rise of a dwell, the span of a rise in the least time.
+    Numbers that follow from others are left out: the rise of a dwell, the span of a rise in the least time.
 
     >>> from compoundkin.model.laws.motion_programs import program
     >>> from compoundkin.model.laws.motion_programs import dwell, rise
@@ -45,7 +45,7 @@ def law_numbers(law: Any) -> dict[str, Number]:
 
 
 def law_with(law: Any, numbers: Mapping[str, Any]) -> Any:
-    """Return a law with other numbers, named as `law_numbers` does. Raises InvalidMechanism.
+    """Return a law with other numbers, named as by `law_numbers`. Raises InvalidMechanism.
 
     >>> from compoundkin.model.laws.motion_programs import program
     >>> from compoundkin.model.laws.motion_programs import rise
@@ -75,9 +75,9 @@ def _segment_with(segment: ProgramSegment, numbers: Mapping[str, Any]) -> Progra
 
 
 def law_slopes(law: Any, name: str, times: Number, order: int) -> list[Number]:
-    """Return how value, speed ... at times change with a number of the law.
+    """Return the derivatives of value, speed ... at times by a number of the law.
 
-    Where pieces meet they are those of the piece behind. NaN where the law is not smooth in the number. Source of the
+    Between two pieces they are those of the later one. NaN where the law is not smooth in the number. Source of the
     extrapolation: L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911), 307-357.
 
     >>> from compoundkin.model.laws.constant_laws import ConstantSpeed
@@ -101,7 +101,7 @@ def law_slopes(law: Any, name: str, times: Number, order: int) -> list[Number]:
 
 
 def _differences(law: Program, name: str, step: float, times: Number, order: int) -> list[Number]:
-    """Return central differences. Times are in the pieces in which the law itself has them."""
+    """Return central differences, with times in the pieces of the law itself."""
     number = law_numbers(law)[name]
     ends = (law_with(law, {name: number + way * step}).coordinate(times, order, law) for way in (1.0, -1.0))
     ahead, behind = ends
@@ -109,7 +109,7 @@ def _differences(law: Program, name: str, step: float, times: Number, order: int
 
 
 def _smooth_step(law: Program, name: str, times: Number) -> tuple[float, int]:
-    """Return the step of differences and its levels, none where the law is not smooth."""
+    """Return the step of differences and its levels, no levels where the law is not smooth."""
     number = float(law_numbers(law)[name])
     step = STEP * (abs(number) or 1.0)
     periods = 1.0 + float(np.max(np.abs(times))) / law.period if law.repeat else 1.0
@@ -130,13 +130,13 @@ def _smooth_step(law: Program, name: str, times: Number) -> tuple[float, int]:
 
 
 def _piece_boundaries(law: Program) -> Number:
-    """Return where its pieces begin, and the end."""
+    """Return the places where its pieces begin, and its end."""
     return np.array([*(piece.start for piece in law.pieces), law.period])
 
 
 @dataclass(frozen=True, repr=False)
 class DesignLaws(ShortRepr):
-    """Programs side by side. `shape` is that of the designs, in whose order they are."""
+    """Programs of several designs, in the order of an array of this `shape`."""
 
     laws: tuple[Program, ...]
     shape: tuple[int, ...]
@@ -152,11 +152,11 @@ class DesignLaws(ShortRepr):
         return Series(tuple(self._rows(t, lambda law, row: law.coordinate(row, order).c)))
 
     def slopes(self, name: str, times: Number, order: int) -> list[Number]:
-        """Return the slopes by one of their numbers, as `law_slopes` does."""
+        """Return the derivatives by one of their numbers, as `law_slopes`."""
         return self._rows(times, lambda law, row: law_slopes(law, name, row, order))
 
     def _rows(self, t: Number, of: Callable[[Program, Number], Sequence[Number]]) -> list[Number]:
-        """Return what is found of each law at its times, design by design."""
+        """Return a function of each law and its times, design by design."""
         times = np.atleast_1d(np.asarray(t, dtype=float))
         designs = np.broadcast_shapes(self.shape, times.shape[:-1])
         shape = (*designs, times.shape[-1])
@@ -185,14 +185,12 @@ def law_of_designs(law: Any, numbers: Mapping[str, Number]) -> Any:
 
 
 def law_sensitivities(law: Any, name: str, times: Number, order: int) -> list[Number]:
-    """Return what `law_slopes` does, of a law or of laws of designs."""
+    """Return `law_slopes` of a law or of laws of designs."""
     return law.slopes(name, times, order) if isinstance(law, DesignLaws) else law_slopes(law, name, times, order)
 
 
 def derivative_jumps(law: Any, first: float, last: float) -> Number:
-    """Return the times at which some derivative of a law may jump.
-
-    They are in order, from `first` to `last`. A Python function tells none.
+    """Return the times from `first` to `last` at which some derivative of a law may jump; none for a Python function.
 
     >>> from compoundkin.model.laws import dwell, program, rise
     >>> derivative_jumps(program(rise(1.0, over=2.0, law="parabolic"), dwell(1.0), repeat=True), 0.5, 5.0).tolist()
@@ -212,7 +210,7 @@ def derivative_jumps(law: Any, first: float, last: float) -> Number:
 
 
 def _over_periods(own: Number, period: float, repeat: bool, first: float, last: float) -> Number:
-    """Return the corners of a law in a range of times, those of all its periods if it repeats."""
+    """Return the jumps of a law in a range of times, in all its periods if it repeats."""
     if repeat:
         turns = np.arange(np.floor((first - own[0]) / period), np.ceil((last - own[0]) / period) + 1.0)
         own = np.unique((own[:-1] + turns[:, None] * period).ravel())

@@ -33,10 +33,10 @@ _WORDS = "write laws.rise(...), laws.fall(...), laws.dwell(...)"
 
 @dataclass(frozen=True)
 class Program:
-    """Segments one after another, from place 0 and value `start`. `repeat`: begun anew after each period.
+    """Segments one after another, from place 0 and value `start`, repeated after each period with `repeat`.
 
     It maps a coordinate (the rotation of a cam, or time in seconds) to another one, both in the user's units.
-    Raises InvalidMechanism for what is not a segment.
+    Raises InvalidMechanism for anything but segments.
 
     >>> from compoundkin.model.laws.motion_programs import dwell, fall, rise
     >>> lift = program(rise(10.0, over=1.0), dwell(0.5), fall(10.0, over=1.0), dwell(0.5))
@@ -96,25 +96,25 @@ class Program:
 
     @property
     def lift(self) -> float:
-        """The distance between its greatest and its least value. Every law rises or falls all the way."""
+        """The distance between its greatest and its least value; all laws are monotonic."""
         return float(np.ptp(self.values))
 
     @cached_property
     def repeats(self) -> bool:
-        """Whether it ends where it began, so that a cam may carry it round. One that repeats begins anew."""
+        """Whether it ends where it began, as for a cam, or repeats."""
         return self.repeat or abs(self._advance) <= JUMP * self.lift
 
     @property
     def _advance(self) -> float:
-        """How far a period brings it."""
+        """The advance over a period."""
         return float(self.values[-1] - self.values[0])
 
     def at(self, x: Series, repeat: bool | None = None, like: Program | None = None) -> Series:
-        """Return its value and all derivatives along a coordinate. A real series of any shape.
+        """Return its value and all derivatives along a coordinate, a real series of any shape.
 
         Before its beginning and after its end it stands still, or goes on periodically if `repeat` (None: if it
         `repeats`); a period that does not end where it began goes on from there. At a jump the derivatives are those
-        behind it, at the very end those before it. `like`, a program of as many pieces, tells each place's piece.
+        behind it, at the very end those before it. `like`, a program of as many pieces, determines each place's piece.
 
         >>> from compoundkin.model.laws.motion_programs import rise
         >>> program(rise(1.0, 2.0, "harmonic")).at(Series((np.array([-1.0, 1.0, 3.0]),))).c[0].round(9).tolist()
@@ -122,9 +122,9 @@ class Program:
         """
         goes_on = self.repeats if repeat is None else repeat
         value = x.c[0] if isinstance(x.c[0], np.ndarray) else float(x.c[0])
-        shown = like or self
-        turns = np.floor(value / shown.period) if goes_on else 0.0
-        spots = shown._table.spots(value - turns * shown.period)
+        placing = like or self
+        turns = np.floor(value / placing.period) if goes_on else 0.0
+        spots = placing._table.spots(value - turns * placing.period)
         outer = self._table.taylor(value - turns * self.period, spots, x.order, not goes_on)
         if goes_on and abs(self._advance) > JUMP * self.lift:
             outer[0] = outer[0] + turns * self._advance
@@ -155,7 +155,7 @@ class Program:
         return jumps(self.pieces, self.period, [self._natural(order) for order in (1, 2)], goes_on)
 
     def _natural(self, order: int) -> float:
-        """How great a derivative is: that of the mean speed, or where a piece begins."""
+        """The scale of a derivative: that of the mean speed, or its values where pieces begin."""
         mean = max(abs(s.rise) / s.over**order for s in self.segments)
         return max(mean, *(abs(piece.derivative(order, 0.0)) for piece in self.pieces))
 
@@ -184,7 +184,7 @@ def least_time(
     """Return the law that goes a distance in the least time.
 
     From rest to rest; the distance may be negative. Speed, acceleration and jerk (rad/s or length/s, and so on) are the
-    greatest there may be; one left out is not limited, but not acceleration and jerk both. Without `jerk` the speed
+    limits; one left out is not limited, but acceleration and jerk cannot both be left out. Without `jerk` the speed
     over time is a trapezoid or triangle, with it the acceleration is continuous: the s-curve of up to seven parts. A
     time `over` that is longer than the least stretches it.
 
@@ -212,7 +212,7 @@ def synchronised(*programs: Program) -> tuple[Program, ...]:
     (4.0, 4.0)
     """
     if not programs:
-        raise InvalidMechanism(Problem("programs", "there is none to stretch", "give two or more"))
+        raise InvalidMechanism(Problem("programs", "there are none to stretch", "give two or more"))
     longest = max(one.period for one in programs)
     return tuple(_stretched(one, longest) for one in programs)
 
@@ -228,24 +228,24 @@ def _stretched(one: Program, period: float) -> Program:
     return replace(one, segments=tuple(changed))
 
 
-# The law whose limits say how long it takes.
+# The law whose span follows from its limits.
 LEAST_TIME = "least-time"
 LIMITS = ("speed", "acceleration", "jerk")
 NAMES = (*LAWS, LEAST_TIME)
 # A span below the least time by no more than this part of it is the least time: rounding of what was written down.
 ROUNDING = 1e-9
-# Beyond these powers of distances and limits are no numbers any more.
+# Beyond these, powers of distances and limits overflow.
 LEAST, MOST = 1e-60, 1e60
 
 
 @dataclass(frozen=True)
 class ProgramSegment:
-    """A part of a program. A law, the span it takes, and how far it rises (negative: falls; a dwell 0).
+    """A part of a program: a law, its span, and its rise (negative for a fall, 0 for a dwell).
 
     The law "least-time" has its greatest speed, acceleration and jerk, any of which may be left out but the last two
-    together. Without a span it takes the least; with a longer one it is stretched, all its rates the lower.
-    Raises InvalidMechanism for a law that there is not, a span that is not positive or shorter than the least, a dwell
-    that rises, limits that are not positive or of another law.
+    together. Without a span it takes the least; with a longer one it is stretched, with lower rates.
+    Raises InvalidMechanism for an unknown law, a span that is not positive or shorter than the least, a dwell that
+    rises, limits that are not positive or of another law.
 
     >>> ProgramSegment("cycloidal", over=2.0, rise=10.0).rise
     10.0
@@ -283,7 +283,7 @@ class ProgramSegment:
         if law not in NAMES:
             yield Problem("segment.law", f"there is no law {self.law!r}", suggestion(str(self.law), list(NAMES)))
         wrong = list(self._number_problems(law))
-        wrong += self._limit_problems() if law == LEAST_TIME else self._misplaced(law)
+        wrong += self._limit_problems() if law == LEAST_TIME else self._misplaced_limits(law)
         yield from wrong
         if law == LEAST_TIME and not wrong:
             yield from self._span_problems()
@@ -298,7 +298,7 @@ class ProgramSegment:
         elif law == "dwell" and self.rise != 0.0:
             yield Problem("segment.rise", "a dwell rises by 0", "choose another law, or leave the rise out")
 
-    def _misplaced(self, law: str) -> Iterator[Problem]:
+    def _misplaced_limits(self, law: str) -> Iterator[Problem]:
         for name in LIMITS:
             if getattr(self, name) is not None and law:
                 remedy = f"leave it out, or choose the law {LEAST_TIME!r}"
@@ -320,7 +320,7 @@ class ProgramSegment:
                 yield Problem("segment.rise", "a rise of 0 takes no time", "give a distance, or write a dwell")
             return
         sizes = [abs(self.rise), *(value for value in (self.speed, self.acceleration, self.jerk) if value is not None)]
-        # nor beside a time that is as much longer
+        # also not beside a time that is as much longer
         if not all(LEAST < value < MOST for value in sizes) or self._fastest.growth < LEAST * self._fastest.duration:
             yield Problem("segment.over", f"{min(sizes):g} and {max(sizes):g} are too far from 1", "take other units")
         elif 0.0 < self.over < self._fastest.duration * (1.0 - ROUNDING):
@@ -329,12 +329,12 @@ class ProgramSegment:
 
     @property
     def is_fastest(self) -> bool:
-        """Whether it takes the least time, so that the span need not be written."""
+        """Whether it takes the least time, so that its span can be left out."""
         return self.law == LEAST_TIME and self.rise != 0.0 and self.over == self._fastest.duration
 
     @property
     def followed(self) -> str:
-        """The number that follows from others: the least span, a dwell's rise."""
+        """The name of the number that follows from others: the least span, a dwell's rise."""
         return "over" if self.is_fastest else "rise" if self.law == "dwell" else ""
 
     @cached_property
@@ -351,7 +351,7 @@ class ProgramSegment:
 
 
 def turn_problems(period: float, where: str) -> Iterator[Problem]:
-    """Find that spans do not add up to a turn of a cam."""
+    """Find spans that do not add up to a turn of a cam."""
     if abs(period - TURN) > ROUNDING:
         what = f"the spans add up to {degrees(period):.6g} degrees, not to a turn of 360"
         remedy = "change a dwell; spans are degrees in a file, radians in Python: laws.rise(10, over=deg(90))"
@@ -370,7 +370,7 @@ def rise(
 ) -> ProgramSegment:
     """Return a rise by an amount over a span.
 
-    The law "least-time" takes its greatest speed, acceleration and jerk instead of a span, or one longer than needed.
+    The law "least-time" takes its greatest speed, acceleration and jerk instead of a span, or with a longer one.
 
     >>> rise(10.0, over=2.0, law="3-4-5").law
     '3-4-5'

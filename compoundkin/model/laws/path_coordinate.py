@@ -19,11 +19,11 @@ class TimedPath(Protocol):
 
     @property
     def span(self) -> tuple[float, float] | None:
-        """The first and the last time of it; None where it has none."""
+        """Its first and last time, or None."""
 
     @property
     def laws(self) -> tuple[Any, ...]:
-        """The laws in time that it is made of."""
+        """Its laws in time."""
 
     def place(self, t: Number, order: int) -> Series:
         """Return place and derivatives at times t (seconds), complex."""

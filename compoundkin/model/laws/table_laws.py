@@ -16,7 +16,7 @@ from compoundkin.base.series import Series
 from compoundkin.model.fields import Key
 from compoundkin.model.laws.constant_laws import ComparedByValue, as_number, check_law_numbers, from_derivatives, taylor
 
-# Times beyond the ends of a table by no more than this part of its range are its ends: rounding of 0.1 + 0.1 + 0.1.
+# Times beyond an end of a table by this part of its range or less are that end: rounding of 0.1 + 0.1 + 0.1.
 SLACK = 1e-9
 DEGREES = (3, 5)
 
@@ -77,7 +77,7 @@ class TimeTable(ShortRepr, ComparedByValue):
 
     @property
     def _ramp(self) -> float:
-        """The mean speed of a periodic table. What is left without it ends where it begins."""
+        """The mean speed of a periodic table, without which it ends where it begins."""
         first, last = self.span
         return float(self.values[-1] - self.values[0]) / (last - first) if self.repeat else 0.0
 
@@ -105,7 +105,7 @@ class TimeTable(ShortRepr, ComparedByValue):
 
 
 def check_times(times: Number, span: tuple[float, float], remedy: str) -> Number:
-    """Return times within a table. Raises InvalidInput where one is beyond its ends by more than rounding.
+    """Return times limited to a table. Raises InvalidInput for times beyond its ends by more than rounding.
 
     >>> check_times(np.array([0.5, 2.0 + 1e-12]), (0.0, 2.0), "give other times").tolist()
     [0.5, 2.0]

@@ -34,7 +34,7 @@ class Rack(PitchLinePair, TransmittingPair):
 
     Held: ``displacement + side * radius * (pinion - rack) - phase``. Free: the displacement. Nothing holds the axis at
     its distance but other pairs: a pin and a slide on the frame, a carrier, a yoke; `verify` reports where they do not.
-    The tooth force acts at the pitch point, along the line, and separates the two by the tangent of the `pressure_angle`
+    The tooth force acts at the pitch point, along the line, and parts the two by the tangent of the `pressure_angle`
     (radians). A cable that a drum winds up and that pulls a block is the same pair, of pressure angle 0. Source: e.g.
     J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapter 7 (a rack is a gear of
     infinite radius).

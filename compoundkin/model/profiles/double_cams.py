@@ -1,7 +1,7 @@
-"""Cams that lead their follower both ways, without a spring: conjugate discs, and one disc of constant breadth.
+"""Cams with positive drive, without a spring: conjugate discs, and one disc of constant breadth.
 
-The follower carries two rollers or faces, rigidly joined. What the second one does is the program upside down, seen
-from the other side of the cam's axis; so the second disc is made like any other.
+The follower carries two rollers or faces, rigidly joined. The second one follows the inverted program, seen from the
+other side of the cam's axis; so the second disc is synthesised like any other.
 
 Source: H. A. Rothbart (ed.), Cam Design Handbook, McGraw-Hill 2004, chapter 1 (positive drive); R. L. Norton, Cam
 Design and Manufacturing Handbook, 2nd ed., Industrial Press 2009, chapter 1.
@@ -24,15 +24,15 @@ from compoundkin.model.geometry import single_point
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.profiles.synthesised import ROUNDING, Synthesised
 
-# Places of half a turn at which a program is held against that half a turn later.
+# Places of half a turn at which a program is compared with itself half a turn later.
 PLACES = 1441
 
 
 @dataclass(frozen=True, repr=False)
 class DoubleCam(ShortRepr):
-    """Two profiles on one shaft, between which a follower is held.
+    """Two profiles on one shaft that drive a follower both ways; see `conjugate` and `constant_breadth`.
 
-    See `conjugate` and `constant_breadth`. `second` is `first` where one disc does both.
+    `second` is `first` for a single disc.
     """
 
     first: Synthesised
@@ -40,7 +40,7 @@ class DoubleCam(ShortRepr):
 
     @property
     def is_single(self) -> bool:
-        """Whether one disc does both."""
+        """Whether it is a single disc."""
         return self.second == self.first
 
     @property
@@ -50,9 +50,9 @@ class DoubleCam(ShortRepr):
 
     @property
     def apart(self) -> float:
-        """How the two ends of the follower are joined.
+        """The distance of the two ends of the follower.
 
-        The distance of the rollers' middles, or faces, along the guide of a translating follower: of flat faces the
+        The distance of the rollers' centres, or faces, along the guide of a translating follower: of flat faces the
         breadth. The angle (radians) from the second arm or face to the first one, in the sense of `side`, of one that
         oscillates.
         """
@@ -85,13 +85,13 @@ def conjugate(
     clockwise: bool = False,
     start: float = 0.0,
 ) -> DoubleCam:
-    """Return two discs for a program, between which their follower is held.
+    """Return two discs for a program, which drive their follower both ways.
 
-    The words are those of `synthesise`, those of the second disc and its roller the same where they are left out. The
+    The arguments are those of `synthesise`; those of the second disc and its roller are the same by default. The
     second one lies on the other side of the cam's axis, on the same guide, or drives an arm to the other side: it falls
     as the first one rises. `cams.cam_mechanism` writes the mechanism.
 
-    Raises InvalidMechanism, with the disc, for what cannot be made.
+    Raises InvalidMechanism, with the disc, for an impossible profile.
 
     Source: H. A. Rothbart (ed.), Cam Design Handbook, McGraw-Hill 2004, chapter 1.
 
@@ -119,14 +119,14 @@ def constant_breadth(
     clockwise: bool = False,
     start: float = 0.0,
 ) -> DoubleCam:
-    """Return the one disc that leads a yoke both ways.
+    """Return the disc that drives a yoke both ways.
 
     The yoke translates, with two parallel faces, or two rollers on a line through the cam's axis. The program and
     itself half a turn later must add up to a constant: the faces are then `DoubleCam.apart` from each other, twice the
     base circle and that constant, in every direction. `cams.cam_mechanism` writes the mechanism.
 
-    Raises InvalidMechanism for a program that does not add up, with the place and by how much, and for what cannot be
-    made otherwise.
+    Raises InvalidMechanism for a program that does not add up, with the place and the difference, and for an impossible
+    profile.
 
     Source: H. A. Rothbart (ed.), Cam Design Handbook, McGraw-Hill 2004, chapter 1 (yoke cams).
 
@@ -139,7 +139,7 @@ def constant_breadth(
 
 
 def inverted_program(program: Program) -> Program:
-    """Return the program that falls as another one rises, between the same values.
+    """Return the program that falls where another one rises, between the same values.
 
     >>> from compoundkin.model.laws import fall, program, rise
     >>> inverted_program(program(fall(3, over=1), rise(5, over=2), start=3.0)).values.tolist()
@@ -169,12 +169,12 @@ def _checked_double_cam(first: Synthesised, second: Synthesised, wrong: list[Pro
     if not found and second != first:
         found = [replace(one, where=f"second {one.where}".strip()) for one in second.problems("")]
     if found:
-        raise InvalidMechanism(found, heading="" if len(found) == 1 else "no cam can be made")
+        raise InvalidMechanism(found, heading="" if len(found) == 1 else "no cam can be synthesised")
     return DoubleCam(first, second)
 
 
 def _uneven(program: Program) -> Iterator[Problem]:
-    """Find where a program and itself half a turn later do not add up, at the worst place."""
+    """Find the worst place at which a program and itself half a turn later do not add up to a constant."""
     half = TURN / 2.0
     q = np.unique(np.concatenate([np.linspace(0.0, half, PLACES), np.mod(program.breaks, half)]))
     here, there = (np.asarray(program.at(Series((x,)), repeat=True).c[0]) for x in (q, q + half))

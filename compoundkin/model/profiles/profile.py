@@ -30,12 +30,12 @@ class Profile(CopiesFields, ABC):
 
     @property
     def oscillates(self) -> bool:
-        """Whether what is said of its follower are angles."""
+        """Whether its follower oscillates, so that its numbers are angles."""
         return False
 
     @cached_property
     def curve(self) -> Curve:
-        """The curve, in the coordinates of its link. Raises InvalidMechanism for what is no curve."""
+        """The curve, in the frame of its link. Raises InvalidMechanism for an invalid one."""
         return self._built_curve()
 
     @abstractmethod
@@ -43,11 +43,11 @@ class Profile(CopiesFields, ABC):
 
     @property
     def circle(self) -> tuple[complex, float] | None:
-        """Middle and radius of a profile that is a circle all round."""
+        """Centre and radius of a circular profile, or None."""
         return None
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """Find what makes it no profile: points too few, a curve that crosses itself."""
+        """Find problems of the profile, such as too few points or a curve that crosses itself."""
         try:
             found = self.curve.crosses_itself()
         except InvalidMechanism as error:
@@ -61,12 +61,12 @@ class Profile(CopiesFields, ABC):
             yield Problem(where, "the profile encloses no area: it runs back over itself", "say it is open")
 
     def _loop_remedy(self) -> str:
-        """Return how to get rid of a loop."""
+        """Return the remedy for a loop."""
         return "change the points that make the loop"
 
 
 def side_of(curve: Curve) -> float:
-    """Return +1 where the normal of a closed curve points outward, -1 where inward. An open curve has +1."""
+    """Return +1 where the normal of a closed curve points outward, -1 inward; +1 for an open curve."""
     return 1.0 if not curve.closed or curve.is_counterclockwise else -1.0
 
 
@@ -92,7 +92,7 @@ class DiscProfile(Profile):
         return Analytic(lambda s: s.turn() * self.radius + self.middle, 0.0, 2.0 * np.pi, closed=True)
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """Find a radius that is none, a middle that is nowhere."""
+        """Find an invalid radius, and a centre that is not finite."""
         if not (np.isfinite(self.radius) and self.radius > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
         if not np.isfinite(self.middle):
@@ -103,7 +103,7 @@ class DiscProfile(Profile):
 def disc(radius: float, middle: Any = 0j) -> DiscProfile:
     """Return the profile of a round disc about a point of its link.
 
-    Raises InvalidMechanism for what is no number or no point.
+    Raises InvalidMechanism for an invalid number or point.
 
     >>> disc(20, (5, 0)).circle
     ((5+0j), 20.0)
@@ -132,7 +132,7 @@ class PointsProfile(ShortRepr, Profile):
 def profile(points: Any, *, closed: bool = True) -> PointsProfile:
     """Return the profile through points, complex or (x, y). Closed as of a cam, or open as of a slot.
 
-    Raises InvalidMechanism for what are not points; fewer than four are told when the mechanism is built.
+    Raises InvalidMechanism for invalid points; the mechanism reports fewer than four.
 
     >>> profile([(2, 0), (0, 1), (-2, 0), (0, -1)]).points[1]
     1j

@@ -71,17 +71,17 @@ class Synthesised(Profile):
 
     @property
     def mode(self) -> int:
-        """The assembly mode of the follower that is meant."""
+        """The intended assembly mode of the follower."""
         return -self.side if self.oscillates and self.follower != "flat" else 1
 
     @property
     def prime(self) -> float:
-        """The radius of the edge, the roller's middle or the face at home."""
+        """The distance of the edge, the roller's centre or the face from the axis on the base circle."""
         return self.base + self.roller
 
     @property
     def guide(self) -> FollowerGuide:
-        """How the follower moves."""
+        """The guide of the follower."""
         flat = self.follower == "flat"
         if self.pivot is None:
             return Translating(self.prime, self.angle, self.offset, flat)
@@ -110,10 +110,6 @@ class Synthesised(Profile):
         if found:
             raise InvalidMechanism(found)
         return self.envelope.faced() if self.follower == "flat" else self.envelope.rolled()
-
-    def problems(self, where: str) -> Iterator[Problem]:
-        """Find what makes it no profile. A program that does not close, a base circle too small."""
-        yield from super().problems(where)
 
     def _loop_remedy(self) -> str:
         return "take a greater base circle or a smaller roller"
@@ -144,14 +140,14 @@ def synthesise(
 
     A translating follower rises in the direction `angle` on a guide `offset` to its left: ``slide("follower",
     on="frame", through="A", angle=angle, offset=offset)``, A the cam's axis; a flat face is square to it, ``face(...,
-    angle=deg(90))``, and minds no offset. An oscillating one turns about `pivot`, a point from the cam's axis or a
-    distance along x, and the program rises by angles: its edge or roller is at the end of its `arm`, in the direction
-    of its link's x axis; its flat face is along that axis, beyond its pivot by `face`, ``face(..., angle=0,
+    angle=deg(90))``, and does not depend on the offset. An oscillating one turns about `pivot`, a point from the cam's
+    axis or a distance along x, and the program rises by angles: its edge or roller is at the end of its `arm`, in the
+    direction of its link's x axis; its flat face is along that axis, beyond its pivot by `face`, ``face(..., angle=0,
     side=-side)``. `side` 1: it rises counterclockwise, -1: clockwise. The follower's mode is `Synthesised.mode`, its
     coordinate then `Synthesised.coordinate`.
 
-    Raises InvalidMechanism, with the cam's angles, for what cannot be made: a program that does not take one turn or
-    does not return, an arm that does not reach, an undercut (with the least base circle that will do), a hollow under a
+    Raises InvalidMechanism, with the cam's angles, for an impossible profile: a program that does not take one turn or
+    does not return, an arm that does not reach, an undercut (with the least sufficient base circle), a hollow under a
     face.
 
     Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., chapter 13.
@@ -167,13 +163,13 @@ def synthesise(
     made = Synthesised(program, base, follower, roller, offset, angle, pin, arm, face, side, clockwise, start)
     found = list(made.problems(""))
     if found:
-        raise InvalidMechanism(found, heading="" if len(found) == 1 else "no cam can be made")
+        raise InvalidMechanism(found, heading="" if len(found) == 1 else "no cam can be synthesised")
     return made
 
 
 @dataclass(frozen=True)
 class Lift:
-    """How far the follower has risen from the base circle, by the cam's angle. A motion program laid round the cam."""
+    """The lift of the follower from the base circle by the cam's angle: a motion program around the cam."""
 
     program: Program
     start: float
@@ -192,7 +188,7 @@ class Lift:
 
 
 class FollowerGuide(ABC):
-    """How a follower moves by its coordinate; see `Translating` and `Oscillating`."""
+    """The guide of a follower, `Translating` or `Oscillating`."""
 
     @property
     @abstractmethod
@@ -206,14 +202,11 @@ class FollowerGuide(ABC):
 
     @abstractmethod
     def middle(self, coordinate: Series) -> Series:
-        """Return the knife edge or the middle of the roller, in the carrier's frame."""
+        """Return the knife edge or the centre of the roller, in the carrier's frame."""
 
     @abstractmethod
     def facing(self, coordinate: Series) -> tuple[Series, Series]:
-        """Return a flat face in the carrier's frame.
-
-        Its normal, away from the cam, and its distance from the cam's axis.
-        """
+        """Return a flat face in the carrier's frame: its normal away from the cam, its distance from the cam's axis."""
 
 
 @dataclass(frozen=True)
@@ -287,7 +280,7 @@ class Oscillating(FollowerGuide):
 
 @dataclass(frozen=True)
 class Envelope:
-    """What a follower that is carried round a cam leaves of it."""
+    """The envelope of a follower that moves around a cam."""
 
     lift: Lift
     guide: FollowerGuide
@@ -302,11 +295,11 @@ class Envelope:
         return self._curve(lambda s: self.guide.middle(self.coordinate(s)) * (-s).turn())
 
     def rolled(self) -> Analytic:
-        """Return what the roller leaves: the parallel curve on the cam's side."""
+        """Return the envelope of the roller: the parallel curve on the cam's side."""
         return self.pitch().offset(self.roller) if self.roller else self.pitch()
 
     def faced(self) -> Analytic:
-        """Return what the face leaves.
+        """Return the envelope of the face.
 
         With the face at n . C = h, the envelope has n' . C = h' too: C = n (h + i h' / w), w the rate at which n turns.
         """
@@ -317,7 +310,7 @@ class Envelope:
         return self._facing(_along(s, 1))[0].turning().c[0]
 
     def radius(self, s: Number) -> Number:
-        """Return the radius of curvature that a flat face leaves. Where it is negative the envelope turns back."""
+        """Return the radius of curvature under a flat face; where it is negative, the envelope turns back."""
         normal = self._facing(_along(s, 1))[0]
         along = self.faced().derivatives(s, 1)[1]
         return dot(along, -1j * normal.c[0]) / np.abs(normal.turning().c[0])
@@ -354,8 +347,8 @@ def arm_range(pivot: complex, arm: float) -> tuple[float, float]:
 FOLLOWERS = ("knife", "roller", "flat")
 # Spans of degrees add up to a full turn but for rounding.
 ROUNDING = 1e-9
-# A base circle that will do is looked for in these steps (an oscillating face allows but a range of them), from this
-# part of the size of the mechanism up to this many times it; then by halving to six digits.
+# A sufficient base circle is searched in these steps (an oscillating face allows only a range of them), from this
+# part of the size of the mechanism up to this multiple of it; then by bisection to six digits.
 GROWTH = 1.1
 MOST = 1e3
 DIGITS = 1e-7
@@ -365,7 +358,7 @@ Span = tuple[float, float]
 
 
 def synthesis_problems(made: Synthesised) -> Iterator[Problem]:
-    """Find what is wrong with the words: each with its key."""
+    """Find problems of the arguments, each with its key."""
     wrong = list(_number_problems(made)) or list(_keyword_problems(made))
     yield from wrong
     if not wrong:
@@ -409,7 +402,7 @@ def _keyword_problems(made: Synthesised) -> Iterator[Problem]:
 
 
 def _misplaced_keywords(made: Synthesised) -> Iterator[Problem]:
-    """Words that belong to the other way of moving."""
+    """Find arguments of the other sort of follower."""
     if made.pivot is None:
         for key in ("arm", "face"):
             if getattr(made, key) != 0:
@@ -440,7 +433,7 @@ def _program_problems(made: Synthesised) -> Iterator[Problem]:
 
 
 def _dimension_problems(made: Synthesised) -> Iterator[Problem]:
-    """Find what cannot be assembled on the base circle, or at the greatest lift."""
+    """Find dimensions that cannot be assembled on the base circle or at the greatest lift."""
     if made.pivot is None:
         if made.follower != "flat" and abs(made.offset) >= made.prime:
             what = f"an offset of {made.offset:g} does not meet the prime circle of radius {made.prime:g}"
@@ -487,7 +480,7 @@ def _highest(made: Synthesised) -> float:
 
 
 def undercuts(made: Synthesised) -> Iterator[Problem]:
-    """Find a profile that would turn back on itself. Between which angles of the cam, and which base circle will do."""
+    """Find undercut: between which angles of the cam, and the least base circle without it."""
     found = undercut_spans(made)
     if not found:
         return
@@ -498,21 +491,19 @@ def undercuts(made: Synthesised) -> Iterator[Problem]:
         else f"the profile is undercut, its pitch curve bent to a radius below the roller's {made.roller:g},"
     )
     least = least_base(made)
-    remedy = (
-        "no greater base circle mends it" if least is None else f"take a base circle of {_rounded_up(least)} or more"
-    )
+    remedy = "no greater base circle helps" if least is None else f"take a base circle of {_rounded_up(least)} or more"
     yield Problem("base", f"{what} at cam angles of {between} degrees", remedy)
 
 
 def undercut_spans(made: Synthesised) -> tuple[Span, ...]:
-    """Return the angles of the cam between which its profile would turn back."""
+    """Return the angles of the cam between which its profile is undercut."""
     curve, margins = _undercut_margin(made)
     found = (spans(curve.samples, 0.0, TURN, margin) for margin in margins)
     return next((between for between in found if between), ())
 
 
 def _undercut_margin(made: Synthesised) -> tuple[Curve, tuple[Callable[[Number], Number], ...]]:
-    """Return the curve that makes the profile, and what must be positive all along it."""
+    """Return the curve of the profile, and the margins that must be positive all along it."""
     envelope = made.envelope
     if made.follower == "flat":
         return envelope.faced(), (lambda s: -envelope.turning(s), envelope.radius)
@@ -521,7 +512,7 @@ def _undercut_margin(made: Synthesised) -> tuple[Curve, tuple[Callable[[Number],
 
 
 def least_base(made: Synthesised) -> float | None:
-    """Return the least radius of the base circle without undercut, to six digits. None if none is found."""
+    """Return the least radius of the base circle without undercut, to six digits, or None."""
     size = max(made.prime, abs(made.pivot or 0.0), abs(made.offset), made.program.lift)
     low, high = made.base, made.base
     while not _is_sufficient(replace(made, base=high)):
