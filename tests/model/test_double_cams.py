@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import compoundkin as ck
-from compoundkin.laws import Program, dwell, fall, program, rise
+from compoundkin.model.laws import Program, dwell, fall, program, rise
 from compoundkin.model.profiles.double_cams import DoubleCam
 from compoundkin.profiles import cam_mechanism, conjugate, constant_breadth
 

@@ -57,12 +57,7 @@ LAWS: dict[str, tuple[AccelerationPiece, ...]] = {
 
 @dataclass(frozen=True)
 class PositionPiece:
-    """A position as a polynomial and a wave.
-
-    ``sum p[k] u**k + A sin(w u + phase)``.
-
-    `wave` is (A, w, phase).
-    """
+    """A position ``sum p[k] u**k + A sin(w u + phase)``; `wave` is (A, w, phase)."""
 
     start: float
     polynomial: tuple[float, ...]
