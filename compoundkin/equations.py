@@ -19,8 +19,17 @@ from __future__ import annotations
 from compoundkin.analysis.equations.freudenstein import freudenstein
 from compoundkin.analysis.equations.newton_iterations import newton_iterations
 from compoundkin.analysis.equations.notation import latex, text
-from compoundkin.kinematics.groups.textbook_dyads import line_through, link, prp, rpp, rpr, rrp, rrr
-from compoundkin.kinematics.moving_lines import MovingLine, MovingPoint
+from compoundkin.kinematics.groups.textbook_dyads import (
+    MovingLine,
+    MovingPoint,
+    line_through,
+    link,
+    prp,
+    rpp,
+    rpr,
+    rrp,
+    rrr,
+)
 
 __all__ = [
     "MovingLine",

@@ -20,11 +20,9 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.files.exchange.exchanged import Exported, Imported
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.configuration import Configuration, Configurations
 from compoundkin.kinematics.gaps import Gap
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.table import Table
+from compoundkin.kinematics.quantities import Quantity, Table
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis

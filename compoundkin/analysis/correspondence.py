@@ -15,7 +15,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
-from compoundkin.kinematics.quiet_solution import quietly_solved
+from compoundkin.kinematics.solution import quietly_solved
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure

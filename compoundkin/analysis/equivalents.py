@@ -17,7 +17,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.model.attributes import RATES
 from compoundkin.model.elements import Drive, Item, Link, drawn, drive
 from compoundkin.model.mechanism import Mechanism

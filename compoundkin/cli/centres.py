@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.cli.drive_options import AT, pose_options, solve_motion_at
-from compoundkin.cli.file_options import (
-    exit_code,
-    mechanism_argument,
-    put_report,
-    report_options,
-    solvable_structure,
-)
+from compoundkin.cli.file_options import exit_code, mechanism_argument, put_report, report_options, solvable_structure
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion

@@ -7,13 +7,7 @@ from typing import Any
 import click
 
 from compoundkin.cli.drive_options import DESIGN, drive_options, solve_motion
-from compoundkin.cli.file_options import (
-    exit_code,
-    mechanism_argument,
-    put_report,
-    report_options,
-    solvable_structure,
-)
+from compoundkin.cli.file_options import exit_code, mechanism_argument, put_report, report_options, solvable_structure
 from compoundkin.cli.shell import working
 
 

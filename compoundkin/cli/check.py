@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.cli.drive_options import drive_options, solve_motion
-from compoundkin.cli.file_options import (
-    exit_code,
-    mechanism_argument,
-    put_report,
-    report_options,
-    solvable_structure,
-)
+from compoundkin.cli.file_options import exit_code, mechanism_argument, put_report, report_options, solvable_structure
 from compoundkin.cli.shell import FAILED, say, working
 
 if TYPE_CHECKING:

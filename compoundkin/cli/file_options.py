@@ -17,7 +17,7 @@ from compoundkin.cli.shell import NOT_ASSEMBLED, has_colour, put, report_width, 
 
 if TYPE_CHECKING:
     from compoundkin.files.exchange.exchanged import Imported
-    from compoundkin.kinematics.table import Table
+    from compoundkin.kinematics.quantities import Table
     from compoundkin.model.mechanism import Mechanism
     from compoundkin.structure import Structure
     from compoundkin.view.page import Page

@@ -20,7 +20,7 @@ from compoundkin.cli.file_options import (
 from compoundkin.cli.shell import working
 
 if TYPE_CHECKING:
-    from compoundkin.kinematics.table import Table
+    from compoundkin.kinematics.quantities import Table
     from compoundkin.structure import Structure
     from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 

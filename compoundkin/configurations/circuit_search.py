@@ -30,8 +30,7 @@ from compoundkin.configurations.routes import Route, place_of, required_place, r
 from compoundkin.configurations.segment_poses import SegmentPoses, Sweep
 from compoundkin.configurations.segments import Segments, segment_chains
 from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.driver_values import inputs
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.driver_values import Inputs, inputs
 from compoundkin.kinematics.solution import solving_order_of, starting_configuration
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism

@@ -20,13 +20,11 @@ from compoundkin.base.poses import Pose
 from compoundkin.configurations.driver_range import greatest_reach
 from compoundkin.configurations.segment_poses import drawn_angle
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configuration, ConfigurationCurve, dimensions_at
-from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.driver_values import by_name, inputs
+from compoundkin.kinematics.configuration import Configuration, ConfigurationCurve, Configurations, dimensions_at
+from compoundkin.kinematics.driver_values import Inputs, by_name, inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at
-from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.results import Named
+from compoundkin.kinematics.motion import Named
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 from compoundkin.model.mechanism import Mechanism

@@ -17,7 +17,7 @@ from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.configurations.continuation_arcs import LONGEST, ContinuationArc, ContinuationPaths, SegmentClosure
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import LIMIT, NONE, SegmentCurve, Segments
-from compoundkin.kinematics.configuration_arrays import state_distance
+from compoundkin.kinematics.configuration import state_distance
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,8 @@ import numpy as np
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotDetermined, Problem
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.driver_values import inputs
+from compoundkin.kinematics.driver_values import Inputs, inputs
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive, Expectation, Item, Mode, drive

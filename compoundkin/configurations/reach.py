@@ -15,9 +15,8 @@ from compoundkin.configurations.enumeration import AllModes, closed_redundant
 from compoundkin.configurations.prescribed_point import ModeSigns, PrescribedPoint
 from compoundkin.configurations.region_boundary import Depths
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import EDGE, Block
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.limits import EDGE
 from compoundkin.kinematics.solving_order import run
 from compoundkin.structure.kinematic_structure import Structure
 

@@ -11,12 +11,17 @@ from compoundkin.base.arrays import Number, column
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import Series, constant
 from compoundkin.configurations.segments import NONE, TOUCHING, Segments
-from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import SIGNS, Configuration, dimensions_at, numbers_at, placed_at
-from compoundkin.kinematics.configuration_arrays import state_distance
+from compoundkin.kinematics.block import EDGE, Block
+from compoundkin.kinematics.configuration import (
+    SIGNS,
+    Configuration,
+    dimensions_at,
+    numbers_at,
+    placed_at,
+    state_distance,
+)
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at
-from compoundkin.kinematics.limits import EDGE
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.pairs.contract import Ends
 

@@ -21,9 +21,9 @@ from compoundkin.dynamics.balance_conditions import BALANCED, BalanceConditions,
 from compoundkin.dynamics.course_quadrature import nodes, smooth_pieces
 from compoundkin.dynamics.mass_motion import mass_centre_place, mass_motions, units_of_masses
 from compoundkin.kinematics.extremes import Measure, between, closed_cycles, extremes
+from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
-from compoundkin.kinematics.unit_rates import moved_alone
 from compoundkin.model.geometry import FRAME, real, vector
 from compoundkin.model.loads import mass as mass_of
 from compoundkin.model.mechanism import Mechanism

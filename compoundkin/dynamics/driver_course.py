@@ -19,8 +19,8 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggesti
 from compoundkin.dynamics.course_quadrature import Integrand, Pieces, integrals, smooth_pieces
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
-from compoundkin.kinematics.extremes import Extremes, Measure, between, closed_cycles, extremes, given_over
-from compoundkin.kinematics.extremes.inputs_between import inputs_between
+from compoundkin.kinematics.extremes import Extremes, Measure, between, closed_cycles, extended_to, extremes
+from compoundkin.kinematics.extremes.motion_between import inputs_between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import EFFORT, POWER
 from compoundkin.model.elements import Expectation, Item
@@ -75,7 +75,7 @@ class DriverCourse(ShortRepr):
         scale, own = self._largest, np.reshape(less, (*self.motion.shape[:-1], 1))
 
         def of(at: Motion) -> Number:
-            return self.effort(at) - (own if at is self.motion else given_over(at, own)[0])
+            return self.effort(at) - (own if at is self.motion else extended_to(at, own)[0])
 
         return Measure(f"{self.driver}.{EFFORT}", self.unit, self.order, of, scale=scale)
 

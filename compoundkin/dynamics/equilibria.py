@@ -21,10 +21,10 @@ from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.reactions.virtual_work import virtual_efforts
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.kinematics.extremes import Measure, between, zeros
-from compoundkin.kinematics.extremes.places import SAME_PLACE
+from compoundkin.kinematics.extremes.stretches import SAME_PLACE
+from compoundkin.kinematics.jacobian import moved_alone, moved_together
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve, solving_order_of
-from compoundkin.kinematics.unit_rates import moved_alone, moved_together
 from compoundkin.model.attributes import EFFORT
 from compoundkin.model.geometry import real
 from compoundkin.model.mechanism import Mechanism

@@ -36,8 +36,8 @@ from compoundkin.dynamics.reactions.link_wrench import FRICTION, LinkWrench
 from compoundkin.dynamics.reactions.reverse_pass import ON_FRAME, Reactions, all_reactions, joined_reactions
 from compoundkin.dynamics.reactions.singular_poses import at_singular_poses
 from compoundkin.dynamics.reactions.virtual_work import holding_effort, holding_wrenches
+from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.unit_rates import moved_alone
 from compoundkin.model.mechanism import Mechanism
 
 

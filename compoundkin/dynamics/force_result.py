@@ -17,13 +17,12 @@ from compoundkin.dynamics.reactions.link_wrench import LinkWrench
 from compoundkin.dynamics.reactions.reverse_pass import SelfStress, UndeterminedPart, self_stress
 from compoundkin.dynamics.reactions.singular_poses import SingularPose
 from compoundkin.dynamics.reactions.virtual_work import HoldingEffort, virtual_efforts
-from compoundkin.kinematics.inputs import Inputs, PoseGrid
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.results import LinkMotion, PointMotion
+from compoundkin.kinematics.driver_values import Inputs, PoseGrid
+from compoundkin.kinematics.motion import LinkMotion, Motion, PointMotion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import Units
-from compoundkin.structure.parts import Dropped
+from compoundkin.structure.mobility_count import Dropped
 
 
 @dataclass(frozen=True, repr=False)

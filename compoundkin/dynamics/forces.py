@@ -15,9 +15,8 @@ from compoundkin.dynamics.reactions.driver_efforts import DriverEffort, Powers, 
 from compoundkin.dynamics.reactions.link_forces import LinkForces, PinForces, ShakingForce, link_forces
 from compoundkin.dynamics.reactions.pair_forces import PairForce
 from compoundkin.dynamics.reactions.undetermined import Undetermined, undetermined_forces
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.results import Named
-from compoundkin.kinematics.table import Table, table_of
+from compoundkin.kinematics.motion import Motion, Named
+from compoundkin.kinematics.quantities import Table, table_of
 from compoundkin.model.attributes import FORCE, FORCES, MOMENT
 
 if TYPE_CHECKING:

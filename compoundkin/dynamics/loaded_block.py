@@ -12,11 +12,10 @@ from compoundkin.base.errors import Problem, UnknownName
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series, as_series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.kinematics.block import Block, blocks
-from compoundkin.kinematics.extremes import given_over
-from compoundkin.kinematics.inputs import fit, mapped
+from compoundkin.kinematics.block import Block, blocks, rectangle
+from compoundkin.kinematics.driver_values import fit, mapped
+from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.number_parts import rectangle
 from compoundkin.model.definition import matching_pairs, pair_by_name
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.mass import Mass
@@ -108,7 +107,7 @@ class LoadedBlock:
 
     def fitted(self, value: Any, where: str = "load") -> Number:
         """Return the part of a value at these poses. `where` names it in errors."""
-        return self._cut(given_over(self.motion, value, where))
+        return self._cut(extended_to(self.motion, value, where))
 
     def _cut(self, value: Number) -> Number:
         return rectangle(value, self.designs, self.poses)

@@ -21,9 +21,9 @@ from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.extremes import given_over
+from compoundkin.kinematics.extremes import extended_to
+from compoundkin.kinematics.jacobian import moved_together
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.unit_rates import moved_together
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.units import Units
@@ -63,13 +63,13 @@ def mass_motions(motion: Motion) -> Iterator[MassMotion]:
         pose, place = motion.poses[mass.link], mass_centre_place(motion, mass)
         centre = tuple(pose.derivative(place, k) for k in range(motion.order + 1))
         # a link that turns freely, such as a roller, has no rotary inertia
-        inertia = 0.0 if mass.link in free else given_over(motion, mass.inertia)
-        yield MassMotion(mass.link, given_over(motion, mass.mass), inertia, centre, _turning(motion, pose))
+        inertia = 0.0 if mass.link in free else extended_to(motion, mass.inertia)
+        yield MassMotion(mass.link, extended_to(motion, mass.mass), inertia, centre, _turning(motion, pose))
 
 
 def mass_centre_place(motion: Motion, mass: Mass) -> Number:
     """Return the place of a mass centre in its link's frame."""
-    return given_over(motion, motion.mechanism.mass_centre(mass))
+    return extended_to(motion, motion.mechanism.mass_centre(mass))
 
 
 def _turning(motion: Motion, pose: Pose) -> tuple[Number, ...]:

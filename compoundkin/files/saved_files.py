@@ -23,7 +23,7 @@ from compoundkin.base.suffixes import Kind, all_suffixes, file_format
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.mechanism_files import encoded
 from compoundkin.files.parquet_library import parquet
-from compoundkin.kinematics.table import ANGLES, Table
+from compoundkin.kinematics.quantities import ANGLES, Table
 from compoundkin.model.mechanism import Mechanism
 
 Write: TypeAlias = Callable[[BinaryIO], Any]

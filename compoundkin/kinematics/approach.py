@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
 # Samples lie at most so far apart: radians of a driver's angle, or parts of the size of its length.

@@ -1,24 +1,66 @@
-"""A block: some designs x some poses while they are solved; and how a motion is cut into blocks."""
+"""Blocks: some designs x some poses while they are solved, their limit positions, and how they are joined again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import factorial
+from typing import TypeAlias
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.buffers import arrays_of_one_buffer
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.limits import CLIPPED, LimitRule, Root
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.parts import Body
+from compoundkin.structure.mobility_count import Body
 
 # So many poses are solved at once: their arrays stay in a second-level cache of 2 MB, and the calls take far less
 # time than the work.
 BLOCK = 16384
+
+
+# Below this fraction of its largest terms a discriminant is zero: rounding of a limit position, where
+# the group is stretched or folded. A few hundred units in the last place of the terms it is the difference of.
+LIMIT = 1e-13
+
+
+def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
+    """Return the square root and the margin.
+
+    The root is zero for a discriminant that is zero but for rounding, NaN below it.
+
+    >>> from compoundkin.base.series import constant
+    >>> value, margin = clipped_root(constant(np.array([4.0, -1e-15])), 1.0)
+    >>> value.c[0].tolist()
+    [2.0, 0.0]
+    """
+    margin = np.divide(discriminant.c[0], scale) + LIMIT
+    clipped = np.where(margin >= 0, np.maximum(discriminant.c[0], 0.0), np.nan)
+    return Series((clipped, *discriminant.c[1:])).sqrt(), margin
+
+
+# Corrections above this (of the size, or radians) leave the region where Newton's answer is a neighbour.
+LEAP = 0.5
+
+
+@dataclass(frozen=True)
+class LimitRule:
+    """The rule at limit positions.
+
+    It tells the root of closed forms, how far Newton may go from where it begins, and whether a state from which Newton
+    does not converge is kept as it is, instead of none.
+    """
+
+    root: Root
+    leap: float = LEAP
+    keeps_states: bool = False
+
+
+# Beyond a limit there is no pose.
+CLIPPED = LimitRule(clipped_root)
 
 
 @dataclass
@@ -147,3 +189,216 @@ def with_poses(
         return Pose(put(pose.z, other.z), put(pose.u, other.u), put(pose.angle, other.angle) if known else None)
 
     return {name: pose if name == FRAME else mended(pose, others[name]) for name, pose in poses.items()}
+
+
+# Rounds in which the smooth root of a square settles: each gains a power of the way to its zero, some hundredths.
+ROUNDS = 8
+
+
+# A seed is at its configuration within this (of the size, or radians), or Newton has left it.
+ASTRAY = 0.1
+
+
+# How a closed form takes the square root of a discriminant: (discriminant, scale) -> (root, margin).
+Root: TypeAlias = Callable[[Series, Number], tuple[Series, Number]]
+
+
+def nearest_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
+    """Return the square root, or zero. That is the nearest approach where a group cannot be assembled."""
+    lead = np.maximum(discriminant.c[0], 0.0)
+    return Series((lead, *discriminant.c[1:])).sqrt(), np.ones_like(lead)
+
+
+def edge_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
+    """Return the square root, zero beyond a limit position.
+
+    The margin itself, whose zero is the limit, is returned too.
+    """
+    lead = np.maximum(discriminant.c[0], 0.0)
+    return Series((lead, *discriminant.c[1:])).sqrt(), np.divide(discriminant.c[0], scale)
+
+
+def recorded_root(notes: list[Series]) -> Root:
+    """Return the clipped root that notes its discriminants, in parts of their scale."""
+
+    def root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
+        notes.append(Series(tuple(np.divide(c, scale) for c in discriminant.c)))
+        return clipped_root(discriminant, scale)
+
+    return root
+
+
+def signed_root(where: Number, sign: Number) -> Root:
+    """Return the root that is smooth where asked: the discriminant is its square.
+
+    It has a sign, before which its first rate is positive.
+    """
+
+    def root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
+        plain, margin = clipped_root(discriminant, scale)
+        size = np.sqrt(scale)
+        smooth = [c * size * sign for c in root_of_square(tuple(np.divide(c, scale) for c in discriminant.c))]
+        both = zip([*smooth, np.zeros_like(margin)], plain.c, strict=True)
+        return Series(tuple([np.where(where, t, p) for t, p in both])), margin
+
+    return root
+
+
+def root_of_square(c: tuple[Number, ...]) -> list[Number]:
+    """Return the coefficients, one fewer, of a smooth function whose square has these.
+
+    The function is near its zero, and grows: of the square itself nothing is left there but rounding, so that all is
+    taken from its rates. Each round takes on another power of the way to the zero; the last coefficients need those
+    that are not known, and mean less.
+
+    >>> [float(r) for r in root_of_square((0.0001, 0.02, 1.0, 0.0, 0.0))]  # of 0.01 + t
+    [0.01, 1.0, 0.0, 0.0]
+    """
+    n = len(c) - 1
+    r: list[Number] = [0.0] * (n + 1)
+    for _ in range(ROUNDS):
+        r[1] = np.sqrt(c[2] - 2.0 * r[0] * r[2])
+        half = 0.5 / r[1]
+        r[0] = c[1] * half
+        for j in range(2, n):
+            inner = sum((r[i] * r[j + 1 - i] for i in range(2, j)), 2.0 * r[0] * r[j + 1])
+            r[j] = (c[j + 1] - inner) * half
+    return r[:n]
+
+
+# Beyond a limit a closed form is at its nearest approach: to choose between modes.
+NEAREST = LimitRule(nearest_root)
+
+
+# Poses are known to be at a limit or before it; Newton cannot converge at the limit itself.
+EDGE = LimitRule(edge_root, ASTRAY, keeps_states=True)
+
+
+class JoinedBlocks:
+    """The arrays to which blocks are added; complete when all blocks have been.
+
+    A coefficient that is a number in every block stays one, and one that does not change with the design
+    or along the motion is kept at its own size. The arrays share one buffer, and links share those that are one.
+
+    >>> found = JoinedBlocks(1, 4)
+    >>> for m in (slice(0, 2), slice(2, 4)):
+    ...     world = {"slider": Pose(Series((np.array([[0j, 1j]]), 1j)), FIXED.u)}
+    ...     found.take(Block((1, 2), {}, world, {}, 1), slice(0, 1), m)
+    >>> found.poses()["slider"].z.c
+    (array([[0.+0.j, 0.+1.j, 0.+0.j, 0.+1.j]]), 1j)
+    """
+
+    def __init__(self, designs: int, poses: int) -> None:
+        self.shape = (designs, poses)
+        self.failed = np.empty(self.shape, dtype=np.int32)
+        self._fixed: dict[str, bool] = {}
+        # by link and z, u or theta: the coefficients over all blocks
+        self._found: dict[tuple[str, str], list[Number]] = {}
+
+    def take(self, block: Block, designs: slice, poses: slice) -> None:
+        """Add a block."""
+        self.failed[designs, poses] = block.failed
+        self._fixed.update({link: pose is FIXED for link, pose in block.world.items()})
+        parts = dict(_series(block.world))
+        if not self._found:
+            self._begin(parts, designs, poses)
+        # what is in which array now: links may share one, and one that no longer does gets its own
+        filled: dict[int, Number] = {}
+        for key, series in parts.items():
+            found = self._found.setdefault(key, [None] * len(series.c))
+            for k, part in enumerate(series.c):
+                there = filled.get(id(found[k]))
+                if there is None or there is not part:
+                    whole = found[k] if there is None else found[k].copy()
+                    found[k] = self._with(whole, part, designs, poses)
+                if isinstance(found[k], np.ndarray):
+                    filled[id(found[k])] = part
+
+    def poses(self) -> dict[str, Pose]:
+        """Return the links' poses over all blocks."""
+
+        def gathered(link: str, name: str) -> Series:
+            return Series(tuple(self._found[link, name]))
+
+        def angle(link: str) -> Series | None:
+            return gathered(link, "theta") if (link, "theta") in self._found else None
+
+        return {
+            link: FIXED if fixed else Pose(gathered(link, "z"), gathered(link, "u"), angle(link))
+            for link, fixed in self._fixed.items()
+        }
+
+    def _begin(self, parts: Mapping[tuple[str, str], Series], designs: slice, poses: slice) -> None:
+        """Make room for the arrays of a first block: fresh memory costs most where it comes in many pieces."""
+        arrays = {id(c): c for series in parts.values() for c in series.c if np.ndim(c)}
+        wanted = ((self._needed(c.shape, designs, poses), c.dtype) for c in arrays.values())
+        rooms = dict(zip(arrays, arrays_of_one_buffer(tuple(wanted)), strict=True))
+        self._found = {key: [rooms.get(id(c)) for c in series.c] for key, series in parts.items()}
+
+    def _with(self, whole: Number, part: Number, designs: slice, poses: slice) -> Number:
+        """Return a coefficient with the part of a block put in; None where there is none yet."""
+        if np.ndim(part) == 0 and (whole is None or np.ndim(whole) == 0):
+            return part
+        shape = np.broadcast_shapes(np.shape(whole), self._needed(np.shape(part), designs, poses))
+        if whole is None:
+            whole = np.empty(shape, dtype=np.result_type(part))
+        elif np.shape(whole) != shape:
+            whole = np.array(np.broadcast_to(whole, shape), dtype=np.result_type(part, whole))
+        rows, columns = whole.shape
+        whole[designs if rows > 1 else slice(None), poses if columns > 1 else slice(None)] = part
+        return whole
+
+    def _needed(self, part: tuple[int, ...], designs: slice, poses: slice) -> tuple[int, ...]:
+        """Return the shape over all blocks; a block of one row does not show that all rows are equal."""
+        block = (designs.stop - designs.start, poses.stop - poses.start)
+        return tuple(n if p > 1 or b == 1 else 1 for n, p, b in zip(self.shape, part, block, strict=bool(part)))
+
+
+def _series(world: Mapping[str, Pose]) -> Iterator[tuple[tuple[str, str], Series]]:
+    for link, pose in world.items():
+        for name, series in (("z", pose.z), ("u", pose.u), ("theta", pose.theta)):
+            if series is not None:
+                yield (link, name), series
+
+
+def rectangle(value: Number, designs: slice, poses: slice) -> Number:
+    """Return what of a value belongs to a rectangle of designs and poses."""
+    if np.ndim(value) == 0:
+        return value
+    return value[designs if value.shape[0] > 1 else slice(None), poses if value.shape[1] > 1 else slice(None)]
+
+
+def between_poses(value: Number, i: Number, weight: Number) -> Number:
+    """Return a value of all designs between the poses `i` and the next ones."""
+    if np.ndim(value) == 0 or value.shape[1] == 1:
+        return value
+    return value[:, i] * (1.0 - weight) + value[:, i + 1] * weight
+
+
+def picked(value: Number, designs: Number, i: Number, weight: Number) -> Number:
+    """Return a value of some designs after their poses `i`, as a column."""
+    if np.ndim(value) == 0:
+        return value
+    rows = _rows(value, designs)
+    if value.shape[1] == 1:
+        return value[rows, :1]
+    return (value[rows, i] * (1.0 - weight) + value[rows, i + 1] * weight)[:, None]
+
+
+def picked_slope(value: Number, designs: Number, i: Number) -> Number:
+    """Return by how much values of some designs change after their poses `i`."""
+    if np.ndim(value) == 0 or value.shape[1] == 1:
+        return 0.0
+    rows = _rows(value, designs)
+    return (value[rows, i + 1] - value[rows, i])[:, None]
+
+
+def _rows(value: Number, designs: Number) -> Number:
+    return designs if value.shape[0] > 1 else np.zeros_like(designs)
+
+
+def slope(value: Number, i: Number) -> Number:
+    """Return by how much a value of all designs changes after the poses `i`."""
+    if np.ndim(value) == 0 or value.shape[1] == 1:
+        return 0.0
+    return value[:, i + 1] - value[:, i]

@@ -1,24 +1,31 @@
-"""The path of a group without a closed form: what is tracked on the way to a motion, and along the motion."""
+"""Paths of groups without a closed form: continuation to a motion and along it, and returns after a gap."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from compoundkin.base.arrays import Number
-from compoundkin.kinematics.approach import CLOSE, pace
+from compoundkin.base.arrays import Number, column
+from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
+from compoundkin.base.poses import Pose
+from compoundkin.kinematics.approach import CLOSE, first_of, pace
+from compoundkin.kinematics.approach import column as pose_column
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.group_march import TERMS, GroupMarch, Node
-from compoundkin.kinematics.groups import equations_of
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.driver_values import Inputs
+from compoundkin.kinematics.groups import GroupSolver, equations_of
+from compoundkin.kinematics.groups.general import bodies_at, known_configurations
+from compoundkin.kinematics.groups.group_equations import GroupEquations, surroundings
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.mechanism import poses_from_drawing
 
 # No step takes more spacings than this of the drivers (of five degrees each), even where nothing moves.
 SPACINGS = 6.0
+
+
 # Drivers that take less than this part of a spacing a pose stand still.
 SLOWEST = 1e-9
 
@@ -104,10 +111,10 @@ def track(tracker: Followed, k: int, state: Number) -> tuple[GroupPath, GroupPat
     )
     path = _joined(np.stack([start, first.reached], axis=1), first.first_side, first.nodes)
     state = np.where(first.alive[:, None, None], first.state, np.nan)
-    return path, both_ways(tracker, k, state, np.full(len(state), tracker.at))
+    return path, both_directions(tracker, k, state, np.full(len(state), tracker.at))
 
 
-def both_ways(tracker: Followed, k: int, state: Number, at: Number) -> GroupPath:
+def both_directions(tracker: Followed, k: int, state: Number, at: Number) -> GroupPath:
     """Follow a group from its states, each at its own place, to both ends."""
     given = tracker.given
     stops = np.arange(given.poses, dtype=float)
@@ -147,3 +154,412 @@ def _joined(reach: Number, side: Number, nodes: Sequence[Node]) -> GroupPath:
 
 def _beyond(reached: Number, end: float, little: float) -> Number:
     return np.where(reached == end, reached + 4.0 * little, reached)
+
+
+# What the terms of the prediction, first to third, may move at most (parts of the size, or radians) in one step: what
+# is left out is then below a hundredth, from which Newton converges unless a limit position is near.
+MOVES = (0.5, 0.2, 0.02)
+
+
+# A step goes at most this part of the way to a limit position: a longer one would have to be tried again.
+NEARER = 0.7
+
+
+# A corrector that moves farther than this may have left its branch.
+STRAY = 0.03
+
+
+# What is interpolated may be off by this part of a step: near a limit position steps are so short that it is smooth.
+BENT = 0.05
+
+
+# Differences below this (of the size, or radians) are none.
+SAME = 1e-7
+
+
+# The continuation gives up where its step falls below this part of the distance between two poses; what
+# is left is then known to be nearer to a limit than that.
+SHORTEST = 1e-12
+
+
+# Between two poses no more steps than this are tried: a configuration that ends takes some sixty.
+MOST_TRIALS = 600
+
+
+# Bodies that are so many sizes away run to infinity: rounding there is more than what a closed pose may leave open.
+FARTHEST = 1e3
+
+
+# The other lengths are those of the prediction; a step that fails is halved.
+LENGTHS = StepLengths(first=np.inf, longest=np.inf, shortest=0.0, easy=1, most=1_000_000_000)
+
+
+# The terms of the prediction, first to third.
+TERMS = len(MOVES)
+
+
+class Node(NamedTuple):
+    """Where some designs have come to: their indices, places, states and slopes."""
+
+    designs: Number
+    s: Number
+    states: Number
+    slopes: Number
+
+
+class GroupMarch:
+    """One continuation of a group's state along a way.
+
+    `around(designs, s)` is what surrounds the group of some designs, each at its own place, with `TERMS` derivatives by
+    s; no step is longer than `longest`.
+    """
+
+    def __init__(
+        self, equations: GroupEquations, around: Callable[[Number, Number], Block], longest: float, state: Number
+    ) -> None:
+        self.equations, self.around, self.longest = equations, around, longest
+        self.state, self.origin = np.array(state), state
+        self.alive = np.isfinite(state).all(axis=(1, 2))
+        # which numbers of a state are lengths
+        self.lengths = np.arange(equations.width) % 3 < 2
+        self.rates = [np.full(state.shape, np.nan) for _ in range(TERMS)]
+        self.side = np.full(state.shape[:2], np.nan)
+        # how many sizes the farthest body of each design is from where it started, at least one
+        self.spread = np.ones(len(state))
+        self.trials = np.zeros(len(state), dtype=int)
+        self.nodes: list[Node] = []
+
+    def go(self, start: Number, stops: Number) -> GroupMarch:
+        """Step from each design's place to all stops beyond, which are in order.
+
+        Those that lie within one stride of each other are passed over.
+        """
+        self.here, self.reached = np.array(start), np.where(self.alive, start, np.nan)
+        self.sense = 1.0 if stops[-1] >= stops[0] else -1.0
+        self.stops = self.sense * stops
+        self.goal = np.searchsorted(self.stops, self.sense * self.here, side="right")
+        i = np.flatnonzero(self.alive)
+        state = self.state[i]
+        known = self._rates(state, self.around(i, self.here[i])) if len(i) else ([state] * TERMS, state[..., 0])
+        self._take(i, self.here[i], state, *known)
+        self.first_side = self.side[:, 0].copy()
+        there = self.goal == len(stops)
+        self.alive &= there | trace_paths(self._toward_goal, self.alive & ~there, LENGTHS)
+        return self
+
+    def _toward_goal(self, i: Number, longest: Number) -> StepResult:
+        """Try a step of some designs, so long that the prediction is good, to the farthest stop within it."""
+        rates, here = [c[i] for c in self.rates], self.sense * self.here[i]
+        weights = self._weights(i)
+        most = np.minimum(np.minimum(longest, _strides(weights, rates)), self.longest)
+        within = np.searchsorted(self.stops, here + most, side="right") - self.goal[i]
+        self.goal[i] = np.minimum(self.goal[i] + np.maximum(within - 1, 0), len(self.stops) - 1)
+        stop = self.stops[self.goal[i]]
+        length = np.minimum(stop - here, most)
+        place = self.sense * np.where(stop - here <= most, stop, here + most)
+        new, new_rates, new_side, good = self._step(i, weights, rates, self.sense * length, place)
+        self.trials[i] = np.where(good & (within > 0), 0, self.trials[i] + 1)
+        self._take(i[good], place[good], new[good], [c[good] for c in new_rates], new_side[good])
+        self.goal[i] += good & (place == self.sense * stop)
+        arrived = self.goal[i] == len(self.stops)
+        lost = (self.spread[i] > FARTHEST) | (self.trials[i] > MOST_TRIALS)
+        # near a limit steps vanish in rounding, each of them good
+        lost |= ~(good & (within > 0)) & (length <= SHORTEST * np.maximum(1.0, np.abs(here)))
+        return StepResult(np.where(lost, 0.0, length), good & ~lost, arrived)
+
+    def _take(self, i: Number, place: Number, state: Number, rates: list[Number], side: Number) -> None:
+        """Go on to places."""
+        self.here[i], self.reached[i], self.state[i], self.side[i] = place, place, state, side
+        for known, rate in zip(self.rates, rates, strict=True):
+            known[i] = rate
+        moved = np.abs((state - self.origin[i]) * self.equations.weights * self.lengths)
+        self.spread[i] = np.fmax(moved.max(axis=(1, 2)), 1.0)
+        self.nodes.append(Node(i, place, state[:, 0], rates[0][:, 0]))
+
+    def _weights(self, i: Number) -> Number:
+        """Return the weights of changes of the state: parts of the size, or of how far a body has gone, and radians."""
+        return np.where(self.lengths, self.equations.weights / self.spread[i][:, None, None], self.equations.weights)
+
+    def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
+        """Return the state's coefficients by s, and on which side of a singularity the configuration is."""
+        rates, side = self.equations.rates(state, block, TERMS)
+        return rates, np.broadcast_to(side, state.shape[:2])
+
+    def _step(
+        self, i: Number, weights: Number, rates: list[Number], h: Number, place: Number
+    ) -> tuple[Number, list[Number], Number, Number]:
+        """Return one step: the states there, their rates and sides, and for which designs it is a neighbour."""
+        state, h = self.state[i], h[:, None, None]
+        guess = state + sum(c * h**k for k, c in enumerate(rates, 1))
+        block = self.around(i, place)
+        found = self.equations.newton(guess, block)
+        good = found.closed.reshape(len(i)) & (found.moved.reshape(len(i)) <= STRAY * self.spread[i])
+        new = np.where(good[:, None, None], found.state, state)
+        new_rates, new_side = self._rates(new, block)
+        # the middle of the step as it will be interpolated, against the prediction
+        between = (state + new) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
+        predicted = state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
+        off, moved = (np.abs(gap * weights).max(axis=(1, 2)) for gap in (between - predicted, new - state))
+        near = off <= BENT * moved + SAME
+        return new, new_rates, new_side, good & near & (new_side == self.side[i])[:, 0]
+
+
+def _strides(weights: Number, rates: list[Number]) -> Number:
+    """Return how far the prediction is good, by the farthest move that each of its terms may make."""
+    moves = [np.abs(c * weights).max(axis=(1, 2)) for c in rates]
+    strides = [_root(most, move, k) for k, (most, move) in enumerate(zip(MOVES, moves, strict=True), 1)]
+    # at a limit position states go with the square root of the distance, of which two terms in a row tell
+    distance = np.fmax(_root(moves[0], 4.0 * moves[1], 1), _root(moves[1], 2.0 * moves[2], 1))
+    return np.fmin.reduce([*strides, NEARER * distance])
+
+
+def _root(most: Number, move: Number, k: int) -> Number:
+    """Return the step in which a term of order `k` makes a move, infinite where it makes none."""
+    return np.divide(most, move, out=np.full(np.shape(move), np.inf), where=move > 0.0) ** (1.0 / k)
+
+
+# So many pieces of a branch are looked for, and so many poses of it at most.
+MOST_PIECES = 8
+
+
+MOST_POSES = 20_000
+
+
+# All configurations at a pose take half a millisecond: of more designs, with gaps of some eighty poses each, only the
+# branch is followed.
+MOST_DESIGNS = 250
+
+
+# All configurations of groups of more bodies take too long to be asked for at every pose.
+MOST_BODIES = 4
+
+
+@dataclass(frozen=True)
+class _Kin:
+    """The configurations with the sign of the Jacobian that a group has. How many there are, and one of them.
+
+    Both are by design and place: `count` (designs, places), -1 where it is not known, and `states` (..., width).
+    """
+
+    places: Number
+    count: Number
+    states: Number
+
+
+def with_returns(way: Followed, k: int, home: GroupPath, period: float = np.inf) -> GroupPath:
+    """Return a path of group `k` with its returns after gaps, each by itself.
+
+    A configuration that goes on beside the branch itself, or beside another one of its sign, is no return of it. After
+    `period` places the way is the same again.
+    """
+    kin = _kin(way, k, home, period) if len(home.reach) <= MOST_DESIGNS else None
+    if kin is None:
+        return home
+    todo, found = kin.count == 1, list[GroupPath]()
+    for _ in range(MOST_PIECES):
+        if not todo.any():
+            break
+        every, i, rows = np.arange(len(todo)), np.argmax(todo, axis=1), todo.any(axis=1)
+        piece = both_directions(way, k, np.where(rows[:, None], kin.states[every, i], np.nan)[:, None], kin.places[i])
+        low, high = piece.reach[:, :1], piece.reach[:, 1:]
+        inside = (kin.places >= low) & (kin.places <= high)
+        todo = todo & ~inside
+        todo[every, i] = False
+        keeps = rows & ~(inside & (kin.count > 1)).any(axis=1)
+        for other in (home, *found):
+            keeps = keeps & ~_overlaps(piece.reach, other.reach, period)
+        if keeps.any():
+            found.append(replace(piece, reach=np.where(keeps[:, None], piece.reach, np.nan)))
+    return replace(home, returns=tuple(found))
+
+
+def _overlaps(piece: Number, home: Number, period: float) -> Number:
+    """Tell for which designs a piece lies beside another one, also after a period."""
+    shifts = (0.0,) if np.isinf(period) else (-period, 0.0, period)
+    beside = [(piece[:, 0] < home[:, 1] + shift) & (piece[:, 1] > home[:, 0] + shift) for shift in shifts]
+    return np.logical_or.reduce(beside)
+
+
+def _kin(way: Followed, k: int, home: GroupPath, period: float) -> _Kin | None:
+    """Return the kin of a branch where it has a gap. None where it has none, or configurations are not known."""
+    low, high = home.reach[:, :1], home.reach[:, 1:]
+    places = np.arange(way.given.poses, dtype=float)
+    gone = ((places < low) | (places > high)) & (home.side != 0.0)[:, None]
+    if np.isfinite(period):
+        gone = (places > high) & (places < low + period)
+    stride = 1 + int(np.count_nonzero(gone)) // MOST_POSES
+    places, gone = places[::stride], gone[:, ::stride]
+    designs, index = np.nonzero(gone)
+    if not len(designs):
+        return None
+    found = kin_at(way, k, home, designs, places[index])
+    if found is None:
+        return None
+    count, state = found
+    counts = np.full(gone.shape, -1)
+    states = np.full((*gone.shape, state.shape[-1]), np.nan)
+    counts[designs, index], states[designs, index] = count, state
+    return _Kin(places, counts, states)
+
+
+def kin_at(way: Followed, k: int, home: GroupPath, designs: Number, places: Number) -> tuple[Number, Number] | None:
+    """Return how many configurations have a branch's sign, and one of them. None where they are not known.
+
+    `designs` and `places` are those of single poses. Where an earlier group is not assembled, the number is -1.
+    """
+    solver = way.solving_order.solvers[k]
+    if len(solver.group.bodies) > MOST_BODIES:
+        return None
+    equations = equations_of(solver)
+    count, states = np.full(len(designs), -1), np.full((len(designs), equations.width), np.nan)
+    known = np.flatnonzero(column(_before(way, k, designs, places).failed == 0, len(designs)))
+    if not len(known):
+        return count, states
+    block = _before(way, k, designs[known], places[known])
+    every = every_state(solver, block, MOST_BODIES)
+    if every is None:
+        return None
+    side = equations.rates(every, block, 0)[1]
+    same = np.broadcast_to(side, every.shape[:-1]) == home.side[designs[known], None]
+    fits = np.isfinite(every).all(axis=-1) & same
+    count[known] = fits.sum(axis=0)[:, 0]
+    if len(every):
+        first = np.argmax(fits[..., 0], axis=0)
+        states[known] = every[first, np.arange(len(known)), 0]
+    return count, states
+
+
+def _before(way: Followed, k: int, designs: Number, places: Number) -> Block:
+    """Return what is solved before a group at single poses."""
+    return way.run(way.given.pick(designs, places), 0, places[:, None], designs[:, None], k)
+
+
+def why_no_return(way: Followed, k: int, home: GroupPath, design: int, place: float) -> str:
+    """Say why a group does not come back at a pose of a gap."""
+    if len(home.reach) > MOST_DESIGNS:
+        return f"whether it comes back is looked for in motions of up to {MOST_DESIGNS} designs only"
+    found = kin_at(way, k, home, np.array([design]), np.array([place]))
+    if found is None:
+        return "not all its configurations are known, so that none can be told to be its own after a gap"
+    count = int(found[0][0])
+    if count < 1:
+        return "no configuration has the sign of its Jacobian there"
+    if count == 1:
+        return "the one configuration there with the sign of its Jacobian goes on beside it and is another branch"
+    return f"{count} configurations there have the sign of its Jacobian, so that none can be told to be its own"
+
+
+# Random starts for a group that is not drawn completely; those after the first closed one only where a
+# drawing can tell the better of two.
+STARTS = 200
+
+
+COMPARED = 50
+
+
+# Up to so many bodies all configurations are found in some milliseconds.
+MOST_BODIES_ENUMERATED = 6
+
+
+def every_state(solver: GroupSolver, block: Block, most: int = MOST_BODIES_ENUMERATED) -> Number | None:
+    """Return all real configurations of a group, or None where they are not known.
+
+    They are (m, designs, 1, width), NaN where a design has fewer. Those of more than `most` bodies are not looked for.
+    """
+    equations = equations_of(solver)
+    found = known_configurations(solver.group, block, equations.size, most)
+    if found is None:
+        return None
+    states = np.moveaxis(equations.state(bodies_at(found.states)), -2, 0)
+    placed = states.reshape(len(states), *(1,) * (4 - states.ndim), *states.shape[1:])
+    return np.broadcast_to(placed, (len(states), *block.shape, equations.width))
+
+
+class ClosedStates:
+    """Where a closed state is looked for; `complete` where all bodies are drawn."""
+
+    def __init__(
+        self, order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], drawn: bool
+    ) -> None:
+        self.solving_order, self.solver, self.block, self.sketch, self.drawn = order, solver, block, sketch, drawn
+        self.equations = equations_of(solver)
+        self.guesses = self._guesses()
+        self.complete = all(self.guesses[k] is not None for k in self.equations.kept)
+
+    def batches(self) -> Iterator[Number]:
+        """Yield what is drawn completely; then all configurations, or random starts.
+
+        The latter are taken where no theory knows the configurations. For a single design all at once, else one by one.
+        """
+        single = self.block.shape[0] == 1
+        starts = self._starts()
+        if self.complete:
+            yield next(starts)
+        every = every_state(self.solver, self.block)
+        if every is not None and len(every):
+            yield from [every[:, 0]] if single else every
+            return
+        if not self.complete:
+            yield next(starts)
+        if single:
+            rest = list(starts)
+            # where nothing is drawn none is nearest, and more are tried only where these do not close
+            first = 0 if self.drawn else COMPARED
+            yield from (np.concatenate(part) for part in (rest[:first], rest[first:]) if part)
+        else:
+            yield from starts
+
+    def _guesses(self) -> list[Pose | None]:
+        """Return the poses of the group's bodies as far as the drawing and what is known already show them."""
+        group, block = self.solver.group, self.block
+        told = poses_from_drawing(
+            {link: self._points(link) for link in (*group.uses, *group.links)},
+            ((pair, block.ends[pair.name]) for pair in (*group.inner, *group.outer)),
+            {k: first_of(p) for k, p in self.sketch.items()},
+            {link: block.world[link].trimmed(0) for link in group.uses},
+        )
+        return [self._told(body.links, told) for body in group.bodies]
+
+    def _told(self, links: tuple[str, ...], told: Mapping[str, Pose]) -> Pose | None:
+        """Return the pose of a composite link's base, from the first of its links of which the pose is told."""
+        link = next((link for link in links if link in told), None)
+        if link is None:
+            return None
+        local = self.block.local.get(link)
+        pose = told[link] if local is None else told[link].compose(local.trimmed(0).inverse())
+        drawn = self.solving_order.structure.mechanism.drawn_poses.get(links[0])
+        # pairs that count turns take the drawn angle, which at half a turn may have either sign
+        return pose if drawn is None or pose.theta is not None else pose.counted(pose_column(drawn).angle.c[0])
+
+    def _points(self, link: str) -> dict[str, Number]:
+        points = self.solving_order.structure.mechanism.geometry.points[link]
+        return {letter: first_of(point) for letter, point in points.items()}
+
+    def _held(self) -> list[tuple[Number, Number] | None]:
+        """Return for each body a point that is drawn or known, in its own frame and where it is; or None."""
+        uses = self.solver.group.uses
+        seen = {k: self.block.world[n].at(p).c[0] for n in uses for k, p in self._points(n).items()}
+        seen.update({k: first_of(p) for k, p in self.sketch.items()})
+        bases = (self._points(body.links[0]) for body in self.solver.group.bodies)
+        return [next(((p, seen[k]) for k, p in points.items() if k in seen), None) for points in bases]
+
+    def _starts(self) -> Iterator[Number]:
+        """Yield random states around where the group is attached, what is shown where it is shown.
+
+        Newton may not get from what is shown to any closed state, so that later states are wholly random.
+        """
+        fixed = 1 if self.complete else COMPARED
+        rng = np.random.default_rng(self.equations.n)
+        centre, reach = surroundings(self.equations, self.block)
+        held, middles = self._held(), self.equations.middles
+        for number in range(STARTS):
+            # far guides lead beyond the places where the group is attached
+            wide = reach if number % 2 else np.maximum(reach, self.equations.size)
+            bodies = []
+            for guess, pin, middle in zip(self.guesses, held, middles, strict=True):
+                spot = centre + complex(*rng.standard_normal(2)) * wide / 2.0
+                u = np.full((1, 1), np.exp(1j * rng.uniform(-np.pi, np.pi)))
+                point, place = (middle, spot) if pin is None or number >= fixed else pin
+                bodies.append(Pose.of(place - u * point, u) if guess is None or number >= fixed else pose_column(guess))
+            state = self.equations.state(bodies)
+            yield state.reshape((1,) * (3 - state.ndim) + state.shape)

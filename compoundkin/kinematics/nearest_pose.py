@@ -10,7 +10,7 @@ from compoundkin.base.arrays import Number, first_entry, turns_above
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quiet_solution import quietly_solved
+from compoundkin.kinematics.solution import quietly_solved
 
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6

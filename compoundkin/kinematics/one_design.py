@@ -15,16 +15,13 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotDetermined
 from compoundkin.base.poses import FIXED
 from compoundkin.base.series import Series
-from compoundkin.kinematics.branch import TrackedBranch
-from compoundkin.kinematics.chosen_modes import Shown
-from compoundkin.kinematics.driver_values import inputs, times_of
-from compoundkin.kinematics.full_turns import Turns
+from compoundkin.kinematics.driver_values import Inputs, inputs, mapped, times_of
 from compoundkin.kinematics.group_paths import GroupPath
-from compoundkin.kinematics.inputs import Inputs, mapped
+from compoundkin.kinematics.modes import StatedModes
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve, solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import Tracker
+from compoundkin.kinematics.tracking import TrackedBranch, Tracker, Turns
 from compoundkin.model.attributes import RATES
 from compoundkin.model.mechanism import Mechanism, mechanism_of_design, values_of_design
 from compoundkin.structure import decompose
@@ -139,7 +136,7 @@ class _Design:
         (before, early), (along, late) = turns.approach, turns.motion
         return Turns((before, self.row(early)), (along, self.row(late)))
 
-    def _shown(self, shown: Shown, shape: tuple[int, ...]) -> Shown:
+    def _shown(self, shown: StatedModes, shape: tuple[int, ...]) -> StatedModes:
         def own(value: Any) -> Any:
             return values_of_design(value, shape, self.index)
 
@@ -147,7 +144,7 @@ class _Design:
             name: pose if pose is FIXED else pose.mapped(lambda series: Series(own(series.c)))
             for name, pose in shown.poses.items()
         }
-        return Shown(shown.source, own(shown.points), poses, own(shown.beside))
+        return StatedModes(shown.source, own(shown.points), poses, own(shown.beside))
 
 
 def _followed(own: SolvingOrder, whole: SolvingOrder) -> SolvingOrder:

@@ -1,31 +1,42 @@
-"""Quantities of a motion, by what they are called: "G.velocity", "bar.angle", "slot.rate"."""
+"""Quantities of a motion by name, "G.velocity" or "bar.angle", what owns them, and tables of them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from functools import cached_property
+from importlib import import_module
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import PLAIN, degrees
+from compoundkin.base.arrays import PLAIN, Number, degrees
 from compoundkin.base.display import display_function
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.derived import FIGURES
-from compoundkin.kinematics.derived.contract import HasQuantities, OfMotion, motion_of
-from compoundkin.kinematics.quantity_owners import Owner, check_part, owner_and_part
+from compoundkin.kinematics.derived.contract import HasQuantities, Lack, OfMotion, motion_of
 from compoundkin.model.attributes import (
+    ALIASES,
+    CATALOGUE,
     DEGREES,
     DERIVED,
     LENGTH,
     PARTS,
     RADIANS,
+    TABULATED,
+    TIME,
+    VALUE,
     Attribute,
     Dimension,
+    Kind,
+    coordinate_dimension,
     motion_figure,
     unit_of,
+    vector_and_part,
     with_superscripts,
 )
+from compoundkin.model.geometry import FRAME
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -142,3 +153,240 @@ def _quantity(owner: Owner, found: Attribute, values: Any) -> Quantity:
     # what a recorded motion has stays as it is
     plain = np.asarray(values) if isinstance(values, (np.ndarray, *PLAIN, complex)) else values
     return Quantity(f"{owner.name}.{found.word}", unit, plain, found.order, dimension, symbol)
+
+
+def known_owners(motion: HasQuantities) -> list[str]:
+    """List what has quantities: points, links, pairs and drivers, each once."""
+    return list(dict.fromkeys(name for kind in CATALOGUE for name in getattr(motion, kind)))
+
+
+def owner_and_part(motion: HasQuantities, name: str) -> tuple[Owner, str, str]:
+    """Return the owner that a name asks, its attribute, and the part.
+
+    Raises UnknownName.
+    """
+    try:
+        return (*_requested(motion, name), "")
+    except UnknownName:
+        vector, _, part = name.rpartition(".")
+        if not vector_and_part(name)[1] and not _is_known(motion, vector):
+            raise
+    return (*_requested(motion, vector), part)
+
+
+def check_part(name: str, part: str, is_vector: bool) -> None:
+    """Raise UnknownName where what a name asks for has no such part."""
+    vector = name.removesuffix(f".{part}")
+    if not is_vector:
+        raise UnknownName(Problem(name, f"{vector} is no vector", f"leave .{part} out"))
+    if part not in PARTS:
+        raise UnknownName(Problem(name, f"{vector} has no {part!r}", suggestion(part, list(PARTS))))
+
+
+def _is_known(motion: HasQuantities, name: str) -> bool:
+    """Tell whether a name is that of an owner with one of its attributes."""
+    owner, _, word = name.rpartition(".")
+    return any(owner in getattr(motion, k) and owner_of(motion, k, owner).has(word) for k in CATALOGUE)
+
+
+def _requested(motion: HasQuantities, name: str) -> tuple[Owner, str]:
+    """Return the owner and the attribute of a name that means no part."""
+    owner, dot, word = name.rpartition(".") if "." in name else (name, "", "")
+    found = [owner_of(motion, kind, owner) for kind in CATALOGUE if owner in getattr(motion, kind)]
+    if not found:
+        what = f"there is no point, link, pair or driver {owner!r}"
+        raise UnknownName(Problem(name, what, suggestion(owner, known_owners(motion))))
+    for one in found:
+        if not dot or one.has(word):
+            return one, word if dot else next(iter(one.attributes))
+    for lack in filter(None, (one.lack(word) for one in found)):
+        raise UnknownName(Problem(name, f"{owner!r} has no {word!r}: {lack.reason}", lack.remedy))
+    words = list(dict.fromkeys(word for one in found for word in one.words))
+    others = ", ".join(kind for kind in DERIVED if word in DERIVED[kind])
+    what = f"{owner!r} has no {word!r}{f', which only {others} have' if others else ''}"
+    raise UnknownName(Problem(name, what, _nearest(owner, word, words)))
+
+
+class Owner(NamedTuple):
+    """A point, link, pair or driver of a motion. Its name, the attributes it has, the unit of each order."""
+
+    name: str
+    kind: Kind
+    whole: HasQuantities
+    dimension: Dimension
+    attributes: Mapping[str, Attribute]
+
+    def has(self, word: str) -> bool:
+        """Tell whether it has an attribute, or what is derived of such an owner."""
+        return word in self.attributes or (word in DERIVED[self.kind] and self.lack(word) is None)
+
+    def lack(self, word: str) -> Lack | None:
+        """Return why it has not what is derived of others. None where there is no reason."""
+        return FIGURES[self.kind][word].lack(self.whole, self.name) if word in DERIVED[self.kind] else None
+
+    @property
+    def words(self) -> list[str]:
+        """All that it has."""
+        return [word for word in (*self.attributes, *DERIVED[self.kind]) if self.has(word)]
+
+
+def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
+    """Return a point, link, pair or driver as the owner of quantities."""
+    if kind not in ("pairs", "drives"):
+        return Owner(name, kind, motion, "length" if kind == "points" else "angle", CATALOGUE[kind])
+    dimension = coordinate_dimension(getattr(motion, kind)[name].is_angle)
+    return Owner(name, kind, motion, dimension, {**CATALOGUE[kind], **ALIASES[dimension]})
+
+
+def _nearest(owner: str, word: str, known: list[str]) -> str:
+    remedy = suggestion(word, known)
+    return f"did you mean '{owner}.{remedy.split(chr(39))[1]}'?" if remedy.startswith("did") else remedy
+
+
+ASSEMBLED, DESIGN = "assembled", "design"
+
+
+# What files and data frames say of the angles in them.
+ANGLES = "radians"
+
+
+class AtPoses(HasQuantities, Protocol):
+    """A motion: what has quantities, at poses."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of every array of the motion, the last axis its poses."""
+
+    @property
+    def order(self) -> int:
+        """The highest derivative that is known."""
+
+    @property
+    def time(self) -> Number | None:
+        """The times of the poses, where it is in time."""
+
+    @property
+    def assembled(self) -> Number:
+        """Which poses are assembled."""
+
+
+def data_frame(title: str, columns: Mapping[str, Any], units: Mapping[str, str]) -> Any:
+    """Return columns as a pandas DataFrame.
+
+    Its `attrs` hold the title, the units and how angles are counted. Raises InvalidInput where pandas is not installed.
+    """
+    try:
+        pandas = import_module("pandas")
+    except ImportError:
+        raise InvalidInput(Problem("", "this needs pandas", "pip install 'compoundkin[pandas]'")) from None
+    frame = pandas.DataFrame(columns)
+    frame.attrs = {"title": title, "angles": ANGLES, "units": dict(units)}
+    return frame
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Table:
+    """Columns of real quantities, a row for each pose. The last axis of the motion, its poses, runs fastest.
+
+    Where the motion has designs, index columns come first: `design`, or `design0`, `design1` ... Then come the time,
+    if it has any, drivers, points (.x, .y), links, pairs, and whether each pose is `assembled`. Angles are radians, in
+    `shown` degrees; rates are always by radians and seconds.
+    """
+
+    title: str
+    columns: tuple[Quantity, ...]
+
+    @cached_property
+    def _named(self) -> Mapping[str, Quantity]:
+        return {column.name: column for column in self.columns}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the columns."""
+        return tuple(self._named)
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """The unit of every column that has one."""
+        return {column.name: column.unit for column in self.columns if column.unit}
+
+    @property
+    def shown(self) -> Table:
+        """As it is shown to people: angles in degrees."""
+        return replace(self, columns=tuple(column.shown for column in self.columns))
+
+    def __getitem__(self, name: str) -> Quantity:
+        """Return a column by its name; raises UnknownName with the nearest there is."""
+        if name not in self._named:
+            raise UnknownName(Problem(str(name), "the table has no such column", suggestion(str(name), self.names)))
+        return self._named[name]
+
+    def __len__(self) -> int:
+        return len(self.columns[-1].values)
+
+    def to_pandas(self) -> Any:
+        """Return it as a pandas DataFrame, angles in radians.
+
+        Its `attrs` hold the title, the units and how angles are counted. Raises InvalidInput where pandas is not
+        installed.
+        """
+        return data_frame(self.title, {column.name: column.values for column in self.columns}, self.units)
+
+    def __repr__(self) -> str:
+        return f"Table({self.title!r}: {len(self)} rows of {len(self.columns)} columns)"
+
+
+def table_of(motion: AtPoses, *names: str) -> Table:
+    """Return the table of the quantities named, with designs, time and drivers.
+
+    Everything where none is named. Raises UnknownName for a quantity that the motion does not have.
+
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.kinematics import solve
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> found = table_of(solve(crank, {"crank": [0.0, 1.0]}), "B.velocity")
+    >>> found, found.names
+    (Table('m': 2 rows of 4 columns), ('crank.value', 'B.velocity.x', 'B.velocity.y', 'assembled'))
+    >>> found.shown["crank.value"].values.round(3).tolist()
+    [0.0, 57.296]
+    """
+    chosen = _chosen(motion, names) if names else _everything(motion)
+    whole = (*_time(motion), *chosen, Quantity(ASSEMBLED, "", motion.assembled))
+    columns = {column.name: column for column in _designs(motion.shape)}
+    for column in (part for one in whole for part in one.components):
+        columns.setdefault(column.name, _flat(column, motion.shape))
+    return Table(motion.mechanism.title, tuple(columns.values()))
+
+
+def _chosen(motion: AtPoses, names: Sequence[str]) -> Iterator[Quantity]:
+    """Return the drivers' values and what is named."""
+    found = [quantity(motion, name) for name in names]
+    yield from (read_of(owner_of(motion, "drives", name), VALUE) for name in motion.drives)
+    yield from found
+
+
+def _flat(found: Quantity, shape: tuple[int, ...]) -> Quantity:
+    return replace(found, values=np.broadcast_to(found.values, shape).reshape(-1))
+
+
+def _designs(shape: tuple[int, ...]) -> Iterator[Quantity]:
+    """Return the index columns of the designs: one for each axis before the last."""
+    axes = len(shape) - 1
+    for axis in range(axes):
+        yield Quantity(DESIGN if axes == 1 else f"{DESIGN}{axis}", "", np.indices(shape)[axis].reshape(-1))
+
+
+def _time(motion: AtPoses) -> Iterator[Quantity]:
+    if motion.time is not None:
+        yield Quantity(TIME, unit_of("", "time"), motion.time, dimension="time", symbol="t")
+
+
+def _everything(motion: AtPoses) -> Iterator[Quantity]:
+    """Return all derivatives of all there is; where a pin and a driver have one name, the value is the driver's."""
+    for kind, words in TABULATED.items():
+        for name in getattr(motion, kind):
+            first = int(kind == "pairs" and name in motion.drives)
+            if (kind, name) != ("links", FRAME):
+                owner = owner_of(motion, kind, name)
+                yield from (read_of(owner, word) for word in words[first : motion.order + 1])

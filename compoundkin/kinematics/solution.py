@@ -1,19 +1,25 @@
-"""Solving: from a mechanism and driver values to a motion with every derivative asked for."""
+"""Solving: from a mechanism and driver values to a motion, block by block, with what it warns of."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
+from math import factorial
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.buffers import keep_freed_memory
 from compoundkin.base.errors import (
     ChangePointWarning,
     DrawnBeyondEnd,
     FewDigits,
     InvalidInput,
+    LikelySlip,
     NotAssembled,
     NotDetermined,
     Problem,
@@ -21,23 +27,24 @@ from compoundkin.base.errors import (
     warn,
 )
 from compoundkin.base.poses import Pose
+from compoundkin.base.series import Series
 from compoundkin.kinematics.approach import drawn_value
-from compoundkin.kinematics.block import places
-from compoundkin.kinematics.chosen_modes import Shown, shown_by, signs_of
+from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at
+from compoundkin.kinematics.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
-from compoundkin.kinematics.driver_values import by_name, inputs, times_of
-from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.likely_slips import warn_of_degrees
-from compoundkin.kinematics.lost_digits import Told, without_lost
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
-from compoundkin.kinematics.solved_blocks import settled, with_branch
+from compoundkin.kinematics.driver_values import Inputs, by_name, inputs, times_of
+from compoundkin.kinematics.modes import StatedModes, signs_of, stated_by
+from compoundkin.kinematics.motion import LinkErrors, Motion, errors_at
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import Tracker
+from compoundkin.kinematics.tracking import Begin, TrackedBranch, Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import constraint_scales
 from compoundkin.structure import decompose
 from compoundkin.structure.kinematic_structure import Structure
+from compoundkin.structure.redundancy import mobility_analysis
+from compoundkin.structure.redundancy.constraint_equations import ROUNDED
 
 
 @checked
@@ -89,7 +96,7 @@ def solve(
         values = by_name(solving_order.structure.mechanism, values)
         times = times_of(solving_order.structure.mechanism, values, time)
         given = inputs(solving_order, values, speed, acceleration, jerk, times, order)
-        signs, shown = signs_of(solving_order, modes), shown_by(solving_order, modes, hint)
+        signs, shown = signs_of(solving_order, modes), stated_by(solving_order, modes, hint)
         told = solved(solving_order, given, signs, shown, order)
     motion = told.motion if times is None else replace(told.motion, time=times)
     if times is None:
@@ -98,11 +105,13 @@ def solve(
     return motion
 
 
-def solved(solving_order: SolvingOrder, given: Inputs, signs: Mapping[int, int], shown: Shown, order: int) -> Told:
+def solved(
+    solving_order: SolvingOrder, given: Inputs, signs: Mapping[int, int], shown: StatedModes, order: int
+) -> Description:
     """Return the motion of some inputs. Raises as `solve`, and warns of nothing."""
     with diagnosing(solving_order.structure):
         tracker = Tracker(solving_order, given, signs, shown)
-    told = without_lost(*settled(tracker.solving_order, tracker.given, tracker, order))
+    told = without_imprecise_rates(*solve_all_blocks(tracker.solving_order, tracker.given, tracker, order))
     if solving_order.structure.relaxation:
         check_redundant(told.motion)
     return told
@@ -179,7 +188,7 @@ def starting_configuration(
     """Return the configuration in which `solve` begins at these values. None where it does not close there."""
     given = inputs(solving_order, values, None, None, None)
     try:
-        tracker = Tracker(solving_order, given, signs_of(solving_order), shown_by(solving_order))
+        tracker = Tracker(solving_order, given, signs_of(solving_order), stated_by(solving_order))
     except NotAssembled:
         return None
     if tracker.lost:
@@ -204,3 +213,286 @@ def _picked(
     structure: Structure, values: Mapping[str, float], poses: Mapping[str, Pose], at: tuple[int, int]
 ) -> Configuration:
     return Configuration(structure, dict(values), placed_at(poses, at), {}, {}, dimensions_at(structure, *at))
+
+
+def quietly_solved(structure: Structure, values: Any = None, order: int = 1, speed: Any = None) -> Motion:
+    """Return what `solve` does, without its warnings. Raises as it does."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return solve(structure, values, speed=speed, order=order)
+
+
+# Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
+WHOLE = 65536
+
+
+def solve_all_blocks(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, Number]:
+    """Solve until no further change point is found, and nothing more is reached.
+
+    Return also the poses whose rates may have lost their digits.
+    """
+    while True:
+        motion, near, where, nearly = _run(solving_order, given, tracker, order)
+        near |= near_groups(tracker)
+        if near and pass_through(tracker, near):
+            continue
+        if not tracker.lost or not with_branch(tracker):
+            if not nearly:
+                return motion, where
+            designs, index, poses = expanded(tracker, nearly, order)
+            where[designs, index] = False
+            return motion.mended(designs, index, poses), where
+
+
+def with_branch(tracker: Tracker) -> bool:
+    """Track the branch of the drawn pose, for what its motion has lost. Tell whether it did."""
+    if tracker.branch is not None or tracker.begin is not None:
+        return False
+    course = tracker.course
+    if course is None:
+        return False
+    states = {k: path.states[:, :1] for k, path in tracker.approach_paths.items()}
+    begin = Begin(course.at, tracker.signs, states, course.period)
+    around = Tracker(tracker.solving_order, course.inputs(tracker.given), tracker.fixed, tracker.shown, begin)
+    solve_all_blocks(tracker.solving_order, around.given, around, 0)
+    tracker.branch = TrackedBranch(course, around.paths)
+    if tracker.turns:
+        tracker.choose()
+    return True
+
+
+def _run(
+    solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int
+) -> tuple[Motion, set[int], Number, set[int]]:
+    """Solve block by block and gather; also the groups near limit positions, where rates are doubtful, and the nearest.
+
+    The groups nearest to limit positions are those that may need their double root.
+    """
+    keep_freed_memory()
+    designs, poses = given.designs, given.poses
+    near: set[int] = set()
+    nearly: set[int] = set()
+    where = np.zeros((designs, poses), dtype=bool)
+    parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
+    if len(parts) == 1:
+        block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
+        failed = np.broadcast_to(block.failed, (designs, poses))
+        near = _near(block)
+        where |= doubtful(solving_order, given, block, near)
+        motion = Motion(solving_order.structure, order, given, dict(block.world), failed, tracker)
+        return motion, near, where, _nearly(block) if near else near
+    store = JoinedBlocks(designs, poses)
+    for d, m in parts:
+        part = given.cut(d, m)
+        block = tracker.run(part, order, *places(d, m))
+        store.take(block, d, m)
+        here = _near(block)
+        near |= here
+        nearly |= _nearly(block) if here else here
+        where[d, m] |= doubtful(solving_order, part, block, here)
+    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near, where, nearly
+
+
+def _near(block: Block) -> set[int]:
+    return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
+
+
+def _nearly(block: Block) -> set[int]:
+    return {k for k, margin in block.margins.items() if np.any((margin >= 0.0) & (margin < NEARLY))}
+
+
+# Whole numbers up to two turns may be radians that somebody counts; nobody counts beyond.
+COUNTED = 4.0 * np.pi
+
+
+# A motion in steps of half a radian, 29 degrees, shows next to nothing.
+COARSE = 0.5
+
+
+def warn_of_degrees(structure: Structure, given: Inputs) -> None:
+    """Warn of drivers of angles whose values look like degrees."""
+    for name, (values, *_) in given.drives.items():
+        if structure.driven_angles[name] and look_like_degrees(values):
+            told = f"{name!r} is driven in radians, and its values look like degrees"
+            warn(f"{told}; write compoundkin.deg(values)", LikelySlip)
+
+
+def look_like_degrees(values: Number) -> bool:
+    """Tell whether radians are whole numbers far apart, as degrees are.
+
+    >>> look_like_degrees(np.arange(0.0, 361.0, 5.0)), look_like_degrees(np.linspace(0.0, 20.0 * np.pi, 721))
+    (True, False)
+    >>> look_like_degrees(35.0), look_like_degrees(np.linspace(0.0, 100.0, 1001))
+    (True, False)
+    """
+    ends = (values,) if np.ndim(values) == 0 else (values.flat[0], values.flat[-1])
+    if not all(float(end).is_integer() for end in ends) or max(map(abs, ends)) <= COUNTED:
+        return False
+    return np.size(values) == 1 or bool(np.mean(np.abs(np.diff(np.ravel(values)))) >= COARSE)
+
+
+def rank_diagnosis(structure: Structure) -> str:
+    """Say what the dimensions make of an overconstrained mechanism. The words are to be added to a heading."""
+    if not any(fault.kind == "over" for fault in structure.faults):
+        return ""
+    found = mobility_analysis(structure)
+    return f" ({found.verdict})" if found.finite is not None or found.gap else ""
+
+
+@contextmanager
+def diagnosing(structure: Structure) -> Iterator[None]:
+    """Raise NotDetermined with the reason where a group has no pose. Its dimensions are special there."""
+    try:
+        yield
+    except NotAssembled as error:
+        found = mobility_analysis(structure)
+        if found.finite is None or found.finite == found.gruebler:
+            raise error
+        heading = f"{structure.mechanism.title!r} cannot be solved"
+        raise NotDetermined(Problem("structure", found.verdict), heading=heading) from None
+
+
+def check_redundant(motion: Motion) -> None:
+    """Raise NotAssembled, naming them, unless every redundant pair is closed at all assembled poses."""
+    opened = [(pair, opening(motion, pair)) for pair in motion.structure.redundant]
+    wrong = [_problem(motion, pair, gap) for pair, gap in opened if np.nanmax(gap) > ROUNDED.closed * motion.size]
+    if wrong:
+        raise NotAssembled(wrong, heading=f"{motion.mechanism.title!r} does not move like this")
+
+
+def opening(motion: Motion, pair: Pair) -> Number:
+    """Return the residual of a redundant pair at each pose (designs x poses).
+
+    It is a length in the user's unit, an angle the arc of it at the mechanism's size; 0 where not assembled.
+    """
+    poses = tuple(motion.poses[name] for name in pair.members)
+    held = pair.closure(motion.inputs.ends[pair.name], poses)
+    parts = [one.c[0] / scale for one, scale in zip(held, constraint_scales(pair, motion.size), strict=True)]
+    squares = sum(np.abs(np.broadcast_to(part, motion.failed.shape)) ** 2 for part in parts)
+    return np.where(motion.failed == 0, np.sqrt(squares) * motion.size, 0.0)
+
+
+def _problem(motion: Motion, pair: Pair, gap: Number) -> Problem:
+    at = int(np.nanargmax(gap)) % max(motion.inputs.poses, 1)
+    what = f"the pair opens by {float(np.nanmax(gap)):.6g} at pose {at}: other pairs do not hold it there"
+    remedy = "the dimensions or the assembly mode do not allow this motion: draw an assembled pose"
+    return Problem(pair.name, what, remedy)
+
+
+# Where the margin, a squared sine, is above this rates have digits enough: a third derivative loses most, at a change
+# point, where rounding is divided by the margin squared.
+DOUBTFUL = 1e-6
+
+
+# A group that tells no margin comes to a limit position where it is so many times as fast as the drivers: by the square
+# root of the distance, so that it loses digits only far nearer.
+FAST = 1e4
+
+
+# Rates of which no more than this part is uncertain have three digits.
+UNCERTAIN = 1e-3
+
+
+class Description(NamedTuple):
+    """A motion without lost rates, and at how many poses they have few digits."""
+
+    motion: Motion
+    poor: int
+
+
+def doubtful(solving_order: SolvingOrder, part: Inputs, block: Block, near: Iterable[int]) -> Number:
+    """Return the poses of a block whose rates may have lost digits.
+
+    `near` are the groups with small margins.
+    """
+    found: Number = np.zeros((1, 1), dtype=bool)
+    if not block.order:
+        return found
+    for k in near:
+        found = found | (block.margins[k] < DOUBTFUL)
+    silent = [solver for solver in solving_order.solvers if not solver.tells_margin]
+    fast = FAST * _pace(solving_order, part) if silent else 0.0
+    for name in (body.links[0] for solver in silent for body in solver.group.bodies):
+        pose = block.world[name]
+        for series, size in ((pose.u, 1.0), (pose.z, solving_order.size)):
+            found = found | (np.abs(series.c[1]) > fast * size) if series.order else found
+    return found
+
+
+def _pace(solving_order: SolvingOrder, part: Inputs) -> Number:
+    """Return the speed of the fastest driver: radians, or parts of the size, per second."""
+    fastest: Number = 0.0
+    for name, values in part.drives.items():
+        speed = values[1] if len(values) > 1 else 0.0
+        fastest = np.maximum(fastest, np.abs(speed) / solving_order.unit(name))
+    return fastest
+
+
+def without_imprecise_rates(motion: Motion, where: Number) -> Description:
+    """Return a motion whose rates without digits are no numbers.
+
+    Return also at how many poses they have fewer than three.
+
+    `where` are the poses that may have such, (designs, poses).
+    """
+    designs, index = np.nonzero(where & (motion.failed == 0))
+    if not len(designs) or not motion.order:
+        return Description(motion, 0)
+    part, s = motion.inputs.pick(designs, index.astype(float)), index[:, None].astype(float)
+    with np.errstate(all="ignore"):
+        errors = errors_at(motion.tracker, part, motion.order, s, designs[:, None])
+        poses = poses_at(motion.poses, motion.failed.shape, designs, index)
+        allowed = _natural(poses, motion.order, motion.size)
+        lost = {name: [~(e <= a) for e, a in zip(found, allowed, strict=True)] for name, found in errors.items()}
+        few = _any(errors, [UNCERTAIN * a for a in allowed]) & ~_any(errors, allowed)
+    if not any(np.any(one) for found in lost.values() for one in found[1:]):
+        return Description(motion, int(np.count_nonzero(few)))
+    kept = {name: _accepted(pose, lost[name]) if name in lost else pose for name, pose in poses.items()}
+    return Description(motion.mended(designs, index, kept), int(np.count_nonzero(few)))
+
+
+def uncertain(motion: Motion) -> Number:
+    """Return the poses at which some rates have fewer than three digits, (designs, poses)."""
+    found: Number = np.zeros(motion.failed.shape, dtype=bool)
+    with np.errstate(all="ignore"):
+        allowed = _natural(motion.poses, motion.order, motion.size)
+        for k in range(1, motion.order + 1):
+            error = motion.error(k).reshape(motion.failed.shape)
+            found = found | (np.isfinite(error) & ~(error <= UNCERTAIN * allowed[k]))
+    return found
+
+
+def _any(errors: LinkErrors, allowed: list[Number]) -> Number:
+    """Return the poses at which any link's rates are more uncertain than is allowed."""
+    found: Number = np.zeros((1, 1), dtype=bool)
+    for link in errors.values():
+        for error, most in zip(link[1:], allowed[1:], strict=True):
+            found = found | ~(error <= most)
+    return found
+
+
+def _natural(poses: Mapping[str, Pose], order: int, size: float) -> list[Number]:
+    """Return the largest derivative of any link at each pose, in each order; no less than speeds to that power."""
+    found, speed = list[Number](), 0.0
+    for k in range(order + 1):
+        largest: Number = 0.0
+        for pose in poses.values():
+            for series, unit in ((pose.z, 1.0), (pose.u, size)):
+                value = np.abs(series.c[k]) * factorial(k) * unit if k < len(series.c) else 0.0
+                largest = np.fmax(largest, np.where(np.isfinite(value), value, 0.0))
+        speed = largest / size if k == 1 else speed
+        found.append(np.maximum(largest, size * speed**k) if k else largest)
+    return found
+
+
+def _accepted(pose: Pose, lost: list[Number]) -> Pose:
+    """Return a pose with what is lost, and all higher derivatives, no numbers."""
+
+    def part(series: Series) -> Series:
+        kept, gone = [series.c[0]], np.zeros((1, 1), dtype=bool)
+        for k, here in enumerate(lost[1:], start=1):
+            gone = gone | here
+            kept.append(np.where(gone, np.nan, series.c[k] if k < len(series.c) else 0.0))
+        return Series(tuple(kept))
+
+    return pose.mapped(part)

@@ -18,9 +18,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.buffers import empty_arrays
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
-from compoundkin.kinematics.driver_values import RATES, by_name, inputs, times_of
-from compoundkin.kinematics.inputs import Inputs, fit
-from compoundkin.kinematics.likely_slips import warn_of_degrees
+from compoundkin.kinematics.driver_values import RATES, Inputs, by_name, fit, inputs, times_of
+from compoundkin.kinematics.solution import warn_of_degrees
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive
 from compoundkin.programs.backends import runner_of

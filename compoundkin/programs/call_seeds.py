@@ -13,8 +13,8 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.driver_ways import NEAR
-from compoundkin.kinematics.groups.newton_steps import STRAY
+from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.groups.group_equations import STRAY
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs

@@ -20,8 +20,8 @@ from compoundkin.base.arguments import real_numbers
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.approach import SPACING
+from compoundkin.kinematics.change_points import NEAR
 from compoundkin.kinematics.driver_values import by_name
-from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector
 from compoundkin.programs.graph.operation_graph import DRIVE, SEED, InputNumber, OperationGraph

@@ -17,9 +17,9 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.approach import MOST, SPACING, approach_path, drawn_value
-from compoundkin.kinematics.chosen_modes import Shown
-from compoundkin.kinematics.driver_ways import NEAR
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.driver_values import Inputs
+from compoundkin.kinematics.modes import StatedModes
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
@@ -234,7 +234,7 @@ def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Nu
 class DrawnApproach(ShortRepr):
     """Where a path's drivers are drawn, and the ways from there to motions."""
 
-    def __init__(self, reference: Motion, shown: Shown) -> None:
+    def __init__(self, reference: Motion, shown: StatedModes) -> None:
         self.reference, self.shown = reference, shown
         self._drawn: dict[str, Number | None] = {}
 

@@ -17,7 +17,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
-from compoundkin.kinematics.groups.reasons import Reason
+from compoundkin.kinematics.groups.pair_sides import Reason
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import residual
 from compoundkin.model.attributes import OF_LINKS

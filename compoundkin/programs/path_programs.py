@@ -11,8 +11,8 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import Description
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers, ReadyProgram, call_numbers
 from compoundkin.programs.call_seeds import CallSeeds
@@ -170,7 +170,7 @@ class PathPrograms(ShortRepr):
         least = found.pop(LEAST)
         return self.settled(numbers, list(found.values()), least)
 
-    def solved(self, numbers: CallNumbers, order: int | None = None) -> Told:
+    def solved(self, numbers: CallNumbers, order: int | None = None) -> Description:
         """Solve the designs of some numbers instead, in its configuration."""
         values = {one: one.value_in(numbers.given) for one in self.dimensions}
         # what moves the drivers is told; a program of motion has no designs

@@ -11,8 +11,8 @@ import numpy as np
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem, UnknownName, suggestion
-from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import Description
 from compoundkin.programs.call_numbers import CallNumbers, numbers_of_designs
 from compoundkin.programs.limit_screening import ScreenedDesigns
 
@@ -37,7 +37,7 @@ class PathValues(Mapping[str, Any]):
         numbers: CallNumbers | Callable[[], CallNumbers],
         found: Mapping[str, Number],
         failed: Number | None,
-        solving: Callable[[CallNumbers], Told],
+        solving: Callable[[CallNumbers], Description],
         shape: tuple[int, ...] | None = None,
         look: ScreenedDesigns | None = None,
     ) -> None:

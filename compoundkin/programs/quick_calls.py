@@ -17,8 +17,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.buffers import LARGE, arrays_of_one_buffer, keep_freed_memory
 from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.approach import SPACING
-from compoundkin.kinematics.driver_ways import NEAR
-from compoundkin.kinematics.likely_slips import COUNTED
+from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.solution import COUNTED
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
 from compoundkin.programs.graph.operation_graph import DRIVE, InputNumber

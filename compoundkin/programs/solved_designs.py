@@ -15,13 +15,12 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import FewDigits, InvalidMechanism, NotAssembled, NotDetermined, UnassembledPoses, warn
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.lost_digits import Told
+from compoundkin.kinematics.modes import StatedModes
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.kinematics.solution import first_configuration, solved, solving_order_of
+from compoundkin.kinematics.solution import Description, first_configuration, solved, solving_order_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.programs.call_numbers import CallNumbers, numbers_of_designs
@@ -29,7 +28,7 @@ from compoundkin.programs.graph.operation_graph import DRIVE, SIGN, TURNS, Input
 from compoundkin.programs.limit_screening import ScreenedDesigns
 
 # Solves the designs of some numbers.
-DesignSolver: TypeAlias = Callable[[CallNumbers], Told]
+DesignSolver: TypeAlias = Callable[[CallNumbers], Description]
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class ProgramConfiguration(ShortRepr):
     """The configuration of a program: signs of groups, and where they are shown."""
 
     signs: dict[int, int]
-    shown: Shown
+    shown: StatedModes
 
     @classmethod
     def of(cls, reference: Motion) -> ProgramConfiguration:
@@ -49,10 +48,12 @@ class ProgramConfiguration(ShortRepr):
         near = first_configuration(reference, 0) if reference.solving_order.numbered else None
         if near is None or tracker.shown.points:
             return cls(signs, tracker.shown)
-        return cls(signs, Shown("configuration", near.points, near.poses, near.points))
+        return cls(signs, StatedModes("configuration", near.points, near.poses, near.points))
 
 
-def solve_in_parts(by: DesignSolver, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, Told | None]]:
+def solve_in_parts(
+    by: DesignSolver, numbers: CallNumbers, designs: Number
+) -> Iterator[tuple[Number, Description | None]]:
     """Solve some designs, and yield them in parts.
 
     It is None where nothing can be built or assembled. One design of which there is nothing must not take the others
@@ -71,7 +72,9 @@ def solve_in_parts(by: DesignSolver, numbers: CallNumbers, designs: Number) -> I
         yield from solve_in_parts(by, numbers, designs[half:])
 
 
-def solve_designs(designed: Mechanism, numbers: CallNumbers, configuration: ProgramConfiguration, order: int) -> Told:
+def solve_designs(
+    designed: Mechanism, numbers: CallNumbers, configuration: ProgramConfiguration, order: int
+) -> Description:
     """Return the motion of all designs of some numbers; raises NotAssembled as `solve`."""
     solving_order = solving_order_of(designed)
     drives: dict[str, list[object]] = {}

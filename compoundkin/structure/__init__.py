@@ -15,8 +15,7 @@ from compoundkin.structure.graph import (
     simple_loops,
 )
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.mobility_count import Mobility, PairCount
-from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive
+from compoundkin.structure.mobility_count import Body, DrivenPair, Fault, Group, Mobility, PairCount, Passive
 
 __all__ = [
     "Body",

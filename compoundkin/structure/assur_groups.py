@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.structure.composites import GROUND
 from compoundkin.structure.cycles import cycle_basis, find
-from compoundkin.structure.parts import Body, Group
+from compoundkin.structure.mobility_count import Body, Group
 from compoundkin.structure.system import Constraint, System
 
 _RANK = {kind.code: rank for rank, kind in enumerate(KINDS)}

@@ -12,7 +12,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import Drivable
 from compoundkin.structure.cycles import find
-from compoundkin.structure.parts import Body, DrivenPair, Passive
+from compoundkin.structure.mobility_count import Body, DrivenPair, Passive
 
 GROUND = -1
 

@@ -24,10 +24,15 @@ from compoundkin.structure.assur_groups import Binder, all_pairs
 from compoundkin.structure.composites import composites
 from compoundkin.structure.faults import closed_drives, counted_faults, rank_faults
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.matching import Matching, maximum_matching, overdetermined, underdetermined
-from compoundkin.structure.mobility_count import mobility_of
-from compoundkin.structure.order import solving_order, strong_components
-from compoundkin.structure.parts import Fault, Group, Relaxation
+from compoundkin.structure.matching import (
+    Matching,
+    maximum_matching,
+    overdetermined,
+    solving_order,
+    strong_components,
+    underdetermined,
+)
+from compoundkin.structure.mobility_count import Fault, Group, Relaxation, mobility_of
 from compoundkin.structure.rank import RankTest, Subsystem
 from compoundkin.structure.system import System, system_of
 

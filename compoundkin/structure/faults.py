@@ -11,9 +11,9 @@ from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.structure.composites import GROUND, spanned
 from compoundkin.structure.cycles import find
 from compoundkin.structure.matching import Matching
-from compoundkin.structure.parts import Body, DrivenPair, Fault
+from compoundkin.structure.mobility_count import Body, DrivenPair, Fault
 from compoundkin.structure.rank import Deficiency, RankTest, Subsystem
-from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System, held_pairs
+from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System, constraining_pairs
 
 # How many alternatives a remedy lists.
 _LISTED = 6
@@ -23,7 +23,7 @@ def closed_drives(system: System) -> Iterator[Fault]:
     """Find composites that close on themselves. Driven pairs in a ring, or pairs across a driven chain."""
     body_of = system.bodies.body_of
     pairs: dict[int, list[Pair]] = {}
-    for pair in held_pairs(system.mechanism, system.dropped):
+    for pair in constraining_pairs(system.mechanism, system.dropped):
         inside = {body_of[name] for name in pair.members}
         if len(inside) == 1:
             pairs.setdefault(inside.pop(), []).append(pair)

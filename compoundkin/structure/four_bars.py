@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
-from compoundkin.structure.mobility_count import Mobility
-from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive, Relaxation
+from compoundkin.structure.mobility_count import Body, DrivenPair, Fault, Group, Mobility, Passive, Relaxation
 
 if TYPE_CHECKING:
     import networkx as nx

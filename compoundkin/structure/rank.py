@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.composites import GROUND
-from compoundkin.structure.parts import LINK_FREEDOMS
+from compoundkin.structure.mobility_count import LINK_FREEDOMS
 from compoundkin.structure.system import Constraint, System, generic_jacobian
 
 # Random Jacobians of some hundred columns keep their least singular value far above this fraction of the

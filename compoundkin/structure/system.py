@@ -21,7 +21,7 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.structure.composites import GROUND, Composites
-from compoundkin.structure.parts import LINK_FREEDOMS, Dropped
+from compoundkin.structure.mobility_count import LINK_FREEDOMS, Dropped
 
 POINT_FREEDOMS = 2
 
@@ -112,14 +112,14 @@ def system_of(mechanism: Mechanism, bodies: Composites, dropped: Sequence[Droppe
             vertices.append(letter)
         sides = _pin_sides(on_pin, count + len(vertices) - 1)
         constraints += [_constraint(pin_at(letter), pair, letter) for pair in sides]
-    for pair in held_pairs(mechanism, dropped):
+    for pair in constraining_pairs(mechanism, dropped):
         members = tuple(bodies.body_of[name] for name in pair.members)
         if len(set(members)) > 1:
             constraints.append(_constraint(pair, members, ""))
     return System(mechanism, bodies, tuple(vertices), tuple(constraints), tuple(dropped))
 
 
-def held_pairs(mechanism: Mechanism, dropped: Sequence[Dropped]) -> tuple[Pair, ...]:
+def constraining_pairs(mechanism: Mechanism, dropped: Sequence[Dropped]) -> tuple[Pair, ...]:
     """Return the written pairs, those partly dropped replaced by what is kept."""
     left_out = {part.name for part in dropped if not part.off}
     kept = (part.kept for part in dropped if part.kept is not None)

@@ -18,7 +18,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.base.version import VERSION
 from compoundkin.kinematics.configuration import label
-from compoundkin.kinematics.table import ASSEMBLED
+from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import DEGREES, component_names, unit_suffix
 from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range, failed_name, is_travel_limit
 from compoundkin.studies.responses.designs import Designs, StudiedPath, designs_at_once

@@ -15,8 +15,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.table import ASSEMBLED, Table, data_frame
+from compoundkin.kinematics.quantities import ASSEMBLED, Quantity, Table, data_frame
 from compoundkin.model.attributes import AXES
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.study_folder import open_folder

@@ -19,9 +19,9 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, Una
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import column
+from compoundkin.kinematics.driver_values import fit, mapped
 from compoundkin.kinematics.gaps import gaps
-from compoundkin.kinematics.inputs import fit, mapped
-from compoundkin.kinematics.results import PairMotion
+from compoundkin.kinematics.motion import PairMotion
 from compoundkin.model.definition import Pins, driven_pair
 from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
 from compoundkin.model.geometry import FRAME

@@ -17,8 +17,7 @@ from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.configuration import Configuration, Configurations
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis

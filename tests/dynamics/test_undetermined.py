@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED, ConstraintEquations
-from compoundkin.structure.redundancy.self_stress import stresses
+from compoundkin.structure.redundancy.diagnosis import stresses
 from tests import catalog
 from tests.dynamics.cases import SI
 from tests.support import reference

@@ -9,8 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics.block import blocks, rates
-from compoundkin.kinematics.driver_values import FULL_TURN, inputs
-from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.driver_values import FULL_TURN, fit, inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
 

@@ -10,9 +10,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics import solved_blocks
-from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.joined_blocks import JoinedBlocks
+from compoundkin.kinematics import solution
+from compoundkin.kinematics.block import Block, JoinedBlocks
 
 
 def coefficients(motion: ck.results.Motion) -> list[np.ndarray]:
@@ -24,8 +23,8 @@ def test_results_of_several_blocks_share_one_buffer(monkeypatch: pytest.MonkeyPa
     """All arrays are parts of one piece of memory, each aligned and apart from the others; the values are the same."""
     six_bar, crank = ck.load("catalog/six-bar.toml"), np.linspace(0.0, 2.0 * np.pi, 2001)
     at_once = ck.solve(six_bar, {"crank": crank}, speed=10.0, order=3)
-    monkeypatch.setattr(solved_blocks, "WHOLE", 0)
-    monkeypatch.setattr(solved_blocks, "BLOCK", 500)
+    monkeypatch.setattr(solution, "WHOLE", 0)
+    monkeypatch.setattr(solution, "BLOCK", 500)
     joined = ck.solve(six_bar, {"crank": crank}, speed=10.0, order=3)
     found = {id(c): c for c in coefficients(joined)}.values()
     assert len({id(c.base) for c in found}) == 1

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import compoundkin as ck
 from compoundkin.base.arrays import unwrapped
-from compoundkin.kinematics import Motion, Vectors, solved_blocks
+from compoundkin.kinematics import Motion, Vectors, solution
 from tests.support import KINDS_OF_DYAD, differences, drawn_values, random_sketch, well_conditioned
 
 
@@ -218,8 +218,8 @@ def test_dimensions_and_rates_may_change_along_the_motion() -> None:
 
 def test_more_poses_than_a_block(monkeypatch: pytest.MonkeyPatch) -> None:
     """Gathered block by block as at once; also many designs of few poses, and some that do not close."""
-    monkeypatch.setattr(solved_blocks, "WHOLE", 0)
-    monkeypatch.setattr(solved_blocks, "BLOCK", 4096)
+    monkeypatch.setattr(solution, "WHOLE", 0)
+    monkeypatch.setattr(solution, "BLOCK", 4096)
     angles = np.linspace(0, 20, 9001)
     whole = ck.solve(four_bar(), {"crank": angles}, order=3, modes={"rocker": 1})
     assert whole.shape == (9001,)
@@ -231,7 +231,7 @@ def test_more_poses_than_a_block(monkeypatch: pytest.MonkeyPatch) -> None:
         assert np.allclose(turns, 0, atol=1e-12)
     cranks = np.linspace(0.5, 3.0, 500)[:, None]
     large = quietly(four_bar(cranks), order=2)
-    monkeypatch.setattr(solved_blocks, "BLOCK", 10**9)
+    monkeypatch.setattr(solution, "BLOCK", 10**9)
     at_once = quietly(four_bar(cranks), order=2)
     assert large.shape == (500, 73)
     assert np.array_equal(large.assembled, at_once.assembled)

@@ -9,11 +9,10 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.arrays import Number
-from compoundkin.kinematics.driver_ways import NEAR
+from compoundkin.kinematics.change_points import NEAR
 from compoundkin.kinematics.groups import SOLVERS
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import quantity
-from compoundkin.kinematics.quantity_owners import owner_of
+from compoundkin.kinematics.quantities import owner_of, quantity
 from compoundkin.model.attributes import (
     CORIOLIS,
     PRESSURE_ANGLE,

@@ -6,8 +6,14 @@ from itertools import product
 import networkx as nx
 import pytest
 
-from compoundkin.structure.matching import FREE, maximum_matching, overdetermined, underdetermined
-from compoundkin.structure.order import solving_order, strong_components
+from compoundkin.structure.matching import (
+    FREE,
+    maximum_matching,
+    overdetermined,
+    solving_order,
+    strong_components,
+    underdetermined,
+)
 
 
 def random_system(seed):

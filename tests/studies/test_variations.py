@@ -12,8 +12,7 @@ import pytest
 from scipy import stats
 
 import compoundkin as ck
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.table import Table
+from compoundkin.kinematics.quantities import Quantity, Table
 from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.studies.samples.random_sample import RandomSample
 from compoundkin.studies.samples.value_ranges import Levels

@@ -14,7 +14,7 @@ from compoundkin.base.poses import FIXED
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Line, as_turn_counting
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import DrivenPair
+from compoundkin.structure.mobility_count import DrivenPair
 
 Couple = tuple[int, int]
 

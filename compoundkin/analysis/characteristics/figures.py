@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extreme, Measure, Places, extremes
-from compoundkin.kinematics.extremes.places import SAME_PLACE
+from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, whole_and_part
 from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimension, unit_of
 

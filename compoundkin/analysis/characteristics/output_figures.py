@@ -27,7 +27,7 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, closed_cycles, dead_points, extremes, pieces
-from compoundkin.kinematics.extremes.places import SAME_PLACE
+from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import (
     GREATEST,

@@ -11,9 +11,8 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure
-from compoundkin.kinematics.extremes.measures import driver_pace
-from compoundkin.kinematics.quantities import quantity
-from compoundkin.kinematics.quantity_owners import owner_of
+from compoundkin.kinematics.extremes.stretches import driver_pace
+from compoundkin.kinematics.quantities import owner_of, quantity
 from compoundkin.model.attributes import (
     ANGLE,
     CATALOGUE,

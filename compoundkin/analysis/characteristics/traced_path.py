@@ -19,7 +19,7 @@ from compoundkin.base.curves.samples import Samples
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
-from compoundkin.kinematics.extremes.places import same_pose
+from compoundkin.kinematics.extremes.stretches import same_pose
 
 # A point moves where its path is longer than this part of the mechanism: rounding of a group on a group.
 MOVES = 1e-9

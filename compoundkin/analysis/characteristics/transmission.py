@@ -14,9 +14,8 @@ from compoundkin.analysis.characteristics.figures import PlacedFigure, Range, mo
 from compoundkin.analysis.characteristics.outputs import Output
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes.measures import ROUNDING
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.quantity_owners import owner_of
+from compoundkin.kinematics.extremes.stretches import ROUNDING
+from compoundkin.kinematics.quantities import Quantity, owner_of
 from compoundkin.model.attributes import (
     ADVANTAGE,
     CORIOLIS,

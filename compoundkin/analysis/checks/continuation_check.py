@@ -24,14 +24,12 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places, poses_at, rates
+from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
-from compoundkin.kinematics.first_pose import distance, letters_shown
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.groups.bars import Member
-from compoundkin.kinematics.groups.group_equations import GroupEquations
-from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.passed_ends import BEFORE
-from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
+from compoundkin.kinematics.modes import distance, drawn_letters
+from compoundkin.kinematics.solving_order import BEFORE, SolvingOrder
 
 # Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
 # leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.
@@ -215,7 +213,7 @@ def _farther(motion: Motion, drawn: list[int]) -> dict[str, Number]:
 def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
     """Return by how much a group is farther from what is drawn than its nearest configuration, 0 for no clear case."""
     shown = motion.tracker.shown
-    letters = letters_shown(motion.solving_order, solver, shown)
+    letters = drawn_letters(motion.solving_order, solver, shown)
     if not letters:
         return np.zeros(block.shape)
 

@@ -13,9 +13,9 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
-from compoundkin.kinematics.double_roots import rates_at
+from compoundkin.kinematics.change_points import rates_at
+from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
-from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 

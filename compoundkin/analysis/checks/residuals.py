@@ -22,7 +22,7 @@ from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_turn_counting, constraint_scales
-from compoundkin.structure.parts import DrivenPair
+from compoundkin.structure.mobility_count import DrivenPair
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.

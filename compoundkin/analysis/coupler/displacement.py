@@ -17,7 +17,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
-from compoundkin.kinematics.moving_lines import numbers_of, shape_of, vectors_of
+from compoundkin.kinematics.groups.textbook_dyads import numbers_of, shape_of, vectors_of
 from compoundkin.model.geometry import FRAME
 
 

@@ -17,7 +17,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import LinkMotion, Motion, PointMotion
 from compoundkin.kinematics.derived.velocity_ratio import SMALL
-from compoundkin.kinematics.moving_lines import vectors_of
+from compoundkin.kinematics.groups.textbook_dyads import vectors_of
 from compoundkin.model.geometry import FRAME
 
 UNKNOWN = complex(np.nan, np.nan)

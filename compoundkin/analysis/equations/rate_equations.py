@@ -38,7 +38,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.moving_lines import shape_of
+from compoundkin.kinematics.groups.textbook_dyads import shape_of
 from compoundkin.model.pairs.loop_terms import ProfileVector, Sum, Unknown, Values, Vector
 from compoundkin.structure import Structure
 

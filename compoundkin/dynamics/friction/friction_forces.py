@@ -13,8 +13,7 @@ from compoundkin.base.copies import CopiesFields
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import NONE, SEVERAL
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.results import Named
+from compoundkin.kinematics.motion import Motion, Named
 from compoundkin.model.attributes import unit_suffix
 
 REASONS = {NONE: "no forces satisfy Coulomb's law", SEVERAL: "more than one set of forces satisfies Coulomb's law"}

@@ -16,12 +16,10 @@ from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.reactions.link_wrench import FRICTION
 from compoundkin.dynamics.reactions.pair_forces import PairForce
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.results import told
-from compoundkin.kinematics.table import Table, table_of
+from compoundkin.kinematics.motion import Motion, described
+from compoundkin.kinematics.quantities import Quantity, Table, table_of
 from compoundkin.model.loads.mass import Mass
-from compoundkin.structure.parts import DrivenPair
+from compoundkin.structure.mobility_count import DrivenPair
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,7 +99,7 @@ class DriverEffort:
         return found
 
     def __repr__(self) -> str:
-        return told(self, self.forces.grid, f"{self.name}: {self.unit}")
+        return described(self, self.forces.grid, f"{self.name}: {self.unit}")
 
 
 @dataclass(frozen=True, repr=False)

@@ -22,14 +22,14 @@ from compoundkin.dynamics.reactions.link_forces import PinForces
 from compoundkin.dynamics.reactions.pair_forces import PairForce
 from compoundkin.dynamics.reactions.reverse_pass import JoinedWrenches
 from compoundkin.dynamics.reactions.singular_poses import FINITE
-from compoundkin.kinematics.extremes import given_over
+from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.finding import Check, Finding, worst
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_transmitting_pair
-from compoundkin.structure.parts import LINK_FREEDOMS
+from compoundkin.structure.mobility_count import LINK_FREEDOMS
 
 # What is left of forces is relative to the greatest one at the same pose, moments to it times the mechanism's size.
 # Rounding (1e-16) grows over the groups in both directions.
@@ -152,7 +152,7 @@ def link_balances(forces: ForceResult) -> Iterator[tuple[str, Wrench]]:
     for link, left in of_links.items():
         pose = motion.poses[link]
         if link in free:
-            middle = pose.at(given_over(motion, motion.mechanism.geometry.points[link][free[link]])).c[0]
+            middle = pose.at(extended_to(motion, motion.mechanism.geometry.points[link][free[link]])).c[0]
             # moments on a link that turns freely are not counted
             yield link, Wrench(left.force, 0.0 * left.about(middle))
         elif link != FRAME:
@@ -182,15 +182,15 @@ def inertia_resistance(forces: ForceResult, mass: Mass) -> Wrench:
     """
     motion, mechanism = forces.motion, forces.motion.mechanism
     pose, units = motion.poses[mass.link], forces.units
-    arm = pose.u.c[0] * given_over(motion, mechanism.mass_centre(mass))
-    heavy = given_over(motion, mass.mass) * units.inertia
+    arm = pose.u.c[0] * extended_to(motion, mechanism.mass_centre(mass))
+    heavy = extended_to(motion, mass.mass) * units.inertia
     force, moment = -heavy * mechanism.gravity * units.metre, 0.0
     free = {spin.link for spin in motion.structure.passive}
     if forces.inertia:
         turn, speed_up = cross(pose.u.c[0], pose.u.derivative(1)), cross(pose.u.c[0], pose.u.derivative(2))
         force = force + heavy * (pose.z.derivative(2) + (1j * speed_up - turn**2) * arm)
         # a link that turns freely, such as a roller, has no rotary inertia
-        moment = 0.0 if mass.link in free else given_over(motion, mass.inertia) * units.inertia * speed_up
+        moment = 0.0 if mass.link in free else extended_to(motion, mass.inertia) * units.inertia * speed_up
     return Wrench.at(pose.z.c[0] + arm, force, moment)
 
 

@@ -26,7 +26,7 @@ from compoundkin.dynamics.reactions.link_wrench import (
 )
 from compoundkin.dynamics.reactions.pair_forces import PairForce
 from compoundkin.dynamics.reactions.reverse_pass import JoinedWrenches
-from compoundkin.kinematics.results import told
+from compoundkin.kinematics.motion import described
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.mass import Mass
@@ -188,7 +188,7 @@ class PinForces:
         return LinkWrench(self.forces.motion, PAIR, self.letter, link, self.letter, self.letter, whole, place, left)
 
     def __repr__(self) -> str:
-        return told(self, self.forces.grid, f"{self.letter} on {', '.join(self.links)}")
+        return described(self, self.forces.grid, f"{self.letter} on {', '.join(self.links)}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -243,7 +243,7 @@ class ShakingForce:
         return tuple(one for one in self.parts if one.kind == kind)
 
     def __repr__(self) -> str:
-        return told(self, self.forces.grid, ", ".join(one.name for one in self.parts[:6]))
+        return described(self, self.forces.grid, ", ".join(one.name for one in self.parts[:6]))
 
 
 def _sum(acting: Iterable[LinkWrench]) -> Wrench:

@@ -11,7 +11,7 @@ from compoundkin.base.arrays import Number, Vectors, cross
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.reactions.reverse_pass import UndeterminedPart
-from compoundkin.kinematics.extremes import given_over
+from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import vector
 
@@ -96,7 +96,7 @@ def moment_about(motion: Motion, wrench: Wrench, point: Any) -> Number:
 def place_in_world(motion: Motion, link: str, point: str | Number) -> Number:
     """Return where a point of a link is, (designs, poses). It is a letter or a place in the link."""
     own = motion.mechanism.geometry.points[link][point] if isinstance(point, str) else point
-    return motion.poses[link].at(given_over(motion, own)).c[0]
+    return motion.poses[link].at(extended_to(motion, own)).c[0]
 
 
 def line_of_action(motion: Motion, link: str, wrench: Wrench) -> Number:

@@ -26,9 +26,8 @@ from compoundkin.kinematics.derived.cam_follower import direction_of
 from compoundkin.kinematics.derived.contract import HasQuantities
 from compoundkin.kinematics.extremes import Extreme, Measure, Places, Zeros, extremes, zeros
 from compoundkin.kinematics.extremes.dead_points import moving_driver
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.results import told
-from compoundkin.kinematics.unit_rates import moved_together
+from compoundkin.kinematics.jacobian import moved_together
+from compoundkin.kinematics.motion import Motion, described
 from compoundkin.model.attributes import (
     ECCENTRICITY,
     FIRST_PULL,
@@ -266,7 +265,7 @@ class PairForce(ForceComponents):
         return found
 
     def __repr__(self) -> str:
-        return told(self, self.forces.grid, f"{self.name} on {self.link}")
+        return described(self, self.forces.grid, f"{self.name} on {self.link}")
 
 
 Loads = Callable[[LoadedBlock], Mapping[str, Wrench]]

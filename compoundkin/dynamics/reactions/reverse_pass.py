@@ -30,7 +30,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_transmitting_pair
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Body, Dropped
+from compoundkin.structure.mobility_count import Body, Dropped
 
 
 @dataclass(frozen=True)

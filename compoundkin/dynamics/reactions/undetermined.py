@@ -13,7 +13,7 @@ from compoundkin.dynamics.reactions.link_wrench import UNKNOWN_VECTOR
 from compoundkin.dynamics.reactions.pair_forces import PairForce
 from compoundkin.dynamics.reactions.reverse_pass import UndeterminedPart
 from compoundkin.model.pairs import Pair
-from compoundkin.structure.parts import Dropped
+from compoundkin.structure.mobility_count import Dropped
 
 # The angle within which a force is along a line of a link at every pose.
 ALONG = 1e-3

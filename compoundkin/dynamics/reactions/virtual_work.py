@@ -22,8 +22,8 @@ from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.reactions.link_wrench import DRIVER, LinkWrench
 from compoundkin.dynamics.reactions.reverse_pass import JoinedWrenches
 from compoundkin.kinematics.extremes.dead_points import moving_driver
+from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.unit_rates import moved_alone
 from compoundkin.model.definition import pair_by_name
 
 

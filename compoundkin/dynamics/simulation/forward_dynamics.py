@@ -26,10 +26,10 @@ from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import watches
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.approach import drawn_value
-from compoundkin.kinematics.chosen_modes import shown_by
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.gaps import gaps
+from compoundkin.kinematics.modes import stated_by
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solving_order_of
 from compoundkin.model.elements import Drive
@@ -266,7 +266,7 @@ def _written_value(mechanism: Mechanism) -> dict[str, float]:
     """Return the drivers' values in the drawing, else at the first pose."""
     order = solving_order_of(mechanism)
     given = inputs(order, {own.name: 0.0 for own in mechanism.drives if own.values is None}, None, None, None)
-    shown = shown_by(order)
+    shown = stated_by(order)
     found = {}
     for own in mechanism.drives:
         value = drawn_value(order, given, own.name, shown.poses, shown.beside) if own.values is None else own.values

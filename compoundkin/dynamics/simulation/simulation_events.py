@@ -13,7 +13,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import SimulatedState
-from compoundkin.kinematics.passed_ends import AT_END
+from compoundkin.kinematics.solving_order import AT_END
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profile_contact import as_profile_contact

@@ -15,7 +15,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
-from compoundkin.kinematics.quiet_solution import quietly_solved
+from compoundkin.kinematics.solution import quietly_solved
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Structure, decompose

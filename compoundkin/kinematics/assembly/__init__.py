@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from compoundkin.kinematics.assembly.all_configurations import all_configurations
-from compoundkin.kinematics.assembly.group_geometry import Connection, GroupGeometry, from_group
-from compoundkin.kinematics.assembly.mode_count import exact_count
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.assembly.elimination import exact_count
+from compoundkin.kinematics.assembly.loop_closure import Connection, GroupGeometry, from_group
+from compoundkin.kinematics.configuration import Configurations
 
 __all__ = ["Configurations", "Connection", "GroupGeometry", "all_configurations", "exact_count", "from_group"]

@@ -7,13 +7,18 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.assembly import elimination, homotopy, neighbours
-from compoundkin.kinematics.assembly.group_geometry import GroupGeometry, GroupGraph
-from compoundkin.kinematics.assembly.loop_closure import rotation_equations_of
-from compoundkin.kinematics.assembly.mode_count import exact_count
-from compoundkin.kinematics.assembly.neighbours import distinct
-from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, conjugates, holds, polish, relative
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.assembly import elimination, homotopy, rotation_equations
+from compoundkin.kinematics.assembly.elimination import exact_count
+from compoundkin.kinematics.assembly.loop_closure import GroupGeometry, GroupGraph, rotation_equations_of
+from compoundkin.kinematics.assembly.rotation_equations import (
+    RotationEquations,
+    conjugates,
+    distinct,
+    holds,
+    polish,
+    relative,
+)
+from compoundkin.kinematics.configuration import Configurations
 
 # A solution this near to its own mirror image, its conjugate, is tried as a real one. Where it is none, two
 # complex configurations are about to meet in a real one; Newton then leaves the real numbers.
@@ -36,7 +41,7 @@ def all_configurations(geometry: GroupGeometry) -> Configurations:
     Source: C. W. Wampler, Solving the kinematics of planar mechanisms by Dixon determinant and a complex-plane
     formulation, J. Mech. Des. 123 (2001) 382; for groups with slides see `homotopy`.
 
-    >>> from compoundkin.kinematics.assembly.group_geometry import Connection
+    >>> from compoundkin.kinematics.assembly.loop_closure import Connection
     >>> dyad = GroupGeometry(2, (
     ...     Connection((None, 0), (0, 0)), Connection((0, 1), (3, 0)), Connection((None, 1), (5, 4))), 5.0)
     >>> found = all_configurations(dyad)
@@ -90,7 +95,7 @@ def _complex(loops: RotationEquations, graph: GroupGraph, expected: int) -> Numb
             return elimination.complex_solutions(some, graph)
         return distinct(polish(some, homotopy.roots(some, graph)))
 
-    return neighbours.solutions(loops, expected, solved)
+    return rotation_equations.solutions(loops, expected, solved)
 
 
 def _real(loops: RotationEquations, x: Number) -> tuple[Number, Number]:

@@ -23,10 +23,15 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.continuation import StepLengths, StepResult, runge_kutta, trace_paths
 from compoundkin.base.linear import solve
 from compoundkin.base.newton import newton
-from compoundkin.kinematics.assembly.group_geometry import GroupGraph
-from compoundkin.kinematics.assembly.loop_closure import random_equations
-from compoundkin.kinematics.assembly.neighbours import distinct
-from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, jacobian, polish, relative, residual
+from compoundkin.kinematics.assembly.loop_closure import GroupGraph, random_equations
+from compoundkin.kinematics.assembly.rotation_equations import (
+    RotationEquations,
+    distinct,
+    jacobian,
+    polish,
+    relative,
+    residual,
+)
 
 # The paths of the generic instance are followed this often, with other random numbers, to find any that was lost.
 RUNS = 2

@@ -1,19 +1,27 @@
-"""The loop equations of a group: origins along a spanning tree, one equation for every other connection."""
+"""Loop closure of a group: its bodies as plain numbers, origins along a spanning tree, one equation per closing pair."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.kinematics.assembly.group_geometry import GroupGeometry, GroupGraph
+from compoundkin.base.poses import End
+from compoundkin.base.series import Series
 from compoundkin.kinematics.assembly.rotation_equations import BodyRotations, RotationEquations, isotropic
+from compoundkin.kinematics.block import Block
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import as_turn_counting
+from compoundkin.structure.mobility_count import Group
 
 
 def rotation_equations_of(geometry: GroupGeometry) -> RotationEquations:
     """Write the loop equations of a group at all its poses. Lengths are divided by its size.
 
-    >>> from compoundkin.kinematics.assembly.group_geometry import Connection
+    >>> from compoundkin.kinematics.assembly.loop_closure import Connection
     >>> dyad = GroupGeometry(2, (
     ...     Connection((None, 0), (0, 0)), Connection((0, 1), (3, 0)), Connection((None, 1), (4, 2))), 1.0)
     >>> loops = rotation_equations_of(dyad)
@@ -140,3 +148,165 @@ def _spread(
                     along = directions[..., k, own, :] * directions[..., k, 1 - own, ::-1]
                     factors[new], rotation[new] = factors[body] * along, rotation[start]
                     reached.append(new)
+
+
+# Two points of a body nearer than this part of the size are one pin: rounding of a few additions.
+SAME = 1e-12
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A pin or a slide between two bodies, or to what is known.
+
+    `bodies` are two indices, None for what is known. A pin holds `points[0]` of the first on `points[1]` of the
+    second. With `directions` it is a slide: the first carries a guide through its point, along which the
+    second's point runs, and the second's direction stays along the guide. Points and unit directions are
+    complex, each in its own body, or in the world where known; scalars or arrays over poses.
+    """
+
+    bodies: tuple[int | None, int | None]
+    points: tuple[Number, Number]
+    directions: tuple[Number, Number] | None = None
+
+
+@dataclass(frozen=True)
+class GroupGeometry:
+    """Bodies 0 to `n` - 1 with the `connections` that fix them all.
+
+    There are exactly as many as needed; `size` is a typical length.
+
+    Raises `InvalidInput` where the number of connections does not fit.
+
+    >>> dyad = GroupGeometry(2, (
+    ...     Connection((None, 0), (0, 0)), Connection((0, 1), (3, 0)), Connection((None, 1), (4, 2))), 4.0)
+    >>> dyad.loops
+    1
+    """
+
+    n: int
+    connections: tuple[Connection, ...]
+    size: float = 1.0
+
+    def __post_init__(self) -> None:
+        if 2 * len(self.connections) != 3 * self.n:
+            what = f"{len(self.connections)} connections do not fix {self.n} bodies in finitely many ways"
+            raise InvalidInput(Problem("connections", what, "give three for every two bodies"))
+
+    @property
+    def loops(self) -> int:
+        """The number of independent loops."""
+        return len(self.connections) - self.n
+
+    def pins(self) -> tuple[tuple[int, int], ...]:
+        """Number the points of connections on each body, both sides: coinciding points have one."""
+        seen: dict[int | None, list[Number]] = {}
+        return tuple(
+            (self._pin(seen, c.bodies[0], c.points[0]), self._pin(seen, c.bodies[1], c.points[1]))
+            for c in self.connections
+        )
+
+    def _pin(self, seen: dict[int | None, list[Number]], body: int | None, point: Number) -> int:
+        known = seen.setdefault(body, [])
+        for k, other in enumerate(known):
+            if np.all(np.abs(point - other) <= SAME * self.size):
+                return k
+        known.append(point)
+        return len(known) - 1
+
+    def graph(self) -> GroupGraph:
+        """Return what does not depend on dimensions.
+
+        It tells which bodies are joined, by what, and which pins coincide.
+        """
+        slides = tuple(c.directions is not None for c in self.connections)
+        return GroupGraph(self.n, tuple(c.bodies for c in self.connections), slides, self.pins())
+
+
+@dataclass(frozen=True)
+class GroupGraph:
+    """A group without its dimensions. It can be hashed, so that what depends on it alone is found once."""
+
+    n: int
+    bodies: tuple[tuple[int | None, int | None], ...]
+    slides: tuple[bool, ...]
+    pins: tuple[tuple[int, int], ...]
+
+    def tree(self) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
+        """Build a spanning tree outward from what is known.
+
+        It has (connection, new body) in order, and the other connections.
+
+        Breadth first, so that loops are short.
+        """
+        reached: list[int | None] = [None]
+        steps: list[tuple[int, int]] = []
+        for body in reached:
+            for k, new in self._around(body):
+                if new is not None and new not in reached:
+                    reached.append(new)
+                    steps.append((k, new))
+        if len(steps) < self.n:
+            raise InvalidInput(Problem("connections", "some bodies are not attached to what is known"))
+        used = {k for k, _ in steps}
+        return tuple(steps), tuple(k for k in range(len(self.bodies)) if k not in used)
+
+    def _around(self, body: int | None) -> Iterator[tuple[int, int | None]]:
+        for k, (a, b) in enumerate(self.bodies):
+            if body == a:
+                yield k, b
+            elif body == b:
+                yield k, a
+
+    def random(self, rng: np.random.Generator) -> tuple[Number, Number]:
+        """Draw random dimensions with the same coinciding pins.
+
+        They are points and directions (connections, 2 sides, 2).
+
+        In isotropic coordinates, the two of a point independent, as a generic complex instance needs.
+        """
+        m = len(self.bodies)
+        points = np.empty((m, 2, 2), dtype=complex)
+        seen: dict[tuple[int | None, int], Number] = {}
+        for k in range(m):
+            for side in range(2):
+                key = (self.bodies[k][side], self.pins[k][side])
+                if key not in seen:
+                    seen[key] = rng.standard_normal(2) + 1j * rng.standard_normal(2)
+                points[k, side] = seen[key]
+        direction = np.exp(2j * np.pi * rng.random((m, 2)) + 0.3 * rng.standard_normal((m, 2)))
+        return points, np.stack([direction, 1 / direction], axis=-1)
+
+
+def from_group(group: Group, block: Block, size: float) -> GroupGeometry:
+    """Return the group as it is attached in a block, at all its poses. Body k is the group's body k.
+
+    A composite body is taken in the frame of its base link, `links[0]`, with its shape at each pose. Raises
+    `InvalidInput` where the group holds higher pairs, whose configurations are not finitely many rotations.
+    """
+    where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
+    connections = tuple(_connection(pair, where, block) for pair in (*group.inner, *group.outer))
+    return GroupGeometry(len(group.bodies), connections, size)
+
+
+def _connection(pair: Pair, where: dict[str, int], block: Block) -> Connection:
+    # what rolls holds two coordinates too, one of which counts turns
+    if pair.held != 2 or len(pair.members) != 2 or as_turn_counting(pair):
+        what = f"all configurations are known for groups of lower pairs only, not with a {pair.title}"
+        raise InvalidInput(Problem(pair.name, what))
+    first, second = (
+        _in_body(link, end, where, block) for link, end in zip(pair.members, block.ends[pair.name], strict=True)
+    )
+    bodies = where.get(pair.members[0]), where.get(pair.members[1])
+    points = _leading(first.point), _leading(second.point)
+    directions = None if pair.free_is_angle else (_leading(first.direction), _leading(second.direction))
+    return Connection(bodies, points, directions)
+
+
+def _in_body(link: str, end: End, where: dict[str, int], block: Block) -> End:
+    """Return a link's side of a pair in its composite body, or in the world where it is known."""
+    frame = block.local.get(link) if link in where else block.world[link]
+    return end if frame is None else frame.carry(end)
+
+
+def _leading(value: Series | Number) -> Number:
+    return value.c[0] if isinstance(value, Series) else value

@@ -1,18 +1,8 @@
-"""The loop equations of a group, linear in unit rotations: their residual, Jacobian, and Newton's method on them.
-
-In isotropic coordinates a vector z is the pair (z, z*), z* its conjugate where it is real geometry. Every
-loop is an equation f = c + sum_k C_k X_k = 0 with its conjugate f* = c* + sum_k C*_k X*_k = 0. The unknowns X
-are the rotations (X X* = 1 each), then the displacements of slides turned with their guides: X = s Theta, X* =
-s / Theta. Bodies joined by a slide have one rotation up to a known angle.
-
-Source: C. W. Wampler, Solving the kinematics of planar mechanisms by Dixon determinant and a complex-plane
-formulation, J. Mech. Des. 123 (2001) 382, section 2.
-
-Unknowns of many starts at many poses are arrays (poses, starts, unknowns).
-"""
+"""The loop equations of a group, linear in unit rotations: residual, Jacobian, Newton, and solutions at neighbours."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -24,12 +14,20 @@ from compoundkin.base.newton import newton
 # Newton doubles its digits with every step: from the four that elimination leaves, rounding is reached in three;
 # the others are for poses near a double solution, where it halves the distance.
 STEPS = 10
+
+
 # A start has converged when its last correction, relative to each unknown, is below this.
 CONVERGED = 1e-9
+
+
 # The equations hold when their residual is below this part of the sum of their terms' absolute values.
 HOLDS = 1e-11
+
+
 # A rotation beyond this, or below its inverse, is a solution at infinity: the other terms are lost to rounding.
 FARTHEST = 1e8
+
+
 # Below this an unknown displacement is not compared with itself but with the size (which is 1).
 SMALL = 1e-2
 
@@ -185,3 +183,98 @@ def holds(loops: RotationEquations, x: Number) -> Number:
     size = np.abs(x[..., : loops.rotations])
     finite = np.all((size < FARTHEST) & (size > 1 / FARTHEST), axis=-1)
     return finite & np.all(np.abs(residual(loops, x)) <= HOLDS * terms(loops, x), axis=-1)
+
+
+# Two solutions are one where every unknown differs by less than this part of itself: a double solution is known to
+# the square root of rounding, others are known far better.
+SAME_SOLUTION = 1e-6
+
+
+# A displacement near zero is compared with the size.
+LEAST_PIVOT_OF_NEIGHBOURS = 1e-2
+
+
+# Every so many poses are solved anew at first, then those halfway between, and so on.
+STRIDE = 16
+
+
+# Newton from a neighbour arrives in so many steps or is not worth more of them.
+STEPS_FROM_NEIGHBOURS = 6
+
+
+# Poses are taken in blocks of so many comparisons between solutions, to stay within some hundred megabytes.
+BLOCK = 1 << 21
+
+
+def distinct(x: Number) -> Number:
+    """Keep every solution once, from (poses, found, unknowns). NaN rows are none, and pad the poses that have fewer.
+
+    >>> distinct(np.array([[[1.0], [np.nan], [2.0], [1.0]]])).ravel().tolist()
+    [1.0, 2.0]
+    """
+    there = np.isfinite(x).all(axis=-1)
+    same = np.ones((*x.shape[:2], x.shape[1]), dtype=bool)
+    for k in range(x.shape[-1]):
+        own = x[..., k]
+        size = np.maximum(np.maximum(np.abs(own)[..., :, None], np.abs(own)[..., None, :]), LEAST_PIVOT_OF_NEIGHBOURS)
+        with np.errstate(invalid="ignore"):
+            same &= np.abs(own[..., :, None] - own[..., None, :]) <= SAME_SOLUTION * size
+    repeated = np.any(np.tril(same, -1) & there[:, None, :], axis=-1)
+    return packed(x, there & ~repeated)
+
+
+def packed(x: Number, kept: Number) -> Number:
+    """Put every pose's kept rows first, cut to the most of any."""
+    order = np.argsort(~kept, axis=-1, kind="stable")
+    most = int(kept.sum(axis=-1).max(initial=0))
+    out = np.take_along_axis(np.where(kept[..., None], x, np.nan), order[..., None], axis=1)
+    return out[:, :most]
+
+
+def padded(x: Number, width: int) -> Number:
+    """Lengthen lists of solutions (poses, solutions, unknowns) to `width` by NaN."""
+    return np.pad(x, [(0, 0), (0, width - x.shape[1]), (0, 0)], constant_values=np.nan)
+
+
+def solutions(loops: RotationEquations, expected: int, solved: Callable[[RotationEquations], Number]) -> Number:
+    """Find all solutions (poses, solutions, unknowns), padded with NaN. `solved` finds those of some poses anew."""
+    poses = len(loops.constant)
+    found = np.full((poses, expected, loops.columns.shape[-3]), np.nan, dtype=complex)
+    first = np.unique([*range(0, poses, STRIDE), poses - 1])
+    for here in _blocks(first, expected):
+        found = _put(found, here, solved(loops.select(here)))
+    stride = STRIDE // 2
+    while stride:
+        for here in _blocks(np.arange(stride, poses - 1, 2 * stride), expected):
+            found = _from_neighbours(loops, found, here, stride, expected, solved)
+        stride //= 2
+    return found
+
+
+def _from_neighbours(
+    loops: RotationEquations,
+    found: Number,
+    here: Number,
+    stride: int,
+    expected: int,
+    solved: Callable[[RotationEquations], Number],
+) -> Number:
+    """Add the solutions at the poses `here`, from those a stride before and behind."""
+    behind = np.minimum(here + stride, len(found) - 1)
+    starts = np.concatenate([found[here - stride], found[behind]], axis=1)
+    more = distinct(polish(loops.select(here), starts, STEPS_FROM_NEIGHBOURS))
+    lacking = np.flatnonzero(np.isfinite(more).all(axis=-1).sum(axis=-1) != expected)
+    found = _put(found, here, more)
+    return _put(found, here[lacking], solved(loops.select(here[lacking]))) if len(lacking) else found
+
+
+def _blocks(which: Number, expected: int) -> list[Number]:
+    size = max(1, BLOCK // (2 * expected) ** 2)
+    return [which[k : k + size] for k in range(0, len(which), size)]
+
+
+def _put(found: Number, here: Number, more: Number) -> Number:
+    width = max(found.shape[1], more.shape[1])
+    found = padded(found, width)
+    found[here] = padded(more, width)
+    return found

@@ -44,7 +44,7 @@ def direction_of(motion: HasQuantities, pair: ProfileContact, contact: Number) -
     Where it has no single guide, the direction of its velocity.
     """
     structure = motion.solving_order.structure
-    name = _led(motion, pair)
+    name = _is_guided(motion, pair)
     carried = {passive.link: passive.on for passive in structure.passive}
     name = carried.get(name, name)
     poses = tuple(motion.poses[member] for member in pair.members)
@@ -60,7 +60,7 @@ def direction_of(motion: HasQuantities, pair: ProfileContact, contact: Number) -
     return name, None, np.where(speed > RESTS * fastest, velocity, np.nan)
 
 
-def _led(motion: HasQuantities, pair: ProfileContact) -> str:
+def _is_guided(motion: HasQuantities, pair: ProfileContact) -> str:
     """Return the link that the contact moves. That of the profile where it is in the group which the contact closes."""
     for group in motion.solving_order.structure.groups:
         if pair in group.outer or pair in group.inner:

@@ -8,7 +8,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.inputs import Inputs, PoseGrid
+from compoundkin.kinematics.driver_values import Inputs, PoseGrid
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 

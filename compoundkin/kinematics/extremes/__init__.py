@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from compoundkin.kinematics.extremes.dead_points import DeadPoints, dead_points, driver_dead_points
-from compoundkin.kinematics.extremes.extremes_of_motion import AssembledPieces, Extreme, Extremes, extremes, pieces
-from compoundkin.kinematics.extremes.measures import Measure, driver_pace
-from compoundkin.kinematics.extremes.motion_between import MotionBetween, between, given_over
-from compoundkin.kinematics.extremes.places import Places, closed_cycles, places_of_jumps
-from compoundkin.kinematics.extremes.zeros_of_motion import Zeros, zeros
+from compoundkin.kinematics.extremes.extremes import AssembledPieces, Extreme, Extremes, extremes, pieces
+from compoundkin.kinematics.extremes.motion_between import MotionBetween, between, extended_to
+from compoundkin.kinematics.extremes.stretches import Measure, Places, closed_cycles, driver_pace, places_of_jumps
+from compoundkin.kinematics.extremes.zeros import Zeros, zeros
 
 __all__ = [
     "AssembledPieces",
@@ -23,8 +22,8 @@ __all__ = [
     "dead_points",
     "driver_dead_points",
     "driver_pace",
+    "extended_to",
     "extremes",
-    "given_over",
     "pieces",
     "places_of_jumps",
     "zeros",

@@ -1,7 +1,8 @@
-"""A motion solved again between its poses, in the same configuration: what all interpolation is made of."""
+"""A motion solved again between its poses, in the same configuration, with what the drivers do there."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -9,21 +10,16 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.arrays import Number, column, whole_turns
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import Block, blocks, poses_at, with_poses
-from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
-from compoundkin.kinematics.extremes.near_change_points import (
-    next_to_change_points,
-    passing_groups,
-    through_double_roots,
-)
-from compoundkin.kinematics.inputs import Inputs, fit, mapped
-from compoundkin.kinematics.joined_blocks import JoinedBlocks
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion
+from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at, with_poses
+from compoundkin.kinematics.change_points import NEARLY, solved_near
+from compoundkin.kinematics.driver_values import Inputs, fit, mapped
+from compoundkin.kinematics.motion import LinkMotion, Motion, PairMotion, PointMotion
+from compoundkin.model.attributes import HIGHEST_ORDER
+from compoundkin.model.laws.constant_laws import taylor
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,7 +130,7 @@ def between(
     return MotionBetween(**own, whole=motion, designs=designs, places=places)
 
 
-def given_over(motion: Motion, value: Any, where: str = "load") -> Number:
+def extended_to(motion: Motion, value: Any, where: str = "load") -> Number:
     """Return what is given over a motion, as (1 or designs, 1 or poses).
 
     Between poses it is linear from one to the next. Raises InvalidInput naming `where` for another shape.
@@ -216,3 +212,109 @@ def _laid(part: Inputs, count: int) -> Inputs:
     ends = {name: tuple(mapped(end, _turned) for end in sides) for name, sides in part.ends.items()}
     drives = {name: tuple(map(_turned, values)) for name, values in part.drives.items()}
     return replace(part, shape=(count,), ends=ends, drives=drives)
+
+
+RATES = HIGHEST_ORDER + 1
+
+
+def interval(inputs: Inputs, places: Number) -> tuple[Number, Number]:
+    """Return the pose before each place, and how far on the place is."""
+    k = np.clip(np.floor(places).astype(int), 0, max(inputs.poses - 2, 0))
+    return k, places - k
+
+
+def times_of(motion: Motion) -> Number:
+    """Return the times of all poses of a motion in time, (designs, poses)."""
+    times: Number = motion.time
+    return np.broadcast_to(times, motion.shape).reshape(motion.failed.shape)
+
+
+def times_between(motion: Motion, designs: Number, places: Number) -> Number:
+    """Return the times at places of a motion in time. They are linear between poses."""
+    rows = times_of(motion)
+    k, weight = interval(motion.inputs, places)
+    after = np.minimum(k + 1, motion.inputs.poses - 1)
+    return rows[designs, k] * (1.0 - weight) + rows[designs, after] * weight
+
+
+def inputs_between(motion: Motion, designs: Number, places: Number, order: int = 0, by_place: bool = False) -> Inputs:
+    """Return the inputs at places along a motion, in a column. Rates are by time, or by the place.
+
+    Those of laws beyond the order are not asked for, and zero.
+    """
+    if motion.time is None:
+        return (motion.inputs.ahead if by_place else motion.inputs.pick)(designs, places)
+    part = motion.inputs.pick(designs, places)
+    times = times_between(motion, designs, places)
+    laws = {drive.name: drive.law for drive in motion.mechanism.drives if drive.law is not None}
+    drives = {name: _by_law(motion, laws[name], designs, times, order) if name in laws
+              else _moved(motion, name, designs, places) for name in part.drives}  # fmt: skip
+    if by_place:
+        k, _ = interval(motion.inputs, places)
+        pace = times_between(motion, designs, k + 1.0) - times_between(motion, designs, 1.0 * k)
+        drives = {n: tuple(v * pace[:, None] ** j if j else v for j, v in enumerate(vs)) for n, vs in drives.items()}
+    return part.driven(drives)
+
+
+def _by_law(motion: Motion, law: Any, designs: Number, times: Number, order: int) -> tuple[Number, ...]:
+    """Return value and rates of a driver by its law at times, of all designs at once.
+
+    The first and the last time of the motion are among them: a function's steps for differences go by their range.
+    """
+    in_order = np.argsort(designs, kind="stable")
+    counts = np.bincount(designs, minlength=motion.inputs.designs)
+    starts = np.cumsum(counts) - counts
+    index = np.empty(len(designs), dtype=int)
+    index[in_order] = np.arange(len(designs)) - starts[designs[in_order]]
+    rows = times_of(motion)
+    table = np.repeat(rows[:, :1], counts.max() + 2, axis=1)
+    table[:, -1] = rows[:, -1]
+    table[designs, index] = times
+    moved = law.coordinate(table.reshape(*motion.shape[:-1], -1), order)
+    return tuple(np.broadcast_to(_fitted(moved.derivative(k), table), table.shape)[designs, index][:, None]
+                 for k in range(RATES))  # fmt: skip
+
+
+def _fitted(value: Number, table: Number) -> Number:
+    return value if np.size(value) == 1 else np.reshape(value, (-1, np.shape(value)[-1])) if np.ndim(value) else value
+
+
+def _moved(motion: Motion, name: str, designs: Number, places: Number) -> tuple[Number, ...]:
+    """Return value and rates of a driver without a law: a polynomial in time, exact from the pose before."""
+    k, _ = interval(motion.inputs, places)
+    after = times_between(motion, designs, places) - times_between(motion, designs, 1.0 * k)
+    values = motion.inputs.pick(designs, 1.0 * k).drives[name]
+    moved = taylor(tuple(column(v, len(places)) for v in values), after, HIGHEST_ORDER)
+    return tuple(np.broadcast_to(moved.derivative(j), len(places))[:, None] for j in range(RATES))
+
+
+def passing_groups(motion: Motion) -> tuple[int, ...]:
+    """Return the groups that pass change points along a motion."""
+    expanded = motion.tracker.expanded
+    found = {*motion.change_points, *(expanded[2] if expanded is not None else ())}
+    return tuple(sorted(k for k in found if motion.solving_order.solvers[k].modes_may_meet))
+
+
+def next_to_change_points(block: Block, groups: Sequence[int], count: int) -> Number:
+    """Return which poses are so near to change points that rates lose digits."""
+    near: Number = np.zeros(count, dtype=bool)
+    for margin in (block.margins[k] for k in groups if k in block.margins):
+        near |= column((margin >= 0.0) & (margin < NEARLY), count)
+    return near
+
+
+def through_double_roots(
+    motion: Motion, part: Inputs, order: int, at: tuple[Number, Number], groups: Sequence[int]
+) -> tuple[Mapping[str, Pose], Number]:
+    """Return the poses of inputs near change points, and which are known."""
+    designs, places = at
+    last = motion.inputs.poses - 1
+    ahead = motion.inputs.ahead(designs, np.minimum(places, last - 0.5)).drives
+    sense = np.where(places < last, 1.0, -1.0)
+    units = [motion.solving_order.unit(name) for name in ahead]
+    steps = [
+        np.broadcast_to(v[1] / unit, (len(places), 1))[:, 0] for v, unit in zip(ahead.values(), units, strict=True)
+    ]
+    onward = np.stack(steps, axis=-1) * sense[:, None]
+    s = np.nextafter(places, places + sense)
+    return solved_near(motion.tracker, part, order, (s, designs), groups, onward)

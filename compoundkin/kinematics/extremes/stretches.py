@@ -1,21 +1,34 @@
-"""The smooth stretches of a motion: between its poses, the places where derivatives jump, and limit positions."""
+"""Smooth stretches of a motion: its breaks and places, and quantities sampled in windows with their polynomials."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.bracketing import false_position
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.extremes.breaks import breaks_of
-from compoundkin.kinematics.extremes.motion_between import between
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.extremes.motion_between import between, inputs_between, times_between, times_of
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity, whole_and_part
+from compoundkin.model.attributes import LENGTH, SPEED, Dimension, derivative_order
+from compoundkin.model.attributes import PARTS as VALUE_PARTS
+from compoundkin.model.laws.law_numbers import derivative_jumps
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 
 # A bracket between an assembled pose and one that is not is divided into so many parts at once, so often: to 1e-13.
 PARTS, ROUNDS = 33, 9
+
+
 # From a jump values are taken this far away (of a place): far beyond the rounding of where it is, far below anything.
 ASIDE = 1e-9
+
+
 # Nearer than this (of a place) a jump and a pose are one place.
 SAME = 2.0 * ASIDE
 
@@ -75,7 +88,7 @@ def stretches_of(motion: Motion) -> Stretches:
     """Return the smooth stretches of a motion. They are kept with it."""
     found: Stretches | None = motion.__dict__.get("_stretches")
     if found is None:
-        found = motion.__dict__["_stretches"] = _found(motion)
+        found = motion.__dict__["_stretches"] = _boundaries(motion)
     return found
 
 
@@ -85,7 +98,7 @@ def share_stretches(motion: Motion, other: Motion) -> Motion:
     return other
 
 
-def _found(motion: Motion) -> Stretches:
+def _boundaries(motion: Motion) -> Stretches:
     good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))
     design, k = np.nonzero(good[:, :-1] & good[:, 1:])
     rows = [_rows(design, k, k + 1.0, k, k + 1, k)]
@@ -146,3 +159,421 @@ def _numbered(rows: Number, motion: Motion) -> Stretches:
     apart = (np.diff(rows[:, 0]) != 0) | (rows[1:, 1] - rows[:-1, 2] > 2.0 * SAME)
     piece = np.cumsum(np.append(0, apart)) if len(rows) else np.empty(0, dtype=int)
     return Stretches(design, rows[:, 1], rows[:, 2], first, last, limits, piece)
+
+
+# A contact is at a corner within this part of the way round its profile; found in so many trials at most.
+FLAT, TRIALS = 1e-13, 40
+
+
+# Nearer than this (of a place) two jumps are one.
+SAME_BREAK = 1e-8
+
+
+def breaks_of(motion: Motion, good: Number) -> tuple[Number, Number]:
+    """Return designs and places at which derivatives jump; `good` (designs, poses) are assembled."""
+    found = [*_of_laws(motion), *_of_profiles(motion, good)]
+    rows = np.concatenate([np.empty((0, 2)), *found])
+    rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
+    apart = np.append(True, (np.diff(rows[:, 0]) != 0) | (np.diff(rows[:, 1]) > SAME_BREAK))[: len(rows)]
+    return rows[apart, 0].astype(int), rows[apart, 1]
+
+
+def _of_laws(motion: Motion) -> list[Number]:
+    """Return rows (design, place) where a driver's law has corners in time."""
+    laws = [drive.law for drive in motion.mechanism.drives if drive.law is not None]
+    if motion.time is None or not laws or motion.inputs.poses < 2:
+        return []
+    times = times_of(motion)
+    low, high = float(np.min(times)), float(np.max(times))
+    at = np.unique(np.concatenate([derivative_jumps(law, low, high) for law in laws]))
+    slack = SAME_BREAK * (high - low) / motion.inputs.poses
+    at = at[(at >= low - slack) & (at <= high + slack)]
+    found = []
+    for d, row in enumerate(times):
+        before, after = np.minimum(row[:-1], row[1:])[:, None], np.maximum(row[:-1], row[1:])[:, None]
+        k, which = np.nonzero((before - slack <= at) & (at <= after + slack) & (after > before))
+        place = k + np.clip((at[which] - row[k]) / (row[k + 1] - row[k]), 0.0, 1.0)
+        found.append(np.stack([np.full(len(k), float(d)), place], axis=-1))
+    return found
+
+
+def _of_profiles(motion: Motion, good: Number) -> list[Number]:
+    """Return rows (design, place) where contacts pass from one smooth piece of their profile to the next."""
+    return [_passed(motion, pair, good) for pair in filter(None, map(as_profile_contact, motion.structure.pairs))]
+
+
+@dataclass(frozen=True)
+class _Crossings:
+    """Corners of a profile that its contact passes: designs, poses before, and the corners, (n,) each."""
+
+    pair: ProfileContact
+    design: Number
+    k: Number
+    corner: Number
+
+    @property
+    def period(self) -> float:
+        """How far the parameter goes round a closed profile; that of an open one does not."""
+        return self.pair.curve.high - self.pair.curve.low
+
+    def beyond(self, motion: Motion, place: Number, before: Number) -> Number:
+        """Return how far the contact is beyond the corners at places; `before` is how far it was at the poses."""
+        with np.errstate(all="ignore"):
+            there = between(motion, self.design, place, 0)
+            found = _parameter(there, self.pair)[0] - self.corner
+        return found + (whole_turns(before - found, self.period) if self.pair.curve.closed else 0.0)
+
+
+def _parameter(motion: Motion, pair: ProfileContact) -> Number:
+    poses = tuple(motion.poses[name] for name in pair.members)
+    return np.broadcast_to(pair.parameter(motion.inputs.ends[pair.name], poses), motion.failed.shape)
+
+
+def _passed(motion: Motion, pair: ProfileContact, good: Number) -> Number:
+    """Return rows (design, place) where a contact passes corners of its profile, or leaps over a hollow."""
+    curve = pair.curve
+    known = np.array([*curve.breaks, *(0.5 * (a + b) for a, b in pair.bridged)])
+    if not known.size:
+        return np.empty((0, 2))
+    with np.errstate(all="ignore"):
+        parameter = np.where(good, _parameter(motion, pair), np.nan)
+    period = curve.high - curve.low
+    step = np.diff(parameter, axis=1)
+    step = step - whole_turns(step, period) if curve.closed else step
+    turns = np.arange(-1, 2) * period if curve.closed else np.zeros(1)
+    # of a closed profile a corner may be a turn ahead or behind
+    away = (known + turns[:, None]).ravel() - parameter[:, :-1, None]
+    part = away / np.where(step == 0.0, np.nan, step)[..., None]
+    design, k, which = np.nonzero((part > -SAME_BREAK) & (part < 1.0 + SAME_BREAK))
+    place = k + np.clip(part[design, k, which], 0.0, 1.0)
+    crossings = _Crossings(pair, design, k, np.tile(known, len(turns))[which])
+    inside = np.abs(place - np.round(place)) > SAME_BREAK
+    if inside.any():
+        some = _Crossings(pair, *(v[inside] for v in (design, k, crossings.corner)))
+        low = -away[design, k, which][inside]
+        place[inside] = _refined(motion, some, low, low + step[design, k][inside])
+    return np.stack([design.astype(float), place], axis=-1)
+
+
+def _refined(motion: Motion, crossings: _Crossings, low: Number, high: Number) -> Number:
+    """Return the places of corners between poses, from how far beyond them the contact is at the poses."""
+
+    def beyond(part: Number) -> Number:
+        return crossings.beyond(motion, crossings.k + part, (1.0 - part) * low + part * high)
+
+    return crossings.k + false_position(beyond, np.ones(len(low)), low, high, FLAT * crossings.period, TRIALS)
+
+
+# Two poses nearer than this (in parts of the size, or radians) are one: rounding of a full turn of many groups.
+SAME_POSE = 1e-9
+
+
+# Nearer than this (of a pose) two places are one.
+SAME_PLACE = 1e-6
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Places(ShortRepr):
+    """Places along a motion, each of a design.
+
+    `place` counts poses from 0, is fractional between them, and NaN for none.
+    """
+
+    motion: Motion = field(repr=False)
+    design: Number
+    place: Number
+
+    @cached_property
+    def drives(self) -> Mapping[str, Number]:
+        """The drivers' values there, radians or lengths."""
+        part = inputs_between(self.motion, *self._known)
+        return {name: self._spread(values[0]) for name, values in part.drives.items()}
+
+    @cached_property
+    def time(self) -> Number | None:
+        """The times there; None for a motion that is not in time."""
+        return None if self.motion.time is None else self._spread(times_between(self.motion, *self._known))
+
+    @property
+    def _known(self) -> tuple[Number, Number]:
+        good = np.isfinite(self.place)
+        return self.design[good], self.place[good]
+
+    def _spread(self, values: Number) -> Number:
+        good = np.isfinite(self.place)
+        out = np.full(self.place.shape, np.nan)
+        out[good] = np.broadcast_to(np.reshape(values, (-1,)), np.shape(self.place[good]))
+        return out
+
+    def some(self, which: Number) -> Places:
+        """Return some of the places."""
+        return Places(self.motion, self.design[which], self.place[which])
+
+
+def places_of_jumps(motion: Motion) -> Places:
+    """Return both sides of the places where derivatives jump along a motion, in order."""
+    s = stretches_of(motion)
+    sides = [(s.low, (s.first < 0) & ~s.limits[:, 0]), (s.high, (s.last < 0) & ~s.limits[:, 1])]
+    design, place = (np.concatenate([row[odd] for row, odd in rows]) for rows in
+                     ([(s.design, odd) for _, odd in sides], sides))  # fmt: skip
+    order = np.lexsort((place, design))
+    return Places(motion, design[order], place[order])
+
+
+def closed_cycles(motion: Motion) -> Number:
+    """Tell which designs end where they began, (designs,)."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    good = np.broadcast_to(motion.failed == 0, shape)
+    whole = good[:, 0] & good[:, -1] & (shape[1] > 2)
+    return np.asarray(whole & same_pose(motion, 0, -1) if whole.any() else whole)
+
+
+def same_pose(motion: Motion, one: int, other: int) -> Number:
+    """Tell in which designs two poses have all links at the same place, (designs,)."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    same: Number = np.ones(shape[0], dtype=bool)
+    for pose in motion.poses.values():
+        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
+            value = np.broadcast_to(series.c[0], shape)
+            same &= np.abs(value[:, one] - value[:, other]) <= SAME_POSE * size
+    return same
+
+
+# Samples inside of a window, at Chebyshev's points, and its ends besides. Over five degrees of a crank the polynomial
+# of degree seven is right to some twelve digits.
+INNER = 8
+
+
+INSIDE = -np.cos((np.arange(INNER) + 0.5) * np.pi / INNER)
+
+
+SAMPLES = np.array([-1.0, *INSIDE, 1.0])
+
+
+FIT = np.linalg.inv(chebyshev.chebvander(INSIDE, INNER - 1))
+
+
+# The polynomials are first looked at so finely, and then followed by Newton's method.
+FINE = np.linspace(-1.0, 1.0, 65)
+
+
+AT_FINE = chebyshev.chebvander(FINE, INNER - 1).T
+
+
+NEWTON = 6
+
+
+# Nearer than this to the end of a window a vertex that is no higher is the end.
+BESIDE, LEVEL = 0.01, 1e-8
+
+
+# A polynomial that is off by less than this part of the quantity's range is trusted.
+TRUSTED = 1e-10
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Windows(ShortRepr):
+    """Windows of stretches with samples of quantities.
+
+    They go from `low` to `high` in the stretches' own t. `values` (quantities, windows, samples) are NaN where there
+    are none. `design` (windows,) says of which design each is, `limited` which of them end at a limit position.
+    """
+
+    which: Number
+    design: Number
+    limited: Number
+    low: Number
+    high: Number
+    places: Number
+    values: Number
+    measures: tuple[Measure, ...]
+
+    def t(self, inside: Number, index: Number) -> Number:
+        """Return the stretches' t at a place from -1 to 1 in some windows."""
+        low, high = self.low[index], self.high[index]
+        return np.where(inside >= 1.0, high, low + (1.0 + inside) * 0.5 * (high - low))
+
+    @cached_property
+    def squared(self) -> Number:
+        """Which quantities are lengths, whose squares are smooth, as a column."""
+        return np.array([one.squared for one in self.measures], dtype=bool)[:, None, None]
+
+    @cached_property
+    def smooth_values(self) -> Number:
+        """The values, or their squares."""
+        return np.where(self.squared, self.values**2, self.values)
+
+    @cached_property
+    def polynomials(self) -> Number:
+        """The coefficients of the polynomials through the inner samples, (quantities, windows, degrees)."""
+        return self.smooth_values[..., 1:-1] @ FIT.T
+
+    @cached_property
+    def fine(self) -> Number:
+        """The polynomials' values at `FINE`, as quantities are: roots where squares are smooth."""
+        return self.unsquared(self.polynomials @ AT_FINE, self.squared)
+
+    @staticmethod
+    def unsquared(values: Number, squared: Number) -> Number:
+        """Return lengths from their squares, other values as they are."""
+        return np.where(squared, np.sqrt(np.maximum(values, 0.0)), values)
+
+    @cached_property
+    def span(self) -> Number:
+        """How much each quantity varies over all samples of a window's design, (quantities, windows)."""
+        return self._span(self.values)
+
+    @cached_property
+    def trusted(self) -> Number:
+        """Whose polynomials are right to all digits that matter, (quantities, windows)."""
+        largest = self._of_design(np.fmax, np.abs(self.smooth_values))
+        return self._off <= TRUSTED * self._span(self.smooth_values) + ROUNDING * largest
+
+    @cached_property
+    def doubt(self) -> Number:
+        """About how far the polynomials are off, (quantities, windows)."""
+        return self.unsquared(self._off, self.squared[..., 0])
+
+    @cached_property
+    def _off(self) -> Number:
+        """About how far the polynomials are off, in values or their squares."""
+        ends = self.polynomials @ chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
+        off = np.nan_to_num(np.abs(ends - self.smooth_values[..., [0, -1]]), nan=0.0, posinf=0.0)
+        return np.maximum(off.max(axis=-1), np.abs(self.polynomials[..., -1]))
+
+    def _span(self, values: Number) -> Number:
+        finite = np.where(np.isfinite(values), values, np.nan)
+        return np.nan_to_num(self._of_design(np.fmax, finite) - self._of_design(np.fmin, finite))
+
+    def _of_design(self, reduce: np.ufunc, values: Number) -> Number:
+        """Return what a reduction makes of all samples of a window's design, (quantities, windows).
+
+        What other designs do, near their limits perhaps, changes nothing.
+        """
+        if not len(self.design):
+            return values[..., 0]
+        _, own = np.unique(self.design, return_inverse=True)
+        in_order = np.argsort(own, kind="stable")
+        starts = np.flatnonzero(np.append(True, np.diff(own[in_order]) != 0))
+        rows = reduce.reduce(values, axis=-1)
+        # what grows without limit tells nothing of the range elsewhere
+        known = np.where(self.limited, np.nan, rows)
+        inside, found = (reduce.reduceat(row[:, in_order], starts, axis=1)[:, own] for row in (known, rows))
+        return np.where(np.isnan(inside), found, inside)
+
+
+def sampled(
+    motion: Motion, measures: Sequence[Measure], stretches: Stretches, which: Number, low: Number, high: Number
+) -> Windows:
+    """Return windows of stretches with their samples, all solved at once."""
+    t = np.where(SAMPLES >= 1.0, high[:, None], low[:, None] + (1.0 + SAMPLES) * 0.5 * (high - low)[:, None])
+    places = stretches.places(t, which)
+    values = solved(motion, measures, np.repeat(stretches.design[which], len(SAMPLES)), places.ravel())
+    values = values.reshape(len(measures), *places.shape)
+    # rates next to a limit position grow without limit, or are not known there
+    ends = (t == -1.0) & stretches.limits[which, :1], (t == 1.0) & stretches.limits[which, 1:]
+    rates = np.array([one.order > 0 for one in measures], dtype=bool)[:, None, None]
+    values = np.where(rates & (ends[0] | ends[1]), np.nan, values)
+    limited = stretches.limits[which].any(axis=1)
+    return Windows(which, stretches.design[which], limited, low, high, places, values, tuple(measures))
+
+
+def solved(motion: Motion, measures: Sequence[Measure], designs: Number, places: Number) -> Number:
+    """Return the values of quantities at places along a motion, (quantities, n)."""
+    order = max((one.order for one in measures), default=0)
+    there = between(motion, designs, places, order)
+    with np.errstate(all="ignore"):
+        return np.array([one.at_poses(there)[0] for one in measures])
+
+
+def vertices(polynomials: Number, start: Number) -> Number:
+    """Return where polynomials (n, degrees) are extreme, near `start`."""
+    first = chebyshev.chebder(polynomials.T)
+    second = chebyshev.chebder(first)
+    t = start
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            step = chebyshev.chebval(t, first, tensor=False) / chebyshev.chebval(t, second, tensor=False)
+            spacing = FINE[1] - FINE[0]
+            t = np.clip(np.where(np.isfinite(step), t - step, t), start - spacing, start + spacing)
+    t = np.clip(t, -1.0, 1.0)
+    # a curve that runs into a plateau is as high just before it
+    end = np.where(t < 0.0, -1.0, 1.0)
+    at_end, found = (chebyshev.chebval(at, polynomials.T, tensor=False) for at in (end, t))
+    level = np.abs(at_end - found) <= LEVEL * np.abs(polynomials[:, 1:]).max(axis=-1)
+    return np.where(level & (np.abs(end - t) < BESIDE), end, t)
+
+
+# Values nearer than this part of what is natural for them differ by rounding.
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Measure(ShortRepr):
+    """A real quantity of any motion: its name and its function.
+
+    `order` is how many time derivatives the motion must have. A length of a vector is `squared` to be smooth where it
+    passes zero. Values below the part 1e-12 of `scale` are rounding.
+    """
+
+    name: str
+    unit: str
+    order: int
+    of: Callable[[Motion], Number]
+    squared: bool = False
+    scale: float = 0.0
+    dimension: Dimension = "number"
+
+    def at_poses(self, motion: Motion) -> Number:
+        """Return its values at all poses of a motion, (designs, poses)."""
+        shape = motion.inputs.designs, motion.inputs.poses
+        return np.broadcast_to(np.asarray(self.of(motion), dtype=float), motion.shape).reshape(shape)
+
+
+def measure_of(motion: Motion, name: str) -> Measure:
+    """Return the real quantity of a name. It may take derivatives beyond the motion's order.
+
+    Raises UnknownName with the nearest known name, InvalidInput for a vector, which has extremes by its parts only.
+    """
+    known = motion if derivative_order(name) <= motion.order else between(motion, 0, 0.0, derivative_order(name))
+    whole, part = whole_and_part(known, name)
+    if whole.is_vector and not part:
+        parts = " or ".join(f"{name}.{word}" for word in VALUE_PARTS)
+        raise InvalidInput(Problem(name, "a vector has no least and no greatest value", f"take {parts}"))
+    owner, _, word = whole.name.rpartition(".")
+    is_length = part == LENGTH or (word == SPEED and owner in motion.points)
+    size = motion.size if whole.dimension == "length" else 1.0
+    scale = whole.scale or size * driver_pace(motion) ** whole.order
+
+    def of(at: Motion) -> Number:
+        values = quantity(at, whole.name).values
+        return VALUE_PARTS[part](values) if part else values
+
+    return Measure(name, whole.unit, max(derivative_order(name), whole.order), of, is_length, scale, whole.dimension)
+
+
+def measures_of(motion: Motion, asked: Sequence[str | Measure]) -> tuple[Measure, ...]:
+    """Return names as the quantities that they name, quantities as they are."""
+    return tuple(measure_of(motion, one) if isinstance(one, str) else one for one in asked)
+
+
+def driver_pace(motion: Motion) -> float:
+    """Return the rate of the fastest driver. Slides count by the mechanism's size."""
+    rates = (np.abs(v[1]) / motion.solving_order.unit(k) for k, v in motion.inputs.drives.items() if len(v) > 1)
+    return max((float(np.max(rate)) for rate in rates), default=0.0)
+
+
+def values_at_poses(motion: Motion, measures: Sequence[Measure]) -> Number:
+    """Return the values of quantities at all poses, (quantities, designs, poses).
+
+    Those beyond the motion's order are solved for.
+    """
+    order = max((one.order for one in measures), default=0)
+    whole = motion
+    if order > motion.order:
+        designs, poses = np.indices((motion.inputs.designs, motion.inputs.poses)).reshape(2, -1)
+        whole = between(motion, designs, poses, order)
+    with np.errstate(all="ignore"):
+        rows = [one.at_poses(motion if one.order <= motion.order else whole) for one in measures]
+    shape = motion.inputs.designs, motion.inputs.poses
+    return np.array([row.reshape(shape) for row in rows]).reshape(len(measures), *shape)

@@ -15,7 +15,7 @@ from compoundkin.kinematics.groups.rpr import RPR
 from compoundkin.kinematics.groups.rrp import RRP
 from compoundkin.kinematics.groups.rrr import RRR
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 SOLVERS: tuple[type[GroupSolver], ...] = (RRR, RRP, RPR, PRP, RPP, GearTrainSolver, FollowerSolver, GeneralSolver)
 # The dyads by their names.

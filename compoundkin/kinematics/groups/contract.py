@@ -14,13 +14,12 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.equilibrium import reactions_of
+from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.groups.force_transmission import reactions_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
-from compoundkin.kinematics.groups.mounted_body import MountedBody
-from compoundkin.kinematics.groups.reasons import Reason, told
+from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, reason_text
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 
 class GroupSolver(ABC):
@@ -70,7 +69,7 @@ class GroupSolver(ABC):
 
     def why(self, block: Block, at: int) -> str:
         """Say why the group cannot be assembled at a pose's flat index."""
-        return told(self.reasons(block), at)
+        return reason_text(self.reasons(block), at)
 
     @property
     def is_numbered(self) -> bool:

@@ -1,9 +1,4 @@
-"""Dyads: groups of two bodies, solved in closed form; each kind is one file of this folder.
-
-A kind assembles two bodies by one textbook formula in series arithmetic. It sees a body of the group as its
-pose, unknown, and the sides of pairs in the body's own frame, known; and of the outside only the sides of
-the outer pairs in the world.
-"""
+"""Dyads: groups of two bodies, solved in closed form; each kind is one file of this folder."""
 
 from __future__ import annotations
 
@@ -17,18 +12,15 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.block import Block, Root, clipped_root
+from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.dyad_loci import Loci, place_of
 from compoundkin.kinematics.groups.contract import GroupSolver
-from compoundkin.kinematics.groups.equilibrium import load_on
-from compoundkin.kinematics.groups.lower_dyads import lower_dyad
-from compoundkin.kinematics.groups.mounted_body import in_world, side_of
-from compoundkin.kinematics.groups.reasons import Reason, told
-from compoundkin.kinematics.groups.transmission import contact_transmission
-from compoundkin.kinematics.limits import Root, clipped_root
-from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.parts import Group
+from compoundkin.kinematics.groups.force_transmission import contact_transmission, load_on
+from compoundkin.kinematics.groups.pair_sides import Reason, in_world, reason_text, side_of
+from compoundkin.model.pairs.contract import Ends, lower_equivalent
+from compoundkin.structure.assur_groups import named_group
+from compoundkin.structure.mobility_count import Body, Group
 
 # Outer pins nearer to each other than this part of a link coincide but for rounding, which must not choose
 # the direction of that link.
@@ -96,7 +88,7 @@ class DyadSolver(GroupSolver):
         cls, first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """Say why it cannot be assembled at the flat pose index `at`."""
-        return told(cls.reasons_of(first, inner, second, names), at)
+        return reason_text(cls.reasons_of(first, inner, second, names), at)
 
     @staticmethod
     @abstractmethod
@@ -215,3 +207,20 @@ class DyadSolver(GroupSolver):
     def reasons(self, block: Block) -> tuple[Reason, ...]:
         """Return why it may not be assembled."""
         return self.reasons_of(*self.arguments(block), self.letters)
+
+
+def lower_dyad(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapping[str, Ends]]:
+    """Return the dyad of a body and a link, and the ends of pairs.
+
+    The link stands, with two lower pairs, for the body's higher pair. It is the group itself where that is no single
+    body, or nothing stands for its pair.
+    """
+    if len(group.bodies) != 1 or len(group.outer) != 2:
+        return group, {}
+    lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
+    found = lower_equivalent(higher, ends[higher.name])
+    if found is None:
+        return group, {}
+    own = next(j for j, name in enumerate(higher.members) if name in group.links)
+    inner, outer = found.pairs[own], found.pairs[1 - own]
+    return named_group([*group.bodies, Body((found.link,))], [inner], [lower, outer]), found.ends

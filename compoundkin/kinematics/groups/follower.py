@@ -15,16 +15,15 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.force_transmission import contact_transmission
 from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
-from compoundkin.kinematics.groups.mounted_body import MountedBody
-from compoundkin.kinematics.groups.reasons import Reason, alone
-from compoundkin.kinematics.groups.transmission import contact_transmission
+from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, alone
 from compoundkin.model.pairs.contract import Drivable, Ends, Poses, as_drivable, lower_equivalent
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 # The members' poses where the body's coordinate is the one given.
 Placing: TypeAlias = Callable[[Series], Poses]

@@ -11,14 +11,13 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.linear import Inverse
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
-from compoundkin.kinematics.groups.mounted_body import MountedBody
-from compoundkin.kinematics.groups.reasons import Reason, alone
+from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, alone
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Drivable, Ends, as_drivable, as_turn_counting, constraint_scales
 from compoundkin.model.pairs.geared import as_geared
-from compoundkin.structure.parts import Body, Group
+from compoundkin.structure.mobility_count import Body, Group
 
 # A higher pair whose closure a coordinate changes by less than this (both in parts of the size, or radians) does not
 # determine it: rounding of a right angle between a rack and its pinion's guide, or of a ratio with which a train locks.

@@ -14,17 +14,14 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration_arrays import Configurations, state_distance
-from compoundkin.kinematics.groups.attached_places import middle_of, surroundings
-from compoundkin.kinematics.groups.bars import Member
+from compoundkin.kinematics.configuration import Configurations, state_distance
 from compoundkin.kinematics.groups.contract import GroupSolver
-from compoundkin.kinematics.groups.group_equations import GroupEquations
-from compoundkin.kinematics.groups.newton_steps import NewtonSteps
-from compoundkin.kinematics.groups.reasons import Reason, alone
-from compoundkin.kinematics.groups.transmission import PassedForce, forces_of, worst_transmission
+from compoundkin.kinematics.groups.force_transmission import PassedForce, forces_of, worst_transmission
+from compoundkin.kinematics.groups.group_equations import GroupEquations, Member, NewtonSteps, middle_of, surroundings
+from compoundkin.kinematics.groups.pair_sides import Reason, alone
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.profile_contact import as_profile_contact
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
 STARTS = 60

@@ -13,11 +13,10 @@ from compoundkin.base.arrays import Number, cross, dot, reciprocal
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series, as_series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.kinematics.block import Root, clipped_root
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
-from compoundkin.kinematics.groups.reasons import Reason, alone
-from compoundkin.kinematics.limits import Root, clipped_root
+from compoundkin.kinematics.groups.pair_sides import Reason, alone, heading, placed_at, spot
 
 # Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
 # point would lie beyond a billion times the mechanism's size, and carry no correct digit.

@@ -13,12 +13,11 @@ from compoundkin.base.arrays import Number, cross, dot, reciprocal
 from compoundkin.base.poses import End
 from compoundkin.base.series import as_series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.kinematics.block import Root, clipped_root
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
+from compoundkin.kinematics.groups.pair_sides import Reason, alone, heading, placed_at, spot
 from compoundkin.kinematics.groups.prp import separated
-from compoundkin.kinematics.groups.reasons import Reason, alone
-from compoundkin.kinematics.limits import Root, clipped_root
 
 
 class RPP(DyadSolver):

@@ -14,11 +14,10 @@ from compoundkin.base.arrays import Number, dot, reciprocal
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series, as_series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.kinematics.block import Root, clipped_root
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
-from compoundkin.kinematics.groups.reasons import Reason, alone
-from compoundkin.kinematics.limits import Root, clipped_root
+from compoundkin.kinematics.groups.pair_sides import Reason, alone, heading, placed_at, spot
 
 
 class RRP(DyadSolver):

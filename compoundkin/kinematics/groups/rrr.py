@@ -13,11 +13,10 @@ from compoundkin.base.arrays import Number, cross, reciprocal
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series, as_series, planar_series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.kinematics.block import Root, clipped_root
 from compoundkin.kinematics.dyad_loci import Loci, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import COINCIDENT, AssembledDyad, Closed, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.dyad_sides import placed_at, spot
-from compoundkin.kinematics.groups.reasons import Reason
-from compoundkin.kinematics.limits import Root, clipped_root
+from compoundkin.kinematics.groups.pair_sides import Reason, placed_at, spot
 
 
 class RRR(DyadSolver):

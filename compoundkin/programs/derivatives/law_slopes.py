@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.driver_values import fit
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.laws.law_numbers import law_sensitivities
 from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers

@@ -22,7 +22,7 @@ from compoundkin.base.errors import (
     suggestion,
     warn,
 )
-from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.driver_values import fit
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, check_threads, numbers_of_designs
 from compoundkin.programs.derivatives.differentiation import reverse
 from compoundkin.programs.derivatives.law_slopes import slope_inputs, summed_slopes

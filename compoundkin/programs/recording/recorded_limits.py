@@ -16,7 +16,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import Series, as_series
-from compoundkin.kinematics.lost_digits import FAST
+from compoundkin.kinematics.solution import FAST
 from compoundkin.programs.graph.operation_graph import OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, LEAST
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism

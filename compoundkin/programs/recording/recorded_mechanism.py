@@ -14,8 +14,7 @@ from compoundkin.base.copies import unchecked
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import Block, rates
-from compoundkin.kinematics.limits import noted_root
+from compoundkin.kinematics.block import Block, rates, recorded_root
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.fields import changed_fields
 from compoundkin.model.geometry import Geometry
@@ -74,7 +73,7 @@ def record_mechanism(recording: Recording) -> RecordedMechanism:
     drives = {drive.name: _recorded_driver(graph, drive.name, recording) for drive in order.structure.mechanism.drives}
     notes: dict[int, list[Series]] = {solver.index: [] for solver in order.solvers if solver.modes_may_meet}
     block = RecordedBlock.of(bound.start(bound.ends, drives, recording.order, (1, 1)))
-    block.roots = {k: noted_root(found) for k, found in notes.items()}
+    block.roots = {k: recorded_root(found) for k, found in notes.items()}
     run(bound, block, SeededChoice(graph, recording.signs))
     return RecordedMechanism(recording, graph, geometry, drives, bound, block, notes)
 

@@ -14,11 +14,9 @@ from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.inputs import Inputs, PoseGrid
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import read_of
-from compoundkin.kinematics.quantity_owners import check_part, owner_and_part, owner_of
-from compoundkin.kinematics.results import LinkMotion, Named, PairMotion
+from compoundkin.kinematics.driver_values import Inputs, PoseGrid
+from compoundkin.kinematics.motion import LinkMotion, Motion, Named, PairMotion
+from compoundkin.kinematics.quantities import check_part, owner_and_part, owner_of, read_of
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.attributes import (
     CORIOLIS,

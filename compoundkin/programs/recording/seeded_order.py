@@ -26,7 +26,7 @@ from compoundkin.model.profiles import Profile
 from compoundkin.programs.graph.operation_graph import SEED, SIGN, TURNS, InputNumber, OperationGraph, group_seed
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 
 def seeded_order(

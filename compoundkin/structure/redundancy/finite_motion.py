@@ -13,8 +13,7 @@ from math import degrees
 
 import numpy as np
 
-from compoundkin.structure.redundancy.assembled_pose import corrected
-from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, ConstraintEquations
+from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, ConstraintEquations, corrected
 
 # A step (parts of the size, or radians), and what part of it has to persist when it is corrected: what curves away
 # differs from its tangent by the square of the step.

@@ -16,9 +16,8 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED, ConstraintEquations
-from compoundkin.structure.redundancy.diagnosis import WIDEST, Diagnosis, diagnose
+from compoundkin.structure.redundancy.diagnosis import WIDEST, Diagnosis, chosen, diagnose, stressed_pairs
 from compoundkin.structure.redundancy.finite_motion import PassiveFreedom, passive_freedoms, rank_of
-from compoundkin.structure.redundancy.self_stress import chosen, stressed_pairs
 
 # Singular values at random geometry are zero below this part of the largest. They get small in long mechanisms.
 GENERIC = 1e-12

@@ -16,8 +16,8 @@ from compoundkin.analysis.checks import Check, verify
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
 from compoundkin.base.errors import CompoundkinError, suppress_pose_warnings
-from compoundkin.kinematics.chosen_modes import read_name
 from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.modes import read_name
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.elements import mode

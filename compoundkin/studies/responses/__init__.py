@@ -7,7 +7,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.extremes.measures import measure_of
+from compoundkin.kinematics.extremes.stretches import measure_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.kinematics.solution import solve

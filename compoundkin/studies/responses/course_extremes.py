@@ -9,9 +9,8 @@ from numpy.polynomial import chebyshev
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.extremes.extreme_search import MOST_ADDED, POLE
-from compoundkin.kinematics.extremes.measures import ROUNDING
-from compoundkin.kinematics.extremes.windows import AT_FINE, FINE, FIT, INNER, SAMPLES, TRUSTED, vertices
+from compoundkin.kinematics.extremes.extremes import MOST_ADDED, POLE
+from compoundkin.kinematics.extremes.stretches import AT_FINE, FINE, FIT, INNER, ROUNDING, SAMPLES, TRUSTED, vertices
 from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.designs import Designs
 

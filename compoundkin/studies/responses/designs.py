@@ -13,8 +13,8 @@ import numpy as np
 from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import CompoundkinError, Problem
-from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.driver_values import Inputs
+from compoundkin.kinematics.extremes.motion_between import inputs_between, interval, times_between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME

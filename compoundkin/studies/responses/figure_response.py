@@ -10,7 +10,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.kinematics.extremes.dead_points import moving_driver
-from compoundkin.kinematics.extremes.places import SAME_PLACE
+from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE, TIME_RATIO
 from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.course_extremes import CourseExtreme, CourseSearch

@@ -14,8 +14,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, display_function, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.table import Table
+from compoundkin.kinematics.quantities import Quantity, Table
 from compoundkin.model.attributes import DEGREES, RADIANS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.samples.design_sample import checked_count, checked_seed

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, suggestion
-from compoundkin.kinematics.assembly.group_geometry import GroupGraph
-from compoundkin.kinematics.assembly.mode_count import exact_count
+from compoundkin.kinematics.assembly.elimination import exact_count
+from compoundkin.kinematics.assembly.loop_closure import GroupGraph
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
 from compoundkin.synthesis.chains.chain_names import (
     MOST_CHAINS,

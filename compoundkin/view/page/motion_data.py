@@ -15,7 +15,7 @@ from compoundkin.dynamics.force_analysis import loaded_forces
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
-from compoundkin.kinematics.extremes.inputs_between import inputs_between
+from compoundkin.kinematics.extremes.motion_between import inputs_between
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import (

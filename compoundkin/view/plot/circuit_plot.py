@@ -25,7 +25,7 @@ from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.circuit_search import circuits as all_circuits
 from compoundkin.configurations.segments import CHANGE, NONE
 from compoundkin.kinematics.configuration import dimensions_at, label
-from compoundkin.kinematics.inputs import Inputs, PoseGrid
+from compoundkin.kinematics.driver_values import Inputs, PoseGrid
 from compoundkin.kinematics.quantities import quantity, whole_and_part
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.attributes import (

@@ -15,8 +15,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.gaps import Gap, gaps
-from compoundkin.kinematics.quantities import Quantity, whole_and_part
-from compoundkin.kinematics.quantity_owners import known_owners
+from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_part
 from compoundkin.model.attributes import (
     ADVANTAGE,
     LENGTH,

@@ -18,8 +18,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.forces import Forces, motion_of
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
-from compoundkin.kinematics.extremes.places import SAME_PLACE
-from compoundkin.kinematics.extremes.stretches import Stretches, stretches_of
+from compoundkin.kinematics.extremes.stretches import SAME_PLACE, Stretches, stretches_of
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import EFFORT, POWER, TIME, derivative_order, motion_figure
 from compoundkin.view.plot import canvas, plot_style

@@ -11,7 +11,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit
 from compoundkin.configurations.circuit_search import Circuits, circuits
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.solution import first_configuration
 from compoundkin.structure import Group, Structure
 from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock

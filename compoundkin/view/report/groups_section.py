@@ -12,9 +12,9 @@ import numpy as np
 
 from compoundkin.base.arrays import degrees as degrees_of_arrays
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.chosen_modes import CHOSEN_BY
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.groups import DYADS
+from compoundkin.kinematics.modes import CHOSEN_BY
 from compoundkin.model.attributes import (
     ACCELERATION,
     DEGREES,

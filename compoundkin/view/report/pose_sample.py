@@ -10,9 +10,8 @@ import numpy as np
 
 from compoundkin.base.arguments import check_design
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.lost_digits import uncertain
-from compoundkin.kinematics.quantities import Quantity, quantity, read_of
-from compoundkin.kinematics.quantity_owners import owner_of
+from compoundkin.kinematics.quantities import Quantity, owner_of, quantity, read_of
+from compoundkin.kinematics.solution import uncertain
 from compoundkin.model.attributes import OF_FORCES, TIME, VALUE, unit_of
 from compoundkin.view.report.report_data import Column
 from compoundkin.view.report.wording import listed, number_text

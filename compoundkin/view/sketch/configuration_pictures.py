@@ -20,14 +20,7 @@ from compoundkin.structure import Structure
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
 from compoundkin.view.sketch.labels import label_shapes, labels_of, placed
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import (
-    NARROW,
-    PAPER_WIDTH,
-    Picture,
-    PicturePart,
-    in_rows,
-    with_notes,
-)
+from compoundkin.view.sketch.picture import NARROW, PAPER_WIDTH, Picture, PicturePart, in_rows, with_notes
 from compoundkin.view.sketch.picture_options import (
     Drawable,
     PictureOptions,

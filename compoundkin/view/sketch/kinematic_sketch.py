@@ -17,7 +17,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.driver_values import fit
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Strap, Track, Wheel
 from compoundkin.view.sketch.labels import (

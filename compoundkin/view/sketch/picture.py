@@ -14,13 +14,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 from compoundkin.view.sketch.scene import MARGIN, Window
-from compoundkin.view.sketch.shapes import (
-    Shape,
-    ShapeGroup,
-    Text,
-    moved_shapes,
-    sheet,
-)
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, moved_shapes, sheet
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
 from compoundkin.view.sketch.svg import NATURAL, converted, inline, svg
 from compoundkin.view.sketch.tikz import tikz

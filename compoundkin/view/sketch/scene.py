@@ -12,7 +12,7 @@ from compoundkin.base.arrays import Number, entry, first_entry
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.driver_values import fit
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outline_shapes import OutlineShape, outline_shapes

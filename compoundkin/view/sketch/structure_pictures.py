@@ -19,15 +19,7 @@ from compoundkin.structure import Group, Loop, Structure, roman
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
 from compoundkin.view.sketch.labels import WIDE, Label, label_around, label_shapes, labels_of, placed, text_half
 from compoundkin.view.sketch.painter import Painter, edges, skeleton
-from compoundkin.view.sketch.picture import (
-    NARROW,
-    PAPER_WIDTH,
-    Picture,
-    PicturePart,
-    headed_part,
-    in_rows,
-    with_notes,
-)
+from compoundkin.view.sketch.picture import NARROW, PAPER_WIDTH, Picture, PicturePart, headed_part, in_rows, with_notes
 from compoundkin.view.sketch.picture_options import LABELS, Drawable, PictureOptions, scene_of, structure_of
 from compoundkin.view.sketch.scene import MARGIN, Scene, Window, fitted_window, link_groups, link_numbers, panel_around
 from compoundkin.view.sketch.shapes import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from compoundkin.kinematics.assembly.mode_count import Rank, intersections
+from compoundkin.kinematics.assembly.elimination import Rank, intersections
 
 
 def laman_number(edges: Iterable[tuple[int, int]]) -> int:

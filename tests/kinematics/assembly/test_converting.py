@@ -8,8 +8,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.base.series import Series
 from compoundkin.files import load
 from compoundkin.kinematics.assembly import all_configurations, from_group
-from compoundkin.kinematics.groups.bars import Member
-from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
 from compoundkin.kinematics.solving_order import SolvingOrder
 
 

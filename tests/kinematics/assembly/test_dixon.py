@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compoundkin.kinematics.assembly.dixon import pencil, sets
+from compoundkin.kinematics.assembly.elimination import pencil, sets
 from compoundkin.kinematics.assembly.loop_closure import random_equations
 from tests.kinematics.assembly.cases import dyad
 from tests.kinematics.assembly.trusses import baranov_trusses, random_truss

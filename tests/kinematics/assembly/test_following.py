@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from compoundkin.kinematics.assembly import homotopy, neighbours
+from compoundkin.kinematics.assembly import homotopy, rotation_equations
 from compoundkin.kinematics.assembly.homotopy import MovingSystem, follow_paths
 from compoundkin.kinematics.assembly.loop_closure import random_equations, rotation_equations_of
-from compoundkin.kinematics.assembly.neighbours import distinct
-from compoundkin.kinematics.assembly.rotation_equations import jacobian, polish, residual
+from compoundkin.kinematics.assembly.rotation_equations import distinct, jacobian, polish, residual
 from tests.kinematics.assembly.cases import triad, with_slides
 from tests.kinematics.assembly.trusses import baranov_trusses
 
@@ -61,7 +60,7 @@ def test_neighbours_ask_anew_only_where_they_must():
         asked.append(len(some.constant))
         return distinct(polish(some, homotopy.roots(some, geometry.graph())))
 
-    found = neighbours.solutions(loops, 6, solved)
+    found = rotation_equations.solutions(loops, 6, solved)
     assert np.isfinite(found).all()
     assert sum(asked) < 25
     assert np.abs(residual(loops, found)).max() < 1e-10

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compoundkin.kinematics.assembly import all_configurations, exact_count
-from compoundkin.kinematics.assembly.group_geometry import GroupGraph
+from compoundkin.kinematics.assembly.loop_closure import GroupGraph
 from tests.kinematics.assembly.cases import as_drawn, seven_bar, three_legs, triad
 from tests.kinematics.assembly.laman import laman_number
 from tests.kinematics.assembly.trusses import from_graph6, random_truss

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics.assembly import Connection, GroupGeometry, all_configurations, elimination, homotopy
 from compoundkin.kinematics.assembly.loop_closure import rotation_equations_of
-from compoundkin.kinematics.assembly.neighbours import distinct
-from compoundkin.kinematics.assembly.rotation_equations import polish
+from compoundkin.kinematics.assembly.rotation_equations import distinct, polish
 from tests.kinematics.assembly.cases import dyad, joined, triad, with_slides
 from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 

@@ -13,12 +13,10 @@ from hypothesis import strategies as st
 
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, as_series
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, Root, clipped_root, nearest_root
 from compoundkin.kinematics.groups import DYADS, DyadSolver
-from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.dyad import OuterPair
-from compoundkin.kinematics.groups.group_equations import GroupEquations
-from compoundkin.kinematics.limits import Root, clipped_root, nearest_root
+from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
 from compoundkin.model.pairs import KINDS, Pair
 from tests.support import largest, random_planar, random_pose, random_unit, sample
 

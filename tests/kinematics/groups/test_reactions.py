@@ -16,10 +16,10 @@ from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.files import load
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, DyadSolver
-from compoundkin.kinematics.groups.equilibrium import reactions_of
+from compoundkin.kinematics.groups.force_transmission import reactions_of
 from compoundkin.model.pairs import Pair, Prismatic, Revolute
 from compoundkin.structure.assur_groups import named_group
-from compoundkin.structure.parts import Body
+from compoundkin.structure.mobility_count import Body
 from tests.kinematics.groups.test_contract import SEEDS, Case, closable, conditioned
 from tests.kinematics.groups.test_solvers import SHOWN
 from tests.support import random_planar, random_pose

@@ -13,13 +13,13 @@ from compoundkin.base.arrays import Number
 from compoundkin.files import load
 from compoundkin.kinematics import groups
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.groups import SOLVERS, GroupSolver
 from compoundkin.kinematics.groups.general import bodies_at
-from compoundkin.kinematics.groups.reasons import Reason, alone
+from compoundkin.kinematics.groups.pair_sides import Reason, alone
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.parts import Group
+from compoundkin.structure.mobility_count import Group
 
 # Mechanisms in which each way is taken for some group.
 SHOWN = {

@@ -13,7 +13,7 @@ from compoundkin.files.exchange.short_chords import short_chords
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes.motion_between import between
-from compoundkin.kinematics.quiet_solution import quietly_solved
+from compoundkin.kinematics.solution import quietly_solved
 from compoundkin.model.geometry import FRAME
 
 # A path whose ends are nearer to each other than this part of the size is closed, one that is shorter is none.

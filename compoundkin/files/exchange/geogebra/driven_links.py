@@ -8,7 +8,7 @@ from compoundkin.files.exchange.geogebra.dragged_construction import Constructio
 from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd, PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import InsideBody
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, along, in_degrees, named
-from compoundkin.structure.parts import Body, DrivenPair
+from compoundkin.structure.mobility_count import Body, DrivenPair
 
 # From one side of a pair to the other by a value: offset and angle of the second link in the axes of the first.
 Step = Callable[[Construction, NamedEnd, NamedEnd, str, int, str], InsideBody]

@@ -9,7 +9,7 @@ from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd, PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import Held, PlacedBodies
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, at, named
 from compoundkin.kinematics.groups.dyad import DyadSolver
-from compoundkin.kinematics.groups.mounted_body import Side
+from compoundkin.kinematics.groups.pair_sides import Side
 
 
 class KnownSide(NamedTuple):

@@ -10,7 +10,7 @@ from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd, PairSides
 from compoundkin.files.exchange.geogebra.placed_bodies import Held, PlacedBodies
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, along, at, in_degrees, named
 from compoundkin.kinematics.groups.contract import GroupSolver
-from compoundkin.kinematics.groups.mounted_body import Side
+from compoundkin.kinematics.groups.pair_sides import Side
 from compoundkin.model.pairs import Pair
 
 # The angle of a link with full turns counted, as an expression.

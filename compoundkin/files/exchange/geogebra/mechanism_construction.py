@@ -22,7 +22,7 @@ from compoundkin.files.exchange.geogebra.slider_values import slider_values
 from compoundkin.files.exchange.shown_mechanism import ShownMechanism
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.groups import GroupSolver, as_dyad
-from compoundkin.kinematics.quiet_solution import quietly_solved
+from compoundkin.kinematics.solution import quietly_solved
 
 _TABLE = "write a table of its positions instead: `compoundkin solve NAME -o positions.csv`"
 

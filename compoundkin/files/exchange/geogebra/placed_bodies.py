@@ -9,7 +9,7 @@ from compoundkin.files.exchange.geogebra.dragged_construction import Constructio
 from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd
 from compoundkin.files.exchange.geogebra.point_dimensions import LinkPoints
 from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, at
-from compoundkin.structure.parts import Body
+from compoundkin.structure.mobility_count import Body
 
 
 class InsideBody(NamedTuple):

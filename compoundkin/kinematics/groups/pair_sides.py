@@ -1,16 +1,21 @@
-"""Bodies of a group on pairs to links that are known, and the sides of such pairs."""
+"""Sides of the pairs by which a group is mounted on known links: places, directions, and reasons in words."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
+import numpy as np
+
+from compoundkin.base.arrays import Number
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Series
+from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Drivable, Poses
 from compoundkin.model.pairs.profile_contact import Freedom
-from compoundkin.structure.parts import Body
+from compoundkin.structure.mobility_count import Body
 
 
 @dataclass(frozen=True)
@@ -81,3 +86,63 @@ class MountedBody:
             return Freedom(None, along, 1.0) if self.side.own else Freedom(None, -along, -1.0)
         sense = (pose.u.c[0].conjugate() * pose.u.c[1]).imag
         return Freedom(pose.z.c[0] + 1j * along / sense, None, sense)
+
+
+def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
+    """Return the pose with orientation `u` that has the body's point `local` at `point`."""
+    return Pose(Pose(point, u).at(-local), u)
+
+
+def spot(end: End) -> Number:
+    """Return where a side of a pair is."""
+    return as_series(end.point).c[0]
+
+
+def heading(end: End) -> Number:
+    """Return the direction of a side of a slide."""
+    return end.along.c[0]
+
+
+def element(value: Number, at: int) -> float:
+    """Return one element of an array by its flat index. A number holds for all indices."""
+    flat = np.asarray(value).ravel()
+    return float(flat[at if flat.size > 1 else 0])
+
+
+def text(value: Number, at: int) -> str:
+    """Return one element of a number or array, for a sentence."""
+    return f"{element(value, at):.6g}"
+
+
+Words: TypeAlias = "tuple[str | Number, ...]"
+
+
+class Reason(NamedTuple):
+    """One reason. It `holds` where it is true, everywhere if it is True.
+
+    Of several the first that holds is told. Numbers among the words are arrays over the poses, or recorded.
+    """
+
+    holds: Number | bool
+    words: Words
+
+
+def reason_text(reasons: Iterable[Reason], at: int) -> str:
+    """Return the first reason that holds at a pose's flat index, in words. It is "" where none does.
+
+    >>> reason_text([Reason(False, ("never",)), Reason(True, ("|AB| = ", 2.0, " < ", 3.0))], 0)
+    '|AB| = 2 < 3'
+    """
+    for reason in reasons:
+        if reason.holds is True or element(reason.holds, at):
+            return "".join(one if isinstance(one, str) else text(one, at) for one in reason.words)
+    return ""
+
+
+def alone(*words: str | Number) -> tuple[Reason]:
+    """Return what is the only reason.
+
+    >>> reason_text(alone("the guides are parallel"), 0)
+    'the guides are parallel'
+    """
+    return (Reason(True, words),)
