@@ -41,7 +41,7 @@ Examples:
 def command(source: str, form: str, path: str | None, force: bool) -> int:
     """Read a mechanism from another program's file, or from a link that holds it. Nothing is fetched.
 
-    What does not come across is said on stderr. - reads what is piped in.
+    What is not converted is noted on stderr. - reads standard input.
     """
     from compoundkin.files.mechanism_files import encoded
 

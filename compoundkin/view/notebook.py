@@ -35,7 +35,7 @@ from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Para
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.structure_sections import analysis_blocks, links_section
 from compoundkin.view.report.whole_report import Studied, report
-from compoundkin.view.report.wording import counted, listed
+from compoundkin.view.report.wording import counted, listed, sentence
 from compoundkin.view.sketch import draw
 
 # Pictures of more links take more than a second and are drawn on request only.
@@ -123,14 +123,14 @@ def _(what: Mechanism) -> Iterator[str]:
 
 @_parts.register
 def _(what: Structure) -> Iterator[str]:
-    said = f"{what.mobility.formula}; {what.mobility.verdict}"
-    caption = f"<strong>{safe(what.mechanism.title)}</strong>: {safe(said)}"
+    mobility = f"{what.mobility.formula}; {what.mobility.verdict}"
+    caption = f"<strong>{safe(what.mechanism.title)}</strong>: {safe(mobility)}"
     picture = what._repr_svg_()
     yield plain_figure(picture, caption) if picture else f"<p>{caption}</p>"
-    yield from (plain_block(Alert(f"{fault.text[:1].upper()}{fault.text[1:]}.", fault.remedy)) for fault in what.faults)
+    yield from (plain_block(Alert(sentence(fault.text), fault.remedy)) for fault in what.faults)
     dropped = what.relaxation.dropped if what.relaxation else ()
-    told = [*(f"Passive: {one}." for one in what.passive), *(f"Left out: {one}." for one in dropped)]
-    yield from (plain_block(Paragraph(text)) for text in told)
+    notes = [*(f"Passive: {one}." for one in what.passive), *(f"Left out: {one}." for one in dropped)]
+    yield from (plain_block(Paragraph(text)) for text in notes)
     yield plain_table(_groups_table(what), "Groups in solving order")
 
 

@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import singledispatch, singledispatchmethod
 
-from compoundkin.model.attributes import with_superscripts
 from compoundkin.view.page.html_tables import HtmlTable, Names, table_html
 from compoundkin.view.page.markup import element, lines, safe, screen_reader_text
 from compoundkin.view.page.mathml import UnknownLatex, mathml
 from compoundkin.view.report.report_data import (
     Alert,
-    Block,
-    Column,
     FormulaBlock,
     Paragraph,
     Section,
     StepBlock,
     TableBlock,
+    not_a_block,
 )
-from compoundkin.view.report.wording import column_texts, counted, typeset
+from compoundkin.view.report.wording import column_texts, counted, title_with_unit, typeset
 from compoundkin.view.sketch.svg import link_names
 
 # A notebook shows so many rows of a table; reports and the objects themselves have all.
@@ -55,7 +52,9 @@ def plain_table(table: TableBlock, caption: str = "") -> str:
     rows = table.selected_rows
     cells = [column_texts(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
     sides = [RIGHT if column.is_number else LEFT for column in table.columns]
-    heads = (element("th", _column_heading(c), scope="col", style=s) for c, s in zip(table.columns, sides, strict=True))
+    heads = (
+        element("th", safe(title_with_unit(c)), scope="col", style=s) for c, s in zip(table.columns, sides, strict=True)
+    )
     found = [element("tr", "".join(_cells(row, sides))) for row in zip(*cells, strict=True)]
     more = len(table.rows) - min(len(rows), MOST_ROWS)
     if more > 0:
@@ -75,47 +74,28 @@ def plain_figure(svg: str, caption: str) -> str:
     return f'<figure style="margin:0 0 .5em">\n{fitted}<figcaption>{caption}</figcaption>\n</figure>'
 
 
-def _column_heading(column: Column) -> str:
-    return safe(f"{column.name} [{with_superscripts(column.unit)}]" if column.unit else column.name)
-
-
 def _cells(row: Iterable[str], sides: Iterable[str]) -> Iterator[str]:
     for k, (text, side) in enumerate(zip(row, sides, strict=True)):
         inside = safe(typeset(text)).replace("\n", "<br>")
         yield element("td", inside, style=side) if k else element("th", inside, scope="row", style=side)
 
 
-@singledispatch
-def plain_block(block: Block) -> str:
-    """Return any block of a report."""
-    raise TypeError(f"{type(block).__name__} is not a part of a report")
-
-
-@plain_block.register
-def _(block: Paragraph) -> str:
-    return element("p", safe(typeset(block.text)))
-
-
-@plain_block.register
-def _(block: FormulaBlock) -> str:
-    return element("pre", safe(typeset(block.text)))
-
-
-@plain_block.register
-def _(block: Alert) -> str:
-    remedy = f" Remedy: {safe(block.remedy)}." if block.remedy else ""
-    return element("p", element("strong", safe(typeset(block.text))) + remedy, role="note")
-
-
-@plain_block.register
-def _(block: StepBlock) -> str:
-    facts = "".join(element("dt", safe(term)) + element("dd", safe(typeset(text))) for term, text in block.facts)
-    return element("h5", safe(block.title)) + element("dl", facts)
-
-
-@plain_block.register
-def _(block: TableBlock) -> str:
-    return plain_table(block)
+def plain_block(block: object) -> str:
+    """Return any block of a report for a notebook."""
+    match block:
+        case Paragraph():
+            return element("p", safe(typeset(block.text)))
+        case FormulaBlock():
+            return element("pre", safe(typeset(block.text)))
+        case Alert():
+            remedy = f" Remedy: {safe(block.remedy)}." if block.remedy else ""
+            return element("p", element("strong", safe(typeset(block.text))) + remedy, role="note")
+        case StepBlock():
+            facts = (element("dt", safe(term)) + element("dd", safe(typeset(text))) for term, text in block.facts)
+            return element("h5", safe(block.title)) + element("dl", "".join(facts))
+        case TableBlock():
+            return plain_table(block)
+    raise not_a_block(block)
 
 
 @dataclass(frozen=True)
@@ -152,14 +132,24 @@ class Blocks:
     def _blocks(self, section: Section) -> Iterator[str]:
         tables = steps = 0
         for k, block in enumerate(section.blocks):
-            if isinstance(block, TableBlock):
-                tables += 1
-                yield self._table(section, block, k, tables)
-            elif isinstance(block, StepBlock):
-                yield self._step(section, block, steps)
-                steps += 1
-            else:
-                yield self._block(block)
+            match block:
+                case TableBlock():
+                    tables += 1
+                    yield self._table(section, block, k, tables)
+                case StepBlock():
+                    yield self._step(section, block, steps)
+                    steps += 1
+                case FormulaBlock():
+                    yield _formula(block)
+                case Paragraph():
+                    # badges at the head of the page repeat the rest
+                    yield element("p", safe(typeset(block.text.removesuffix(block.badged).rstrip())))
+                case Alert():
+                    remedy = f"\n<p><b>Remedy:</b> {safe(block.remedy)}.</p>" if block.remedy else ""
+                    text = f"<strong>{screen_reader_text('Warning:')} {safe(typeset(block.text))}</strong>"
+                    yield element("div", f"<p>{text}</p>{remedy}", class_="alert")
+                case _:
+                    raise not_a_block(block)
 
     def _table(self, section: Section, table: TableBlock, k: int, number: int) -> str:
         """Return the table; its caption is the clause before it that ends with a colon, else the section's title."""
@@ -180,28 +170,6 @@ class Blocks:
         facts = lines(f"<div><dt>{safe(term)}</dt><dd>{safe(typeset(fact))}</dd></div>" for term, fact in step.facts)
         tag = f' data-links="{link_names(links)}"' if links else ""
         return f'<div class="step"{tag}>\n<h3>{title}</h3>\n<dl>\n{facts}\n</dl>\n</div>'
-
-    @singledispatchmethod
-    def _block(self, block: Block) -> str:
-        raise TypeError(f"{type(block).__name__} is not a part of a report")
-
-    @_block.register
-    def _(self, block: Paragraph) -> str:
-        # badges at the head of the page repeat the rest
-        return element("p", safe(typeset(block.text.removesuffix(block.badged).rstrip())))
-
-    @_block.register
-    def _(self, block: FormulaBlock) -> str:
-        return _formula(block)
-
-    @_block.register
-    def _(self, block: Alert) -> str:
-        remedy = f"\n<p><b>Remedy:</b> {safe(block.remedy)}.</p>" if block.remedy else ""
-        return element(
-            "div",
-            f"<p><strong>{screen_reader_text('Warning:')} {safe(typeset(block.text))}</strong></p>{remedy}",
-            class_="alert",
-        )
 
 
 def _formula(block: FormulaBlock) -> str:

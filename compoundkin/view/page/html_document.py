@@ -59,9 +59,9 @@ def asset(name: str) -> str:
     text = (ASSETS / name).read_text(encoding="utf-8").strip()
     if name.startswith("vendor/"):
         return text
-    kept = (END_REMARK.sub("", line.strip()) for line in text.splitlines())
-    told = (line for line in kept if line and not REMARK.fullmatch(line))
-    return "\n".join(map(_minified_script if name.endswith("js") else _minified_style, told))
+    lines_without_remarks = (END_REMARK.sub("", line.strip()) for line in text.splitlines())
+    code = (line for line in lines_without_remarks if line and not REMARK.fullmatch(line))
+    return "\n".join(map(_minified_script if name.endswith("js") else _minified_style, code))
 
 
 def _minified_script(line: str) -> str:

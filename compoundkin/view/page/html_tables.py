@@ -125,9 +125,9 @@ def table_html(shown: HtmlTable) -> str:
 def _tools(shown: HtmlTable) -> str:
     """Return the buttons of a table, which scripts reveal."""
     more = f"Show all {len(shown.table.rows):,} rows"
-    told = {"aria_expanded": "false", "data_more": more, "data_fewer": "Show fewer rows"}
-    folded = [] if shown.table.shown is None else [_button("more", more, shown, **told)]
-    return element("div", lines([*folded, _button("copy", "Copy", shown)]), class_="tools")
+    labels = {"aria_expanded": "false", "data_more": more, "data_fewer": "Show fewer rows"}
+    unfold = [] if shown.table.shown is None else [_button("more", more, shown, **labels)]
+    return element("div", lines([*unfold, _button("copy", "Copy", shown)]), class_="tools")
 
 
 def _button(kind: str, text: str, shown: HtmlTable, **more: str) -> str:

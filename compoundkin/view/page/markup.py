@@ -90,8 +90,8 @@ def element(tag: str, inside: str = "", **attributes: str | None) -> str:
 
 
 def _written(attributes: dict[str, str | None]) -> str:
-    told = ((name.rstrip("_").replace("_", "-"), value) for name, value in attributes.items() if value is not None)
-    return "".join(f' {name}="{safe(value)}"' for name, value in told)
+    pairs = ((name.rstrip("_").replace("_", "-"), value) for name, value in attributes.items() if value is not None)
+    return "".join(f' {name}="{safe(value)}"' for name, value in pairs)
 
 
 def lines(parts: Iterable[str]) -> str:

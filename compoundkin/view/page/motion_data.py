@@ -158,8 +158,8 @@ class MotionData:
 
     def _quantity(self, found: Quantity, packed: Any) -> dict[str, Any]:
         floor, values = self.sample.floor(found), np.asarray(found.values)[self.chosen]
-        kept = {name: packed(part) for name, part in component_values(values, floor).items()}
-        return {"name": found.name, "unit": found.unit, "order": found.order, "floor": floor, "parts": kept}
+        parts = {name: packed(part) for name, part in component_values(values, floor).items()}
+        return {"name": found.name, "unit": found.unit, "order": found.order, "floor": floor, "parts": parts}
 
     @cached_property
     def _numbers(self) -> Mapping[str, int]:

@@ -33,12 +33,11 @@ from compoundkin.view.page.viewer import PANEL_KEY, PANEL_TITLE, Viewer, panel_s
 from compoundkin.view.plot import Plot, bands, contributions, improvement, scatter_matrix, starts
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.report.report_data import Outcome, Section, TableBlock
+from compoundkin.view.report.report_data import Outcome, Section, Subject, TableBlock
 from compoundkin.view.sketch import Picture, draw
 
 # Of more links than this no picture is legible, and drawing takes long.
 MOST_LINKS = 100
-Subject: TypeAlias = Structure | Motion
 # The view of the structure at the head of a section, and its caption.
 VIEWS = {
     "chain": ("graph", "The kinematic graph: links are its nodes, pairs the lines between them."),
@@ -83,8 +82,8 @@ def sketch_figure(subject: Subject) -> str:
 
 def picture_figure(picture: Picture, caption: str) -> str:
     """Return a picture with a caption, in a box that scrolls where it would become too small."""
-    told = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
-    box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **told)
+    attributes = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
+    box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **attributes)
     return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
 
 
@@ -258,8 +257,8 @@ def _study_plots(found: object) -> Iterator[SectionPlot]:
 @_study_plots.register
 def _(found: StudyResult) -> Iterator[SectionPlot]:
     if any(one.is_figure for one in found.columns):
-        told = "Dimensions and figures against each other; above the diagonal their rank correlations."
-        yield "figures", scatter_matrix(found, title=""), told
+        caption = "Dimensions and figures against each other; above the diagonal their rank correlations."
+        yield "figures", scatter_matrix(found, title=""), caption
     if any(one.width for one in found.columns):
         yield "figures", bands(found, title=""), "Quantities over the motion, between percentiles of the designs."
 
@@ -271,8 +270,8 @@ def _(found: ToleranceAnalysis) -> Iterator[SectionPlot]:
         names = [one.name for one in outputs if one.is_course]
         yield "bands", bands(found, *names, title=""), "Errors over the motion."
     for one in outputs:
-        said = f"What contributes to the error of {one.name}."
-        yield "contributions", contributions(found, one.name, title=""), said
+        caption = f"Contributions to the error of {one.name}."
+        yield "contributions", contributions(found, one.name, title=""), caption
 
 
 @_study_plots.register

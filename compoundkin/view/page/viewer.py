@@ -177,7 +177,7 @@ def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     """Return the switches of what the motion has."""
     has = {kind: kind in data["vectors"] for kind in (VELOCITY, ACCELERATION)}
     has |= {"forces": "forces" in data, "centres": bool(data["centres"]), "names": True}
-    boxes = [_checkbox(key, word, told, key == "names") for key, word, told in SWITCHES if has[key]]
+    boxes = [_checkbox(key, word, title, key == "names") for key, word, title in SWITCHES if has[key]]
     carriers = moving.motion.mechanism.carriers
     letters = [letter for letter in moving.sketch.scene.letters if FRAME not in carriers[letter]]
     paths = [_checkbox(f"path {letter}", letter, f"path of {letter}", False) for letter in letters]
@@ -188,9 +188,9 @@ def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     return element("fieldset", lines([legend, element("div", lines(boxes), class_="boxes"), more]), class_="switches")
 
 
-def _checkbox(key: str, word: str, told: str, on: bool) -> str:
+def _checkbox(key: str, word: str, title: str, on: bool) -> str:
     checked = " checked" if on else ""
-    return f'<label title="{safe(told)}"><input type="checkbox" data-show="{safe(key)}"{checked}> {safe(word)}</label>'
+    return f'<label title="{safe(title)}"><input type="checkbox" data-show="{safe(key)}"{checked}> {safe(word)}</label>'
 
 
 def _notes(moving: MotionData, data: dict[str, Any]) -> Iterator[str]:
@@ -274,7 +274,8 @@ def panel_section() -> str:
     '<section id="dimensions" aria-labelledby="dimensions-title">'
     """
     buttons = [
-        element("button", safe(words), type="button", data_share=key, title=told) for key, words, told in SHARE_BUTTONS
+        element("button", safe(words), type="button", data_share=key, title=explanation)
+        for key, words, explanation in SHARE_BUTTONS
     ]
     body = [
         element("h2", PANEL_TITLE, id=f"{PANEL_KEY}-title"),

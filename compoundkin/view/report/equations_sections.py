@@ -115,8 +115,8 @@ def constants_section(found: LoopEquations) -> Section | None:
         blocks.append(Paragraph(f"Loop {own.loop}:"))
         blocks += [FormulaBlock(*both) for both in zip(own.text, own.latex, strict=True)]
         numbers = {**own.lengths, **own.constants}
-        told = ", ".join(f"{name} = {number_text(float(np.ravel(value)[0]))}" for name, value in numbers.items())
-        blocks.append(Paragraph(f"{_SYMBOLS[isinstance(own, FourBarConstants)]}: {told}."))
+        values = ", ".join(f"{name} = {number_text(float(np.ravel(value)[0]))}" for name, value in numbers.items())
+        blocks.append(Paragraph(f"{_SYMBOLS[isinstance(own, FourBarConstants)]}: {values}."))
     return Section("constants", "Freudenstein's equation", tuple(blocks)) if blocks else None
 
 
@@ -267,9 +267,9 @@ def newton_section(found: NewtonIterations, unit: str, size: float, solved: Mapp
         remedy = "choose a pose within reach" if solved is None else "start elsewhere"
         blocks.append(Alert(f"No pose was found: {found.failure}; the last estimate is {last}.", remedy))
     else:
-        told = f"It converges in {counted(len(found.corrections), 'step')}."
+        text = f"It converges in {counted(len(found.corrections), 'step')}."
         compared = "" if solved is None else f" {SAME_POSE if _is_same(found, size, solved) else OTHER_POSE}"
-        blocks.append(Paragraph(told + compared))
+        blocks.append(Paragraph(text + compared))
     return Section("newton", "Newton's iterations", tuple(blocks))
 
 

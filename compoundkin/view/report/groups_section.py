@@ -280,8 +280,8 @@ class LawText:
     def _limits(self, segment: ProgramSegment) -> str:
         """Return the limits of a segment, if any."""
         given = [(getattr(segment, name), order) for order, name in enumerate(LIMITS, 1)]
-        told = [self._rate(value, order) for value, order in given if value is not None]
-        return f" within {listed(told)}" if told else ""
+        limits = [self._rate(value, order) for value, order in given if value is not None]
+        return f" within {listed(limits)}" if limits else ""
 
     def _jumps(self, law: Program) -> Iterator[str]:
         """Yield a sentence on jumps of the velocity, and one on jumps of the acceleration."""

@@ -7,7 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from compoundkin.base.display import ShortRepr
+from compoundkin.kinematics import Motion
+from compoundkin.structure import Structure
 
+# What a report is about, for the pictures of its page.
+Subject: TypeAlias = Structure | Motion
 Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 
 # How the cells of a column are written.
@@ -101,6 +105,11 @@ LONGEST = 2000
 _MORE = "... and {:,} {} more, in the whole report."
 
 Block: TypeAlias = Paragraph | FormulaBlock | TableBlock | StepBlock | Alert
+
+
+def not_a_block(what: object) -> TypeError:
+    """Return the error of a renderer for anything but a block."""
+    return TypeError(f"{type(what).__name__} is not a part of a report")
 
 
 @dataclass(frozen=True, repr=False)

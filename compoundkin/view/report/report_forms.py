@@ -3,37 +3,33 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
-from functools import singledispatch
 from math import isfinite
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from compoundkin.base.display import DisplaysHtml
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
-from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import with_superscripts
-from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import (
     Alert,
     Cell,
-    Column,
     FormulaBlock,
     Outcome,
     Paragraph,
     Section,
     StepBlock,
+    Subject,
     TableBlock,
+    not_a_block,
     summarised,
 )
-from compoundkin.view.report.wording import column_texts, typeset
+from compoundkin.view.report.wording import column_texts, title_with_unit, typeset
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
 _ESCAPED = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_|<>"})
-Subject: TypeAlias = Structure | Motion
 
 
 def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
@@ -46,40 +42,29 @@ def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
     [{'kind': 'paragraph', 'text': 'Watch B.'}]
     """
     parts = {s.key: {"title": s.title, "blocks": [_as_data(block) for block in s.blocks]} for s in sections}
-    comes_to = {**asdict(outcome), "passed": outcome.passed}
-    whole = {"format": 1, "title": title, "outcome": comes_to, "sections": parts}
+    result = {**asdict(outcome), "passed": outcome.passed}
+    whole = {"format": 1, "title": title, "outcome": result, "sections": parts}
     return json.dumps(whole, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-@singledispatch
 def _as_data(block: object) -> dict[str, Any]:
-    raise TypeError(f"{type(block).__name__} is not a part of a report")
-
-
-@_as_data.register
-def _(block: Paragraph) -> dict[str, Any]:
-    return {"kind": "paragraph", "text": block.text}
-
-
-@_as_data.register
-def _(block: FormulaBlock) -> dict[str, Any]:
-    return {"kind": "formula", "text": block.text, **({"latex": block.latex} if block.latex else {})}
-
-
-@_as_data.register
-def _(block: Alert) -> dict[str, Any]:
-    return {"kind": "alert", "text": block.text, "remedy": block.remedy}
-
-
-@_as_data.register
-def _(block: StepBlock) -> dict[str, Any]:
-    return {"kind": "step", "title": block.title, "facts": [list(fact) for fact in block.facts]}
-
-
-@_as_data.register
-def _(block: TableBlock) -> dict[str, Any]:
-    columns = [{"name": column.name, "unit": column.unit} for column in block.columns]
-    return {"kind": "table", "columns": columns, "rows": [[_cell_as_data(cell) for cell in row] for row in block.rows]}
+    match block:
+        case Paragraph():
+            return {"kind": "paragraph", "text": block.text}
+        case FormulaBlock():
+            return {"kind": "formula", "text": block.text, **({"latex": block.latex} if block.latex else {})}
+        case Alert():
+            return {"kind": "alert", "text": block.text, "remedy": block.remedy}
+        case StepBlock():
+            return {"kind": "step", "title": block.title, "facts": [list(fact) for fact in block.facts]}
+        case TableBlock():
+            columns = [{"name": column.name, "unit": column.unit} for column in block.columns]
+            return {
+                "kind": "table",
+                "columns": columns,
+                "rows": [[_cell_as_data(cell) for cell in r] for r in block.rows],
+            }
+    raise not_a_block(block)
 
 
 def _cell_as_data(cell: Cell) -> Any:
@@ -110,47 +95,26 @@ def _section_as_markdown(section: Section) -> Iterator[str]:
         yield _as_markdown(block)
 
 
-@singledispatch
 def _as_markdown(block: object) -> str:
-    raise TypeError(f"{type(block).__name__} is not a part of a report")
-
-
-@_as_markdown.register
-def _(block: Paragraph) -> str:
-    return _plain(block.text)
-
-
-@_as_markdown.register
-def _(block: FormulaBlock) -> str:
-    return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{typeset(block.text)}\n```"
-
-
-@_as_markdown.register
-def _(block: Alert) -> str:
-    remedy = f" *Remedy:* {_plain(block.remedy)}." if block.remedy else ""
-    return f"> **{_plain(block.text)}**{remedy}"
-
-
-@_as_markdown.register
-def _(block: StepBlock) -> str:
-    facts = "\n".join(f"- *{_plain(term)}*: {_plain(text)}" for term, text in block.facts)
-    return f"### {_plain(block.title)}\n\n{facts}"
-
-
-@_as_markdown.register
-def _(block: TableBlock) -> str:
-    rows = block.selected_rows
-    cells = [column_texts(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
-    lines = [map(_heading, block.columns), ("---:" if column.is_number else "---" for column in block.columns)]
-    return "\n".join(map(_line, [*lines, *(map(_plain, row) for row in zip(*cells, strict=True))]))
-
-
-def _line(cells: Iterable[str]) -> str:
-    return f"| {' | '.join(cells)} |"
-
-
-def _heading(column: Column) -> str:
-    return _plain(f"{column.name} [{with_superscripts(column.unit)}]" if column.unit else column.name)
+    match block:
+        case Paragraph():
+            return _plain(block.text)
+        case FormulaBlock():
+            return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{typeset(block.text)}\n```"
+        case Alert():
+            remedy = f" *Remedy:* {_plain(block.remedy)}." if block.remedy else ""
+            return f"> **{_plain(block.text)}**{remedy}"
+        case StepBlock():
+            facts = "\n".join(f"- *{_plain(term)}*: {_plain(text)}" for term, text in block.facts)
+            return f"### {_plain(block.title)}\n\n{facts}"
+        case TableBlock():
+            rows = block.selected_rows
+            cells = [column_texts(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
+            heads = [_plain(title_with_unit(column)) for column in block.columns]
+            rules = ["---:" if column.is_number else "---" for column in block.columns]
+            lines = [heads, rules, *(map(_plain, row) for row in zip(*cells, strict=True))]
+            return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    raise not_a_block(block)
 
 
 def _plain(text: str) -> str:
@@ -208,8 +172,8 @@ class Report(DisplaysHtml, Savable):
         """Return it as a page, which can be saved and opened in the browser."""
         from compoundkin.view.page.report_page import page_of
 
-        asked = self.outputs, self.design, self.studied
-        return page_of(self.title, self.sections, self.outcome, self.subject, *asked)
+        subject = self.subject, self.outputs, self.design, self.studied
+        return page_of(self.title, self.sections, self.outcome, *subject)
 
     def content(self, form: str) -> bytes:
         """Return the bytes of a file in the form "text", "markdown", "json" or "html"."""

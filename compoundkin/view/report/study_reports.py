@@ -56,8 +56,8 @@ def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequen
     Raises UnknownName and InvalidInput for names that are no figures of the study.
     """
     closed = int(np.count_nonzero(found.assembled))
-    asked = [*((name, False) for name in least), *((name, True) for name in greatest)]
-    tables = [block for name, is_greatest in asked for block in _best_designs(found, name, best, is_greatest)]
+    figures = [*((name, False) for name in least), *((name, True) for name in greatest)]
+    tables = [block for name, is_greatest in figures for block in _best_designs(found, name, best, is_greatest)]
     sections = [
         Section("study", "Study", tuple(_study_about(found, closed))),
         Section("figures", "Figures", (_figures_table(found),)) if closed else None,
@@ -73,8 +73,8 @@ def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequen
 def _study_about(found: StudyResult, closed: int) -> Iterator[Block]:
     study, rows = found.study, len(found)
     share = f"; {number_text(100.0 * closed / rows)} % of them assemble over the whole range" if rows else ""
-    said = study.sample.data["sample"]
-    kind = said if isinstance(said, str) else "grid"
+    sample = study.sample.data["sample"]
+    kind = sample if isinstance(sample, str) else "grid"
     yield Paragraph(f"{counted(rows, 'design')} by {listed(study.dimensions)} ({kind}){share}.")
     if not found.is_complete:
         yield Paragraph(f"The study has {counted(len(study), 'row')}; run it again to go on.")
@@ -298,8 +298,8 @@ def _changes_table(found: Optimum) -> TableBlock:
     for one in found.changes:
         factor, unit = (degrees(1.0), DEGREES) if one.unit == RADIANS else (1.0, one.unit)
         values = (float(factor * value) for value in (one.before, one.after, one.after - one.before, one.low, one.high))
-        said = f"{one.binds} bound" if one.binds else "" if one.matters else "changes nothing asked"
-        rows.append((one.name, unit, *values, said))
+        note = f"{one.binds} bound" if one.binds else "" if one.matters else "affects no goal"
+        rows.append((one.name, unit, *values, note))
     words = (Column(word, style="each") for word in ("before", "after", "change", "low", "high"))
     return TableBlock((Column("dimension"), Column("unit"), *words, Column("at")), tuple(rows), keys=1)
 
@@ -402,11 +402,11 @@ def _comparison_verdict(found: MechanismComparison) -> str:
     if largest is None or largest.distance <= ROUNDING * found.size:
         return found.verdict
     angles = found.structures[0].driven_angles
-    told = (
+    values = (
         f"{k} {number_text(degrees_of_math(v))} deg" if angles[k] else f"{k} {number_text(v)}"
         for k, v in largest.drives.items()
     )
-    return f"{found.verdict} with {listed(told)}, {brief(largest.distance / found.size)} of the size"
+    return f"{found.verdict} with {listed(values)}, {brief(largest.distance / found.size)} of the size"
 
 
 def _structure_table(found: MechanismComparison) -> Block:
@@ -449,12 +449,12 @@ def _driver_blocks(found: MechanismComparison) -> Iterator[Block]:
     differing = [one for one in found.drivers if abs(one.speed - one.other_speed) > _SAME_SPEED * abs(one.speed)]
     if differing:
         unit = found.structures[0].mechanism.unit or "1"
-        told = (
+        speeds = (
             f"{one.name} has {number_text(one.speed)}, in the second {number_text(one.other_speed)} "
             f"{'rad' if one.is_angle else unit}/s"
             for one in differing
         )
-        yield Paragraph(f"Speeds differ, and are not compared: {listed(told)}.")
+        yield Paragraph(f"Speeds differ, and are not compared: {listed(speeds)}.")
     rows: list[tuple[Cell, ...]] = []
     for one in found.drivers:
         unit = "deg" if one.is_angle else found.structures[0].mechanism.unit

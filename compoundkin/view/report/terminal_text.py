@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from functools import singledispatch
 from typing import Literal
 
 from rich.box import Box
@@ -13,7 +12,16 @@ from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from compoundkin.view.report.report_data import Alert, Column, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
+from compoundkin.view.report.report_data import (
+    Alert,
+    Column,
+    FormulaBlock,
+    Paragraph,
+    Section,
+    StepBlock,
+    TableBlock,
+    not_a_block,
+)
 from compoundkin.view.report.wording import column_texts
 
 # Between two columns of a table.
@@ -51,40 +59,30 @@ def _print(console: Console, section: Section, width: int) -> None:
             console.print(part)
 
 
-@singledispatch
 def _block(block: object, width: int) -> Iterator[RenderableType]:
-    raise TypeError(f"{type(block).__name__} is not a part of a report")
+    match block:
+        case Paragraph():
+            yield Text(block.text)
+        case FormulaBlock():
+            yield Padding(Text(block.text), (0, 0, 0, 2))
+        case Alert():
+            remedy = Text(f"\nRemedy: {block.remedy}.") if block.remedy else Text("")
+            yield Padding(Text(block.text, "bold red").append_text(remedy), (0, 0, 0, 2))
+        case StepBlock():
+            yield Text(block.title, "bold")
+            grid = Grid.grid(padding=(0, GAP, 0, 0))
+            grid.add_column(style="dim", no_wrap=True)
+            grid.add_column()
+            for term, fact in block.facts:
+                grid.add_row(Text(term), Text(fact))
+            yield Padding(grid, (0, 0, 0, 3))
+        case TableBlock():
+            yield from _table(block, width)
+        case _:
+            raise not_a_block(block)
 
 
-@_block.register
-def _(block: Paragraph, width: int) -> Iterator[RenderableType]:
-    yield Text(block.text)
-
-
-@_block.register
-def _(block: FormulaBlock, width: int) -> Iterator[RenderableType]:
-    yield Padding(Text(block.text), (0, 0, 0, 2))
-
-
-@_block.register
-def _(block: Alert, width: int) -> Iterator[RenderableType]:
-    remedy = Text(f"\nRemedy: {block.remedy}.") if block.remedy else Text("")
-    yield Padding(Text(block.text, "bold red").append_text(remedy), (0, 0, 0, 2))
-
-
-@_block.register
-def _(block: StepBlock, width: int) -> Iterator[RenderableType]:
-    yield Text(block.title, "bold")
-    grid = Grid.grid(padding=(0, GAP, 0, 0))
-    grid.add_column(style="dim", no_wrap=True)
-    grid.add_column()
-    for term, fact in block.facts:
-        grid.add_row(Text(term), Text(fact))
-    yield Padding(grid, (0, 0, 0, 3))
-
-
-@_block.register
-def _(block: TableBlock, width: int) -> Iterator[RenderableType]:
+def _table(block: TableBlock, width: int) -> Iterator[RenderableType]:
     rows = block.selected_rows
     cells = [column_texts(column, [row[k] for row in rows], between="\n") for k, column in enumerate(block.columns)]
     heads = [_heading(column) for column in block.columns]

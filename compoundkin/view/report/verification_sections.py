@@ -80,8 +80,8 @@ def finding_sentence(sample: Sample, finding: Finding) -> str:
     """Return a finding in words. What, how far, and the pair or link, the pose and the group."""
     where = finding_place(sample, finding.pair, finding.pose)
     place = ", ".join(part for part in (where, _group_of(sample.motion.structure, finding.pair)) if part)
-    said = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"
-    return f"{said}, at {place}" if place else said
+    clause = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"
+    return f"{clause}, at {place}" if place else clause
 
 
 def _group_of(structure: Structure, name: str) -> str:

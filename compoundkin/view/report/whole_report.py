@@ -18,8 +18,8 @@ from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.groups_section import drivers_section, solving_section
-from compoundkin.view.report.report_data import Outcome
-from compoundkin.view.report.report_forms import Report, Subject
+from compoundkin.view.report.report_data import Outcome, Subject
+from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.structure_sections import about_section, counted_sections, faults_section
 from compoundkin.view.report.study_reports import comparison_report, optimum_report, study_report, tolerance_report
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import SUPERSCRIPTS
+from compoundkin.model.attributes import SUPERSCRIPTS, with_superscripts
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.view.report.report_data import Cell, Column
 
@@ -33,6 +33,15 @@ def column_texts(column: Column, cells: Iterable[Cell], between: str = ", ") -> 
     cells = list(cells)
     write = _writer(column, cells)
     return [_cell_text(column, cell, write, between) for cell in cells]
+
+
+def title_with_unit(column: Column) -> str:
+    """Return the title of a column with its unit.
+
+    >>> title_with_unit(Column("speed", "mm/s^2"))
+    'speed [mm/s²]'
+    """
+    return f"{column.name} [{with_superscripts(column.unit)}]" if column.unit else column.name
 
 
 def number_text(value: float) -> str:

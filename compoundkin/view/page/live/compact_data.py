@@ -32,14 +32,14 @@ def compact(data: Mapping[str, Any]) -> dict[str, Any]:
         return dict(data)
     program = data["live"]["program"]
     links = [
-        _without_keys(link, OF_POSES) if told["own"] else link
-        for link, told in zip(data["links"], program["links"], strict=True)
+        _without_keys(link, OF_POSES) if computed["own"] else link
+        for link, computed in zip(data["links"], program["links"], strict=True)
     ]
-    own = {told["name"] for told in program["outputs"] if told["own"]}
+    own = {one["name"] for one in program["outputs"] if one["own"]}
     outputs = [{**one, "parts": dict.fromkeys(one["parts"])} if one["name"] in own else one for one in data["outputs"]]
     found = {**data, "links": links, "outputs": outputs, "centres": [_centre(data, one) for one in data["centres"]]}
-    kept = {key: _stepped(data[key], data["poses"]) for key in STEPPED}
-    return {**found, **kept}
+    stepped = {key: _stepped(data[key], data["poses"]) for key in STEPPED}
+    return {**found, **stepped}
 
 
 def _stepped(value: Any, poses: int) -> Any:

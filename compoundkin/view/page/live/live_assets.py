@@ -82,5 +82,5 @@ def without_panel(data: Mapping[str, Any]) -> dict[str, Any]:
     {'live': {'dimensions': []}}
     """
     live = data.get("live")
-    kept = live and {key: value for key, value in live.items() if key not in ("panel", "toml")}
-    return {**data, "live": kept}
+    rest = live and {key: value for key, value in live.items() if key not in ("panel", "toml")}
+    return {**data, "live": rest}

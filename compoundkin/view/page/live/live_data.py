@@ -114,8 +114,8 @@ class LiveData:
         named += [(pair.name, pair.members) for pair in guides]
         ended = {pair.name for pair in guides}
         for (name, links), reasons in zip(named, self.program.reasons, strict=True):
-            told = [self._reason(one) for one in reasons]
-            yield {"name": name, "links": list(links), "guide": name in ended, "reasons": told}
+            texts = [self._reason(one) for one in reasons]
+            yield {"name": name, "links": list(links), "guide": name in ended, "reasons": texts}
 
     def _reason(self, one: RecordedReason) -> dict[str, Any]:
         holds = None if one.holds is None else self.places[one.holds]
@@ -243,8 +243,8 @@ def followed_quantities(motion: Motion_of_kinematics, outputs: Sequence[str] = (
     >>> followed_quantities(solve(load("jansen-leg")))[:3]
     ('foot.position', 'foot.velocity', 'foot.acceleration')
     """
-    asked = dict.fromkeys(name.removesuffix(f".{LENGTH}") for name in _quantity_names(motion, outputs))
-    return tuple(name for name in asked if derivative_order(name) <= motion.order and _is_recorded(motion, name))
+    names = dict.fromkeys(name.removesuffix(f".{LENGTH}") for name in _quantity_names(motion, outputs))
+    return tuple(name for name in names if derivative_order(name) <= motion.order and _is_recorded(motion, name))
 
 
 def _quantity_names(motion: Motion_of_kinematics, outputs: Sequence[str]) -> Iterator[str]:

@@ -65,8 +65,8 @@ class DimensionRows:
         """All of it for a script."""
         links = [{"name": name, "rows": list(self._link(name))} for name in self.stated.mechanism.rigid_links]
         pairs = [self._pair(name) for name in self.stated.items]
-        told = {"links": [one for one in links if one["rows"]], "pairs": [one for one in pairs if one["rows"]]}
-        return {**told, "fixed": self._fixed}
+        rows = {"links": [one for one in links if one["rows"]], "pairs": [one for one in pairs if one["rows"]]}
+        return {**rows, "fixed": self._fixed}
 
     @cached_property
     def axes(self) -> Mapping[tuple[str, str], str]:
@@ -82,12 +82,12 @@ class DimensionRows:
         whole = "".join(AXES)
         fixed: dict[str, dict[str, list[float]]] = {}
         for name in self.stated.mechanism.rigid_links:
-            kept = {
+            known = {
                 letter: [float(at.real), float(at.imag)]
                 for letter, at in self._points(name).items()
                 if self.axes.get((name, letter)) != whole
             }
-            fixed |= {name: kept} if kept else {}
+            fixed |= {name: known} if known else {}
         return fixed
 
     def _points(self, link: str) -> Mapping[str, Number]:
