@@ -445,10 +445,7 @@ def _stubs(pairs: Sequence[Pair], places: Mapping[str, complex], own: Sequence[s
         start, end = complex(places[here]), complex(places[there])
         end = start + (end - start) * STUB
         beyond = end + (end - start) / (abs(end - start) or 1.0) * NODE
-        shapes += [
-            Polyline((start, end), "edge"),
-            Text(beyond, pair.letters[0], "code"),
-        ]
+        shapes += [Polyline((start, end), "edge"), Text(beyond, pair.letters[0], "code")]
     return shapes
 
 
