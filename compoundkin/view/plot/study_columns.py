@@ -29,22 +29,22 @@ MOST_POINTS = 3000
 class StudyColumns(ShortRepr):
     """The data of a study for plots: columns by name, and which designs are assembled."""
 
-    found: StudyResult
+    result: StudyResult
 
     @property
     def title(self) -> str:
         """The title of its mechanism."""
-        return self.found.study.mechanism.title
+        return self.result.study.mechanism.title
 
     @cached_property
     def columns(self) -> Mapping[str, StudyColumn]:
         """The columns of numbers by name: dimensions and outputs."""
-        return {one.name: one for one in self.found.columns if one.kind != "state"}
+        return {one.name: one for one in self.result.columns if one.kind != "state"}
 
     @cached_property
     def assembled(self) -> Number:
         """Which designs are assembled over the whole motion."""
-        return np.asarray(self.found.assembled, dtype=bool)
+        return np.asarray(self.result.assembled, dtype=bool)
 
     def summary(self, drawn: int = 0, among: int = 0) -> str:
         """Return how many designs there are, and how many cannot be assembled.
@@ -103,7 +103,7 @@ class StudyColumns(ShortRepr):
 
     def values(self, column: StudyColumn, rows: Number | None = None) -> Plotted:
         """Return a column in display units, or some rows of it."""
-        own = np.asarray(self.found[column.name])
+        own = np.asarray(self.result[column.name])
         return displayed_values(column.name, column.unit, own if rows is None else own[rows])
 
 
@@ -136,26 +136,26 @@ def title_with_summary(title: str, *said: str) -> str:
     return ": ".join(filter(None, (title, "; ".join(filter(None, said)))))
 
 
-def toleranced_outputs(found: ToleranceAnalysis, name: str) -> list[OutputTolerance]:
+def toleranced_outputs(analysis: ToleranceAnalysis, name: str) -> list[OutputTolerance]:
     """Return the outputs of a name: both components of a vector. Raises UnknownName."""
     both = component_names(name)
-    return [found[one] for one in (both if name not in found.outputs and both[0] in found.outputs else [name])]
+    return [analysis[one] for one in (both if name not in analysis.outputs and both[0] in analysis.outputs else [name])]
 
 
-def toleranced_output(found: ToleranceAnalysis, name: str) -> OutputTolerance:
+def toleranced_output(analysis: ToleranceAnalysis, name: str) -> OutputTolerance:
     """Return the output of a name. Raises InvalidInput for a vector."""
-    one, *others = toleranced_outputs(found, name)
+    one, *others = toleranced_outputs(analysis, name)
     if others:
         raise InvalidInput(Problem(name, "it is a vector", f"take {one.name} or {others[0].name}"))
     return one
 
 
-def toleranced_curves(found: ToleranceAnalysis, names: Sequence[str]) -> list[OutputTolerance]:
+def toleranced_curves(analysis: ToleranceAnalysis, names: Sequence[str]) -> list[OutputTolerance]:
     """Return the outputs of names with values at every pose.
 
     Of no names they are all that there are. Raises UnknownName, InvalidInput where there is none.
     """
-    among = [one for name in names for one in toleranced_outputs(found, name)] if names else list(found.values())
+    among = [one for name in names for one in toleranced_outputs(analysis, name)] if names else list(analysis.values())
     wrong = next((one for one in among if names and not one.is_course), None)
     if wrong is not None:
         what, remedy = "it is one number of the whole motion", "contributions() and histogram() draw it"
@@ -190,11 +190,11 @@ def value_at(values: Number, pose: int | None) -> float:
     return float(values if pose is None else np.asarray(values)[pose])
 
 
-def place_words(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
+def place_words(analysis: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
     """Return which output it is, and at which pose: "rocker.angle at crank 20 deg"."""
     if pose is None:
         return one.name
-    x, _ = horizontal_axis(found.motion, None)
+    x, _ = horizontal_axis(analysis.motion, None)
     return (
         f"{one.name} at {x.name} {value_text(float(x.values[0, pose]), x.scale)} {with_superscripts(x.unit)}".rstrip()
     )

@@ -46,33 +46,33 @@ from compoundkin.view.report.wording import counted
 
 
 @singledispatch
-def study_plot(found: Any, *names: str, **options: Any) -> Plot:
+def study_plot(result: Any, *names: str, **options: Any) -> Plot:
     """Draw a result by the plot that suits it."""
-    raise TypeError(f"{type(found).__name__} has no plot of its own")
+    raise TypeError(f"{type(result).__name__} has no plot of its own")
 
 
 @study_plot.register
-def _(found: StudyResult, *names: str, **options: Any) -> Plot:
+def _(result: StudyResult, *names: str, **options: Any) -> Plot:
     """Bands of courses, a histogram of one figure, else a scatter matrix."""
-    columns = [one for name in names for one in StudyColumns(found).named(name)]
+    columns = [one for name in names for one in StudyColumns(result).named(name)]
     if columns and all(one.width for one in columns):
-        return bands(found, *names, **options)
-    return histogram(found, names[0], **options) if len(columns) == 1 else scatter_matrix(found, *names, **options)
+        return bands(result, *names, **options)
+    return histogram(result, names[0], **options) if len(columns) == 1 else scatter_matrix(result, *names, **options)
 
 
 @study_plot.register
-def _(found: ToleranceAnalysis, *names: str, **options: Any) -> Plot:
+def _(result: ToleranceAnalysis, *names: str, **options: Any) -> Plot:
     """Bands of courses, the contributions to one figure."""
-    shown = [one for name in names for one in toleranced_outputs(found, name)] or list(found.values())
+    shown = [one for name in names for one in toleranced_outputs(result, name)] or list(result.values())
     if len(shown) == 1 and not shown[0].is_course:
-        return contributions(found, shown[0].name, **options)
-    return bands(found, *names, **options)
+        return contributions(result, shown[0].name, **options)
+    return bands(result, *names, **options)
 
 
 @study_plot.register
-def _(found: Optimum, *names: str, **options: Any) -> Plot:
+def _(result: Optimum, *names: str, **options: Any) -> Plot:
     """Paths and quantities before and after."""
-    return improvement(found, *names, **options)
+    return improvement(result, *names, **options)
 
 
 BANDS_BASE_HEIGHT, BANDS_PANEL_HEIGHT = 1.8, 2.2
@@ -104,7 +104,7 @@ class Bands:
 
 @checked
 def bands(
-    found: StudyResult | ToleranceAnalysis,
+    result: StudyResult | ToleranceAnalysis,
     *names: str,
     percentiles: Sequence[float] = BAND_PERCENTILES,
     relative: bool = True,
@@ -123,11 +123,11 @@ def bands(
 
     >>> from compoundkin.files import load
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
-    >>> found = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
-    >>> bands(found).figure.axes[0].get_ylabel()
+    >>> result = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
+    >>> bands(result).figure.axes[0].get_ylabel()
     'error of rocker.angle\\n[deg]'
     """
-    said, motion, panels = _panels(found, names, percentiles, relative)
+    said, motion, panels = _panels(result, names, percentiles, relative)
     x, is_input = horizontal_axis(motion, None)
     text = title_with_summary(motion.mechanism.title if title is None else title, said)
     with plot_style.styled():
@@ -145,30 +145,30 @@ def bands(
 
 
 def _panels(
-    found: StudyResult | ToleranceAnalysis, names: Sequence[str], percentiles: Sequence[float], relative: bool
+    result: StudyResult | ToleranceAnalysis, names: Sequence[str], percentiles: Sequence[float], relative: bool
 ) -> tuple[str, Motion, tuple[Bands, ...]]:
     """The summary of the designs, the motion of the horizontal axis, and the panels."""
     ordered = checked_percentiles(percentiles)
-    if isinstance(found, StudyResult):
-        among = StudyColumns(found)
+    if isinstance(result, StudyResult):
+        among = StudyColumns(result)
         panels = tuple(_study_bands(among, one, ordered) for one in among.courses(names))
-        return among.summary(), found.reference, panels
+        return among.summary(), result.reference, panels
     said = [
-        counted(found.count, "random design"),
-        f"{found.unassembled:,} cannot be assembled" * bool(found.unassembled),
+        counted(result.count, "random design"),
+        f"{result.unassembled:,} cannot be assembled" * bool(result.unassembled),
     ]
-    panels = tuple(_tolerance_bands(found, one, relative) for one in toleranced_curves(found, names))
-    return ", ".join(filter(None, said)), found.motion, panels
+    panels = tuple(_tolerance_bands(result, one, relative) for one in toleranced_curves(result, names))
+    return ", ".join(filter(None, said)), result.motion, panels
 
 
 def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
     """Return percentiles, lowest first. Raises InvalidInput for what is none."""
-    found: list[float] = np.unique(real_numbers("percentiles", percentiles)).tolist()
-    wrong = [one for one in found if not 0.0 <= one <= 100.0]
-    if wrong or not found:
+    result: list[float] = np.unique(real_numbers("percentiles", percentiles)).tolist()
+    wrong = [one for one in result if not 0.0 <= one <= 100.0]
+    if wrong or not result:
         what = f"{wrong[0]:g} is not a percentile" if wrong else "none is given"
         raise InvalidInput(Problem("percentiles", what, "numbers from 0 to 100, such as (5, 50, 95)"))
-    return found
+    return result
 
 
 def percentile_curves(values: Number, chosen: Number, percentiles: Sequence[float]) -> Number:
@@ -180,17 +180,17 @@ def percentile_curves(values: Number, chosen: Number, percentiles: Sequence[floa
     >>> percentile_curves(values, np.array([True, True, True, False]), [50.0]).tolist()
     [[1.0, nan]]
     """
-    found = np.full((len(percentiles), values.shape[-1]), np.nan)
+    result = np.full((len(percentiles), values.shape[-1]), np.nan)
     # pose by pose: all at once would need the memory of all designs again
     for pose in range(values.shape[-1]):
         known = values[:, pose][chosen & np.isfinite(values[:, pose])]
         if len(known):
-            found[:, pose] = np.percentile(known, percentiles, overwrite_input=True)
-    return found
+            result[:, pose] = np.percentile(known, percentiles, overwrite_input=True)
+    return result
 
 
 def _study_bands(among: StudyColumns, column: StudyColumn, percentiles: Sequence[float]) -> Bands:
-    courses = percentile_curves(np.asarray(among.found[column.name]), among.assembled, percentiles)
+    courses = percentile_curves(np.asarray(among.result[column.name]), among.assembled, percentiles)
     quantity = displayed_values(column.name, column.unit, courses)
     rows = dict(zip(percentiles, quantity.values, strict=True))
     lower = [one for one in percentiles if one < 50.0 and 100.0 - one in rows]
@@ -208,8 +208,8 @@ def _percentile(one: float) -> str:
     return "median" if one == 50.0 else f"{one:g} %"
 
 
-def _tolerance_bands(found: ToleranceAnalysis, one: OutputTolerance, relative: bool) -> Bands:
-    base, sigmas = one.nominal if relative else 0.0 * one.nominal, found.chances.sigmas
+def _tolerance_bands(result: ToleranceAnalysis, one: OutputTolerance, relative: bool) -> Bands:
+    base, sigmas = one.nominal if relative else 0.0 * one.nominal, result.chances.sigmas
 
     def shown(values: Any) -> Number:
         return displayed_values(one.name, one.unit, values - base).values
@@ -268,7 +268,7 @@ class FigureDistribution:
 
 @checked
 def histogram(
-    found: StudyResult | ToleranceAnalysis,
+    result: StudyResult | ToleranceAnalysis,
     name: str,
     *,
     pose: int | None = None,
@@ -280,7 +280,7 @@ def histogram(
 
     `name` is an output with one number for each design, or within tolerances a quantity at the `pose` of that index, or
     else the pose of the greatest deviation. Counted are assembled designs. `percentiles` are dashed, with their values.
-    Within tolerances the worst case is drawn too, and the normal distribution of the deviation found by slopes.
+    Within tolerances the worst case is drawn too, and the normal distribution of the deviation result by slopes.
 
     Raises UnknownName for unknown names, InvalidInput for courses of a study, vectors, or without Matplotlib.
 
@@ -292,10 +292,10 @@ def histogram(
     64
     """
     chosen = None if percentiles is None else checked_percentiles(percentiles)
-    if isinstance(found, StudyResult):
-        shown = _study_distribution(found, name, pose, chosen)
+    if isinstance(result, StudyResult):
+        shown = _study_distribution(result, name, pose, chosen)
     else:
-        shown = _tolerance_distribution(found, name, pose, chosen)
+        shown = _tolerance_distribution(result, name, pose, chosen)
     labels: list[PointLabel] = []
     with plot_style.styled():
         text = title_with_summary(shown.title if title is None else title, shown.summary)
@@ -307,11 +307,11 @@ def histogram(
 
 
 def _study_distribution(
-    found: StudyResult, name: str, pose: int | None, percentiles: Sequence[float] | None
+    result: StudyResult, name: str, pose: int | None, percentiles: Sequence[float] | None
 ) -> FigureDistribution:
     if pose is not None:
         raise InvalidInput(Problem("pose", "a study has one number of each design here", "leave it out"))
-    among = StudyColumns(found)
+    among = StudyColumns(result)
     shown = among.values(among.figure(name), np.flatnonzero(among.assembled))
     return FigureDistribution(
         among.title, among.summary(), shown, HISTOGRAM_PERCENTILES if percentiles is None else percentiles
@@ -319,9 +319,9 @@ def _study_distribution(
 
 
 def _tolerance_distribution(
-    found: ToleranceAnalysis, name: str, pose: int | None, percentiles: Sequence[float] | None
+    result: ToleranceAnalysis, name: str, pose: int | None, percentiles: Sequence[float] | None
 ) -> FigureDistribution:
-    one = toleranced_output(found, name)
+    one = toleranced_output(result, name)
     at = checked_pose(one, pose)
     sample = one.sample.values
     values = displayed_values(one.name, one.unit, sample if at is None else sample[:, at])
@@ -330,9 +330,9 @@ def _tolerance_distribution(
         return float(displayed_values(one.name, one.unit, np.array([value_at(own, at)])).values[0])
 
     lines = (("worst case", shown(one.low)), ("_", shown(one.high)))
-    said = f"{place_words(found, one, at)}, {counted(one.sample.count, 'random design')}"
+    said = f"{place_words(result, one, at)}, {counted(one.sample.count, 'random design')}"
     normal = shown(one.mean), shown(one.deviation)
-    return FigureDistribution(found.mechanism.title, said, values, percentiles or found.percentiles, lines, normal)
+    return FigureDistribution(result.mechanism.title, said, values, percentiles or result.percentiles, lines, normal)
 
 
 def _draw_histogram(axes: Any, shown: FigureDistribution, labels: list[PointLabel]) -> None:
@@ -398,7 +398,7 @@ class ContributionRows:
 
 @checked
 def contributions(
-    found: ToleranceAnalysis,
+    result: ToleranceAnalysis,
     name: str,
     *,
     pose: int | None = None,
@@ -415,16 +415,16 @@ def contributions(
 
     >>> from compoundkin.files import load
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
-    >>> found = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
-    >>> [axes.get_xlabel() for axes in contributions(found, "rocker.angle", pose=30).figure.axes]
+    >>> result = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
+    >>> [axes.get_xlabel() for axes in contributions(result, "rocker.angle", pose=30).figure.axes]
     ['share of the variance [%]', 'part of the worst case [deg]']
     """
-    one = toleranced_output(found, name)
+    one = toleranced_output(result, name)
     at = checked_pose(one, pose)
     rows = contribution_rows(one, at)
     with plot_style.styled():
         text = title_with_summary(
-            found.motion.mechanism.title if title is None else title, _contribution_heading(found, one, at)
+            result.motion.mechanism.title if title is None else title, _contribution_heading(result, one, at)
         )
         height = BARS_BASE_HEIGHT + BAR_HEIGHT * len(rows.names)
         figure, axes = canvas.panels(1, text, size or (canvas.WIDTH, height), 2, sharey=True)
@@ -469,7 +469,7 @@ def _draw_contributions(axes: Any, rows: ContributionRows, values: Number, label
                       va="center", fontsize=plot_style.SMALL_PRINT)  # fmt: skip
 
 
-def _contribution_heading(found: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
+def _contribution_heading(result: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
     """The output and its pose, with its errors."""
     worst, deviation = (value_words(one, value_at(own, pose)) for own in (one.worst, one.deviation))
-    return f"{place_words(found, one, pose)}, worst case ±{worst}, standard deviation {deviation}"
+    return f"{place_words(result, one, pose)}, worst case ±{worst}, standard deviation {deviation}"

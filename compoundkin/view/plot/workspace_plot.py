@@ -29,7 +29,7 @@ WORST = 20.0
 
 @checked
 def workspace(
-    found: Workspace,
+    region: Workspace,
     *,
     colour: str | None = None,
     singular: bool = True,
@@ -38,7 +38,7 @@ def workspace(
 ) -> Plot:
     """Draw a workspace. The region is shaded, with its boundary and the mechanism in one pose.
 
-    Curves where the drivers lose their hold are dashed, of all configurations that lead there, unless `singular` is
+    Curves of configurations that are singular for the drivers are dashed, unless `singular` is
     False. With ``colour="condition"`` the region is coloured by the condition number of the Jacobian. Raises
     InvalidInput for another colour.
 
@@ -53,38 +53,38 @@ def workspace(
         raise InvalidInput(Problem("colour", what, f"give {CONDITION!r}, or leave it out"))
     labels: list[PointLabel] = []
     with plot_style.styled():
-        figure, (axes, *_) = canvas.panels(1, _title(found) if title is None else title, size or SIZE)
-        _region(figure, axes, found, colour)
-        _mechanism(axes, found.pose, found.point, labels)
+        figure, (axes, *_) = canvas.panels(1, _title(region) if title is None else title, size or SIZE)
+        _region(figure, axes, region, colour)
+        _mechanism(axes, region.pose, region.point, labels)
         if singular:
-            _singular(axes, found)
-        for kind, curves, shade in (("inner", found.inner, COLOURS[1]), ("outer", found.outer, COLOURS[0])):
+            _singular(axes, region)
+        for kind, curves, shade in (("inner", region.inner, COLOURS[1]), ("outer", region.outer, COLOURS[0])):
             for k, curve in enumerate(curves):
                 axes.plot(curve.real, curve.imag, color=shade, label="" if k else f"{kind} boundary", zorder=4)
-        unit = unit_of(found.mechanism.unit, "length")
+        unit = unit_of(region.mechanism.unit, "length")
         canvas.plane_axes(axes, f"x [{unit}]", f"y [{unit}]")
         canvas.draw_legend(axes)
         return canvas.finished(figure, labels)
 
 
-def _title(found: Workspace) -> str:
-    turned = "" if found.orientation is None else f", {found.link} at {degrees(found.orientation):.6g}°"
-    return f"{found.mechanism.title}: workspace of {found.point}{turned}"
+def _title(region: Workspace) -> str:
+    turned = "" if region.orientation is None else f", {region.link} at {degrees(region.orientation):.6g}°"
+    return f"{region.mechanism.title}: workspace of {region.point}{turned}"
 
 
-def _region(figure: Any, axes: Any, found: Workspace, colour: str | None) -> None:
+def _region(figure: Any, axes: Any, region: Workspace, colour: str | None) -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    curves = [Path(np.stack([c.real, c.imag], axis=-1), closed=True) for c in (*found.outer, *found.inner)]
+    curves = [Path(np.stack([c.real, c.imag], axis=-1), closed=True) for c in (*region.outer, *region.inner)]
     outline = Path.make_compound_path(*curves)
     patch = PathPatch(outline, facecolor=REGION, edgecolor="none", zorder=0.5)
     axes.add_patch(patch)
     axes.autoscale_view()
     if colour is None:
         return
-    x, y = found.places[0].real, found.places[:, 0].imag
-    values = np.minimum(found.condition, WORST)
+    x, y = region.places[0].real, region.places[:, 0].imag
+    values = np.minimum(region.condition, WORST)
     shown = axes.pcolormesh(x, y, values, cmap="viridis_r", vmin=1.0, vmax=WORST, shading="nearest", zorder=0.6,
                             rasterized=True)  # fmt: skip
     shown.set_clip_path(patch)
@@ -93,11 +93,11 @@ def _region(figure: Any, axes: Any, found: Workspace, colour: str | None) -> Non
     bar.outline.set_visible(False)
 
 
-def _singular(axes: Any, found: Workspace) -> None:
-    """Draw where determinants are zero, dashed."""
-    x, y = found.places[0].real, found.places[:, 0].imag
+def _singular(axes: Any, region: Workspace) -> None:
+    """Draw the curves of zero determinants, dashed."""
+    x, y = region.places[0].real, region.places[:, 0].imag
     drawn = False
-    for values in found.determinants:
+    for values in region.determinants:
         known = values[np.isfinite(values)]
         if known.size and known.min() < 0.0 < known.max():
             axes.contour(x, y, values, levels=[0.0], colors=[INK], linestyles="dashed", linewidths=1.0, zorder=3)
