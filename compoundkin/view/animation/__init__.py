@@ -1,4 +1,8 @@
-"""Animations of motions: GIF, MP4, and SVG that moves by itself."""
+"""Animations of motions: GIF, MP4, and SVG that moves by itself.
+
+Frames are the same parts moved; Cairo draws them without packing them as PNG, which would take longer than drawing. In
+SVG a part turns about that point of its link which moves least, so that a crank has two keyframes.
+"""
 
 from __future__ import annotations
 
