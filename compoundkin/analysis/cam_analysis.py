@@ -1,4 +1,4 @@
-"""What is asked of a cam. Pressure angle, radii of curvature, sliding, and what is wrong with its profile."""
+"""Analysis of a cam over a motion: pressure angle, radii of curvature, sliding, and faults of its profile."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from compoundkin.model.profiles import Synthesised
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
 # Manufacturing Handbook, 2nd ed., Industrial Press 2009, section 7.1.
 TRANSLATING, OSCILLATING = 30.0, 35.0
-# An open profile is nearly run off where less than this part of it is left.
+# The contact is close to an end of an open profile within this part of it.
 LEFT = 0.02
 
 
 @dataclass(frozen=True, eq=False)
 class CamAnalysis(DisplaysHtml):
-    """A cam pair over a motion. Arrays are of the motion's shape, not a number where it is not assembled.
+    """A cam pair over a motion. Arrays are of the motion's shape, NaN where it is not assembled.
 
     Angles in radians. `pressure_angle` is from the direction in which the follower can move (the velocity of its
     contact point, or of the roller's middle) to the common normal, counterclockwise; a radius of curvature is negative
@@ -55,7 +55,7 @@ class CamAnalysis(DisplaysHtml):
 
     @cached_property
     def pitch_curve(self) -> Number | None:
-        """The way of the roller's middle, or the knife edge, in the cam's frame. None for a flat face."""
+        """The path of the roller's centre, or the knife edge, in the cam's frame. None for a flat face."""
         if self.pair.is_flat:
             return None
         curve = self.pair.curve
@@ -70,31 +70,28 @@ class CamAnalysis(DisplaysHtml):
 
     @property
     def undercut(self) -> tuple[tuple[float, float], ...]:
-        """The spans of the parameter where the profile is undercut."""
+        """The intervals of the parameter where the profile is undercut."""
         return self.pair.hollows
 
     @property
     def untouched(self) -> tuple[tuple[float, float], ...]:
-        """The spans of the parameter that the follower bridges without touching."""
+        """The intervals of the parameter that the follower bridges without touching."""
         return self.pair.bridged
 
     @property
     def greatest_pressure_angle(self) -> float:
-        """The greatest size of the pressure angle; not a number where there is none."""
+        """The greatest absolute pressure angle; NaN without any."""
         sizes = np.abs(self.pressure_angle)
         return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else float("nan")
 
     @property
     def allowed_pressure_angle(self) -> float:
-        """The customary limit of the pressure angle.
-
-        It is 30 degrees for a follower that translates, 35 for another one.
-        """
+        """The customary limit of the pressure angle: 30 degrees for a translating follower, else 35."""
         return float(np.deg2rad(TRANSLATING if self.oscillates is False else OSCILLATING))
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a designer should look at, a sentence each."""
+        """The faults of the cam, a sentence each."""
         return tuple(self._warnings())
 
     def _warnings(self) -> Iterator[str]:
@@ -107,9 +104,6 @@ class CamAnalysis(DisplaysHtml):
         if self.untouched:
             yield f"The follower bridges a part of the profile, at {self._places(self.untouched)}."
         yield from self._running_off()
-        yield from self._made_for_another()
-
-    def _made_for_another(self) -> Iterator[str]:
         made = self.pair.profile
         if isinstance(made, Synthesised) and not self.pair.is_flat and self.pair.roller != made.roller:
             yield (
@@ -126,7 +120,7 @@ class CamAnalysis(DisplaysHtml):
             yield "The contact comes close to an end of the open profile."
 
     def _places(self, found: tuple[tuple[float, float], ...]) -> str:
-        """Spans of the parameter as points of the profile."""
+        """Return intervals of the parameter as points of the profile."""
         points = [(complex(self.pair.curve.at(a).c[0]), complex(self.pair.curve.at(b).c[0])) for a, b in found]
         return ", ".join(f"{_point(a)} to {_point(b)}" for a, b in points)
 
@@ -138,8 +132,7 @@ class CamAnalysis(DisplaysHtml):
 def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     """Return the analysis of a cam or flat-faced cam pair over a motion.
 
-    Raises UnknownName for a pair that the mechanism does not have, InvalidInput for one that has no profile or a motion
-    without velocities.
+    Raises UnknownName for an unknown pair, InvalidInput for a pair without a profile and a motion without velocities.
 
     Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., chapter 7.
 
@@ -160,7 +153,9 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     place, normal = touch.place.c[0], touch.normal.c[0]
     cam = motion.poses[pair.on]
     s = pair.parameter(ends, poses)
-    radius = _radius(pair, s)
+    with np.errstate(divide="ignore"):
+        radius = 1.0 / (pair.outward * pair.curve.curvature(s))  # positive where convex toward the follower
+    first, second = (velocity_at(motion.poses[member], place) for member in pair.members)
     follower, oscillates, _ = direction_of(motion, pair, place)
     return CamAnalysis(
         motion,
@@ -173,7 +168,7 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
         pressure_angle=pressure_angle(motion, name),
         radius_of_curvature=motion.grid.known(radius),
         pitch_radius=motion.grid.known(radius + ends[1].measure) if not pair.is_flat else None,
-        sliding=motion.grid.known(_sliding(motion, pair, place, normal)),
+        sliding=motion.grid.known(dot(second - first, 1j * normal)),
     )
 
 
@@ -195,17 +190,6 @@ def _pair_of(motion: Motion, name: str) -> ProfileContact:
     if motion.order < 1:
         raise InvalidInput(Problem(name, "the motion has no velocities", "solve(..., order=1) or more"))
     return pair
-
-
-def _radius(pair: ProfileContact, s: Number) -> Number:
-    """Return the radius of curvature, positive where the profile is convex toward the follower."""
-    with np.errstate(divide="ignore"):
-        return 1.0 / (pair.outward * pair.curve.curvature(s))
-
-
-def _sliding(motion: Motion, pair: ProfileContact, place: Number, normal: Number) -> Number:
-    first, second = (velocity_at(motion.poses[name], place) for name in pair.members)
-    return dot(second - first, 1j * normal)
 
 
 def _point(place: complex) -> str:

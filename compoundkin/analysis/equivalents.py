@@ -1,4 +1,4 @@
-"""The linkage of lower pairs that stands for higher pairs at one pose.
+"""The equivalent linkage of lower pairs for higher pairs at one pose.
 
 Source: two profiles that touch move, up to accelerations, as if a bar joined their centres of curvature; e.g.
 I. I. Artobolevskii, Theory of Mechanisms and Machines, on the replacement of higher pairs by lower ones.
@@ -32,7 +32,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Replacement:
-    """What stands for one higher pair. `link` is a bar of some `length`, or a block where that is None."""
+    """The replacement of one higher pair: `link` is a bar of a `length`, or a block where that is None."""
 
     pair: Pair
     link: str
@@ -47,11 +47,11 @@ class Replacement:
 
 @checked
 def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
-    """Return the mechanism of lower pairs with the same velocities and accelerations.
+    """Return the mechanism of lower pairs with the same velocities and accelerations at one pose.
 
-    `at` is the pose's flat index.
-    Every higher pair gives way to a bar between the centres of curvature, or to a block where one profile is straight;
-    gears and belts to a bar on their line of action. Raises InvalidInput for a pose that is not assembled.
+    `at` is the pose's flat index. A bar between the centres of curvature replaces every higher pair, or a block where
+    one profile is straight; a bar on the line of action replaces gears and belts. Raises InvalidInput for a pose that
+    is not assembled.
 
     >>> import compoundkin as ck
     >>> wheel = ck.Mechanism(
@@ -65,13 +65,13 @@ def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
 
 
 def replaced(motion: Motion, at: int = 0) -> tuple[Mechanism, tuple[Replacement, ...]]:
-    """Return the equivalent linkage, and what stands for each higher pair."""
+    """Return the equivalent linkage, and the replacement of each higher pair."""
     builder = _Builder(motion, at)
     return builder.mechanism(), tuple(builder.found)
 
 
 class _Builder:
-    """Collects the links of the linkage and the points that they gain."""
+    """The links of the equivalent linkage with their additional points."""
 
     def __init__(self, motion: Motion, at: int) -> None:
         if not 0 <= at < motion.failed.size or not motion.regular.flat[at]:
@@ -128,7 +128,7 @@ class _Builder:
         return self._named(name, self._world(name, complex(first_entry(end.point))), pair)
 
     def _replaced(self, pair: Pair, found: Osculation) -> Iterator[Item]:
-        """Yield the bar or block that stands for a pair, and its slide."""
+        """Yield the slide of the bar or block that replaces a pair."""
         first, second = (self.on.get(name, name) for name in pair.members[:2])
         new = f"{pair.name} {'block' if None in found[:2] else 'bar'}"
         if found.first is not None and found.second is not None:
@@ -146,7 +146,7 @@ class _Builder:
         self.found.append(Replacement(pair, new, None, found[:2]))
 
     def _named(self, name: str, place: complex, wanted: str, taken: str = "") -> str:
-        """Return the letter of a place of the world on a link. That of its point there, or a new one."""
+        """Return the letter of a link's point at a place of the world, which it gains if needed."""
         local = complex(self.poses[name].inverse().at(place).c[0])
         for letter, p in self.points[name].items():
             if abs(p - local) <= SAME * self.motion.size and letter != taken:
@@ -168,7 +168,7 @@ def _angle(end: End) -> float:
 
 
 def _plain(found: Osculation, size: float) -> Osculation:
-    """Return a replacement with numbers, None for a centre too far away."""
+    """Return centres of curvature as numbers, None for a centre too far away."""
     centres = (None if v is None else complex(first_entry(v)) for v in found[:2])
     first, second = (None if v is None or not abs(v) < STRAIGHT * size else v for v in centres)
     return Osculation(first, second, complex(first_entry(found.normal)))

@@ -27,7 +27,7 @@ from compoundkin.model.geometry import FRAME
 
 @dataclass(frozen=True)
 class TorquePort:
-    """A torque on `link` that acts against `on`. Its rate is their relative angular velocity, rad/s."""
+    """A torque on `link` that acts against `on`; its rate is their relative angular velocity, rad/s."""
 
     link: str
     on: str = FRAME
@@ -53,16 +53,15 @@ Port: TypeAlias = str | TorquePort | ForcePort
 @checked
 @np.errstate(all="ignore")
 def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage:
-    """Return how many times the force or torque at `input` is available at `output`.
+    """Return the ratio of the force or torque at `output` to that at `input`, at every pose, without friction.
 
-    At every pose, without friction.
     Each of the two is a link (its torque against the frame), a pair or a driver by name (the force or torque along its
     free coordinate), `TorquePort(link, on)` for a torque between any two links, or `ForcePort(link, point, angle)`
     for a force at a point. Positive where both rates have one sign. It does not depend on the driver's speed.
 
-    Raises UnknownName for a name that is not there; InvalidInput below order 1, for a driver at rest, for a link that
-    moves without turning (name its slide, or a `ForcePort`), and where several drivers move at one pose, for the
-    balance then depends on what the others do.
+    Raises UnknownName for an unknown name; InvalidInput below order 1, for a driver at rest, for a link that
+    moves without turning (name its slide, or a `ForcePort`), and where several drivers move at one pose: the
+    balance then depends on all of them.
     Source: power is conserved; Uicker, Pennock and Shigley, Theory of Machines and Mechanisms; for
     four-bars ``omega4 / omega2`` by the centres, Freudenstein's theorem.
 
@@ -90,7 +89,7 @@ def _rate(motion: Motion, port: Port, where: str) -> PortRate:
 
 
 def _named(motion: Motion, name: str, where: str) -> PortRate:
-    """Return the rate of the first that has one: a link that turns, a pair, a driver."""
+    """Return the rate of a turning link, else of a pair, else of a driver."""
     tables = [table for table in (motion.pairs, motion.drives) if name in table]
     is_link = name in motion.links and name != FRAME
     if is_link and not (tables and no_turning(motion, name)):

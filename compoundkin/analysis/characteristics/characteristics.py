@@ -34,15 +34,15 @@ from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import derivative_order
 from compoundkin.model.geometry import FRAME
 
-# A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
+# Tolerances: of a dwell in parts of the stroke, of a straight stretch in parts of the path's size.
 DWELL, STRAIGHT = 0.01, 0.001
-# A transmission angle below this (radians) is none: where it passes zero its place is known to about so much.
+# A transmission angle below this (radians) is zero within rounding.
 NOTHING = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
 class Characteristics:
-    """The figures of one design of a motion. Outputs are had by their names: `found["ram.displacement"].stroke`.
+    """The figures of one design of a motion; an output by its name, as in `figures["ram.displacement"].stroke`.
 
     `groups` have transmission angles or indices, `pressure_angles` and `coriolis` are ranges by the names of pairs'
     quantities, `advantages` those of outputs over the only driver that moves. `dead_points` are the driver's own: limit
@@ -61,15 +61,12 @@ class Characteristics:
 
     @cached_property
     def types(self) -> tuple[FourBar | SliderCrank, ...]:
-        """The types of its loops of four links."""
+        """The types of the loops of four links."""
         return linkage_types(self.motion.structure, self.design if self._has_designs else 0)
 
     @cached_property
     def full_turns(self) -> Mapping[str, int]:
-        """How many full turns each link makes over a closed cycle.
-
-        It is empty where the motion is none.
-        """
+        """The number of full turns of each link over a closed cycle, empty for any other motion."""
         shape = self.motion.failed.shape
         if self.motion.inputs.poses < 3 or not closed_cycles(self.motion)[self.design]:
             return {}
@@ -86,7 +83,7 @@ class Characteristics:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is poor: transmission angles below 40 degrees on the way to an output."""
+        """Transmission angles below 40 degrees in groups that an output depends on, a sentence each."""
         return tuple(
             f"{one.name} falls to {_degrees(one.range.least.number):.3g} degrees on the way to the output"
             for one in self.groups
@@ -94,7 +91,7 @@ class Characteristics:
         )
 
     def __getitem__(self, name: str) -> OutputFigures:
-        """Return the figures of an output; raises UnknownName with the nearest there is."""
+        """Return the figures of an output. Raises UnknownName with the nearest known name."""
         named = {one.output.owner: one for one in reversed(self.outputs)} | {one.name: one for one in self.outputs}
         if name in named:
             return named[name]
@@ -106,8 +103,8 @@ class Characteristics:
             raise UnknownName(Problem(name, "there is no such output", suggestion(name, list(named)))) from None
         if meant.name in named:
             return named[meant.name]
-        asked = f"ask for it: characteristics(motion, [{name!r}])"
-        raise UnknownName(Problem(name, f"it is none of the outputs {', '.join(self.names) or '(none)'}", asked))
+        remedy = f"ask for it: characteristics(motion, [{name!r}])"
+        raise UnknownName(Problem(name, f"it is none of the outputs {', '.join(self.names) or '(none)'}", remedy))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -124,14 +121,13 @@ class Characteristics:
 def characteristics(
     motion: Motion, outputs: Sequence[str] = (), design: int = 0, dwell: float = DWELL, straight: float = STRAIGHT
 ) -> Characteristics:
-    """Return the figures of a motion that engineers ask for.
+    """Return the figures of a motion: stroke, time ratio, dead points, transmission, advantage and others.
 
-    They are stroke, time ratio, dead points, transmission, advantage and others. `outputs` are names of quantities,
-    those that the mechanism names if left out. A dwell stays within the part `dwell` of its stroke, a straight stretch
-    of a path within the part `straight` of the path's size. Everything is solved for between the poses too. What is not
-    defined is left out, and said in `notes`: of a single pose, of a motion with gaps, of several drivers.
+    `outputs` are names of quantities, by default those of the mechanism. A dwell stays within the part `dwell` of its
+    stroke, a straight stretch of a path within the part `straight` of the path's size. Figures are exact between the
+    poses too. `notes` name those that are not defined: for a single pose, a motion with gaps, several drivers.
 
-    Raises UnknownName for an output that is not there, InvalidInput for a design that is not.
+    Raises UnknownName for an unknown output, InvalidInput for an unknown design.
 
     >>> import compoundkin as ck
     >>> found = characteristics(ck.solve(ck.load("whitworth-quick-return")))
@@ -140,25 +136,25 @@ def characteristics(
     """
     _check(motion, design, dwell, straight)
     own = motion_of_design(motion, design)
-    asked = outputs_of(own, chosen_outputs(own, outputs))
+    chosen = outputs_of(own, chosen_outputs(own, outputs))
     groups = index_names(own)
     pressures, guides = pressure_names(own), coriolis_names(own)
     moving = moving_drivers(own, 0)
-    ratios = ratio_names(own, asked, 0)
-    found = (one for output in asked for one in output.measures(own))
+    ratios = ratio_names(own, chosen, 0)
+    found = (one for output in chosen for one in output.measures(own))
     measures = {one.name if isinstance(one, Measure) else one: one for one in found}
     besides = dict.fromkeys((*groups, *pressures, *guides, *ratios.values()))
     ranges = ranges_of(own, 0, [*measures.values(), *(name for name in besides if name not in measures)])
-    way = groups_of_outputs(own.structure, asked)
-    figures = tuple(OutputFigures(own, 0, one, ranges, dwell, straight) for one in asked)
+    relevant = groups_of_outputs(own.structure, chosen)
+    figures = tuple(OutputFigures(own, 0, one, ranges, dwell, straight) for one in chosen)
     return Characteristics(
         motion,
         design,
         figures,
-        group_figures(own, groups, ranges, way),
+        group_figures(own, groups, ranges, relevant),
         {name: ranges[name] for name in pressures if name in ranges},
         {name: ranges[name] for name in guides if name in ranges},
-        advantages(own, 0, asked, ratios, ranges),
+        advantages(own, 0, chosen, ratios, ranges),
         dead_points_of_driver(own, 0, figures),
         tuple(_notes(own, 0, moving)),
     )
@@ -172,33 +168,33 @@ def _check(motion: Motion, design: int, dwell: float, straight: float) -> None:
 
 
 def _degrees(angle: float) -> float:
-    """Return an angle in degrees, 0 where only rounding is left of it."""
+    """Return an angle in degrees, 0 within rounding."""
     return float(np.rad2deg(angle)) if angle > NOTHING else 0.0
 
 
 def _notes(motion: Motion, design: int, moving: tuple[str, ...]) -> list[str]:
-    """Return what is not defined for such a motion, and why."""
-    told = []
+    """Return the figures that are not defined for a motion, with the reasons."""
+    notes = []
     if motion.inputs.poses < 2:
-        told.append("A single pose: strokes, dead points, time ratios, dwells and paths take a motion over several.")
+        notes.append("A single pose: strokes, dead points, time ratios, dwells and paths take a motion over several.")
     missing = int(np.count_nonzero(np.broadcast_to(motion.failed, motion.failed.shape)[design]))
     if missing:
-        told.append(f"{missing:,} of {motion.inputs.poses:,} poses cannot be assembled: figures are of what can be,"
+        notes.append(f"{missing:,} of {motion.inputs.poses:,} poses cannot be assembled: figures are of what can be,"
                     " time ratios are not defined.")  # fmt: skip
     if motion.time is None and not any(np.any(rates[1]) for rates in motion.inputs.drives.values()):
-        told.append("No driver has a speed: rates are zero, velocity ratios and mechanical advantage are not defined.")
+        notes.append("No driver has a speed: rates are zero, velocity ratios and mechanical advantage are not defined.")
     if len(moving) > 1:
-        told.append(f"Several drivers move ({', '.join(moving)}): time ratios by a driver's angle, velocity ratios and"
+        notes.append(f"Several drivers move ({', '.join(moving)}): time ratios by a driver's angle, velocity ratios and"
                     " mechanical advantage are not defined.")  # fmt: skip
-    return told
+    return notes
 
 
 @dataclass(frozen=True, eq=False)
 class DriverDeadPoint:
-    """A limit position, beyond which the driver cannot go.
+    """A limit position, beyond which the driver cannot move.
 
-    It has the drivers' values, what outputs are there, and why. `place` counts the poses of the motion from 0. `reason`
-    is empty where the motion ends just there.
+    `at` are the drivers' values, `values` those of outputs. `place` counts the poses of the motion from 0. `reason` is
+    empty where the motion ends just there.
     """
 
     at: Mapping[str, Quantity]
@@ -216,7 +212,7 @@ def dead_points_of_driver(motion: Motion, design: int, outputs: Iterable[OutputF
     if not len(places):
         return ()
     there = between(motion, design, places, 0)
-    # what takes rates, such as a force, has no limit there
+    # quantities of rates, such as forces, have no limit there
     named = [one.output.coordinate for one in outputs if one.least is not None]
     known = [quantity(there, name) for name in named if derivative_order(name) == 0]
     at = drivers_at(motion, design, places.tolist())
@@ -232,7 +228,7 @@ def dead_points_of_driver(motion: Motion, design: int, outputs: Iterable[OutputF
 
 
 def _reason(motion: Motion, design: int, place: float) -> str:
-    """Return why poses beside a place cannot be assembled."""
+    """Return the reason why poses beside a place cannot be assembled."""
     axes = motion.shape[:-1]
     index = tuple(int(i) for i in np.unravel_index(design, axes)) if axes else ()
     mine = (gap for gap in gaps(motion) if gap.design == index)

@@ -17,9 +17,9 @@ from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimen
 
 @dataclass(frozen=True, eq=False)
 class PlacedFigure:
-    """A value with what the drivers are there; angles in radians.
+    """A value with the drivers' values there, and the time of a motion in time; angles in radians.
 
-    Where the motion is in time it has the time too. `place` counts the poses of the motion from 0.
+    `place` counts the poses of the motion from 0.
     """
 
     value: Quantity
@@ -37,10 +37,7 @@ class PlacedFigure:
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """The least and the greatest value of a quantity over a motion. None of a motion that is nowhere assembled.
-
-    `rests` tells whether it keeps one of them from its place on.
-    """
+    """The least and the greatest value of a quantity over a motion; `rests` is whether it dwells at one of them."""
 
     least: PlacedFigure
     greatest: PlacedFigure
@@ -54,7 +51,7 @@ class Range:
 
 
 def displayed_number(one: Quantity) -> str:
-    """Return a quantity of one value as it is told, angles in degrees.
+    """Return a quantity of one value in words, angles in degrees.
 
     >>> displayed_number(Quantity("crank", "rad", np.pi))
     'crank 180 deg'
@@ -78,10 +75,7 @@ def scalar_quantity(name: str, value: float, unit: str) -> Quantity:
 
 
 def drivers_at(motion: Motion, design: int, places: Sequence[float]) -> list[dict[str, Quantity]]:
-    """Return the values of the moving drivers at places.
-
-    Where the motion is in time that comes first. Of all drivers where none moves.
-    """
+    """Return the values of the moving drivers at places, of all drivers if none moves; the time comes first."""
     found = Places(motion, np.full(len(places), design), np.array(places, dtype=float))
     columns = {}
     if found.time is not None:
@@ -102,10 +96,9 @@ def moving_drivers(motion: Motion, design: int) -> tuple[str, ...]:
 
 
 def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> dict[str, Range]:
-    """Return the ranges of real quantities, solved for between poses.
+    """Return the ranges of real quantities, exact between poses; those of a single pose are its values.
 
-    Of a single pose they are the values there. Quantities that the motion cannot have, such as ratios where several
-    drivers move, are left out.
+    Quantities that the motion does not define, such as ratios where several drivers move, are left out.
     """
     if motion.inputs.poses < 2:
         return _at_pose(motion, design, [one if isinstance(one, str) else one.name for one in asked])

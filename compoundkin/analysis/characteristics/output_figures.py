@@ -43,11 +43,11 @@ from compoundkin.model.attributes import (
 
 @dataclass(frozen=True, eq=False)
 class OutputFigures:
-    """The figures of one output over a motion, with where along it each is.
+    """The figures of one output over a motion, with their places along it.
 
-    Of a point that moves in the plane there is no least and no greatest value, but a `path`. None, or nothing, stands
-    for what is not defined: the time ratio of what does not go to and fro in a cycle of one driver, for one. Dwells
-    are intervals within the part `dwell` of the stroke, stretches of paths are within the part `straight` of its size.
+    A point that moves in the plane has no least and no greatest value, but a `path`. Figures that are not defined are
+    None or empty, such as the time ratio of an output that does not reciprocate in a cycle of one driver. Dwells are
+    intervals within the part `dwell` of the stroke, stretches of paths are within the part `straight` of its size.
     """
 
     motion: Motion
@@ -59,17 +59,17 @@ class OutputFigures:
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """The name of the output."""
         return self.output.name
 
     @property
     def least(self) -> PlacedFigure | None:
-        """The least value, where it is first taken."""
+        """The least value, at its first place."""
         return self.ranges[self.output.coordinate].least if self.output.coordinate in self.ranges else None
 
     @property
     def greatest(self) -> PlacedFigure | None:
-        """The greatest value, where it is first taken."""
+        """The greatest value, at its first place."""
         return self.ranges[self.output.coordinate].greatest if self.output.coordinate in self.ranges else None
 
     @property
@@ -80,10 +80,7 @@ class OutputFigures:
 
     @cached_property
     def stroke(self) -> Quantity | None:
-        """The greatest less the least value. None where it passes infinity.
-
-        Of a point that goes to and fro along a line it is how far.
-        """
+        """The greatest minus the least value, None where it passes infinity; of a point on a line the path's length."""
         if self.motion.inputs.poses < 2:
             return None
         if self.least is not None and self.greatest is not None:
@@ -100,7 +97,7 @@ class OutputFigures:
 
     @cached_property
     def pieces(self) -> tuple[PieceStroke, ...]:
-        """Its strokes over the assembled pieces of the motion, where that is not one."""
+        """The strokes over the assembled pieces of a motion with gaps."""
         failed = np.broadcast_to(self.motion.failed != 0, (self.motion.inputs.designs, self.motion.inputs.poses))
         if self.least is None or self.motion.inputs.poses < 2 or not failed[self.design].any():
             return ()
@@ -118,7 +115,7 @@ class OutputFigures:
 
     @cached_property
     def dead_points(self) -> tuple[PlacedFigure, ...]:
-        """Where it turns back: its values there, in the order of the motion."""
+        """The values at which it turns back, in the order of the motion."""
         if not self.moves or self.output.rate not in self.ranges:
             return ()
         if (turning := self._at_extremes()) is not None:
@@ -130,7 +127,7 @@ class OutputFigures:
 
     @cached_property
     def quick_return(self) -> QuickReturn | None:
-        """How long the stroke takes forth and back in a cycle. None where it rests at an end of it, or turns on."""
+        """The durations of the forward and the return stroke in a cycle. None if it dwells at an end or turns on."""
         if not self.moves or not self.cycle or len(self.dead_points) < 2 or self._turns_on:
             return None
         if self.ranges[self.output.coordinate].rests:
@@ -141,7 +138,7 @@ class OutputFigures:
 
     @property
     def _turns_on(self) -> bool:
-        """Whether it is elsewhere after the cycle, a turn further."""
+        """Whether it ends a turn further after the cycle."""
         assert self.stroke is not None
         course = quantity(self.motion, self.output.coordinate).values
         row = np.broadcast_to(course, self.motion.shape).reshape(self.motion.inputs.designs, -1)[self.design]
@@ -149,16 +146,16 @@ class OutputFigures:
 
     @property
     def time_ratio(self) -> Quantity | None:
-        """The longer way of the driver, forth or back, by the shorter one."""
+        """The longer of forward and return stroke divided by the shorter, in angles of the driver or times."""
         return self.quick_return.time_ratio if self.quick_return else None
 
     @cached_property
     def dwells(self) -> tuple[Dwell, ...]:
-        """Where it changes by no more than the part `dwell` of its stroke."""
+        """The intervals in which it changes by no more than the part `dwell` of its stroke."""
         return self._course.dwells() if self.moves and self.stroke is not None else ()
 
     def may_dwell(self, part: float) -> bool:
-        """Tell from the poses whether a dwell may take a part of the motion."""
+        """Return, from the poses alone, whether a dwell may last a part of the motion."""
         return self.moves and self.stroke is not None and self._course.may_dwell(part)
 
     @property
@@ -176,7 +173,7 @@ class OutputFigures:
 
     @cached_property
     def path(self) -> PathFeatures | None:
-        """The features of the path of a point that moves; None for others."""
+        """The features of the path of a moving point, None for other outputs."""
         if not self.output.is_point:
             return None
         try:
@@ -187,7 +184,7 @@ class OutputFigures:
 
     @cached_property
     def cycle(self) -> float:
-        """How many poses a closed cycle has; 0 where the motion is none."""
+        """The number of poses of a closed cycle, 0 for any other motion."""
         closed = self.motion.inputs.poses > 1 and bool(closed_cycles(self.motion)[self.design])
         return float(self.motion.inputs.poses - 1) if closed else 0.0
 
@@ -210,7 +207,7 @@ class OutputFigures:
         )
 
     def _at_extremes(self) -> tuple[PlacedFigure, ...] | None:
-        """Return the dead points where the least and the greatest value are all there are; None where they are not."""
+        """Return the dead points if the least and the greatest value are the only ones, else None."""
         if self.motion.order < 1 or self.motion.time is not None:
             return None
         found = quantity(self.motion, self.output.rate).values
@@ -230,16 +227,16 @@ class OutputFigures:
         return f"OutputFigures({', '.join([self.name, *map(displayed_number, parts)])})"
 
 
-# A driver goes round where it turns by a full turn but for this (radians): rounding of degrees.
+# A driver makes a full turn within this (radians): rounding of degrees.
 SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class QuickReturn:
-    """How long a stroke takes forth and back. The time ratio is that of the longer to the shorter, one at least.
+    """The durations of the forward and the return stroke, and the ratio of the longer to the shorter.
 
-    `forth` from the least to the greatest value and `back` are angles of the driver, times where the motion is in time.
-    The imbalance is by how much the driver's way of either differs from half a turn; None in time.
+    `forth`, from the least to the greatest value, and `back` are angles of the driver, or times of a motion in time.
+    The imbalance is the difference of either angle from half a turn; None in time.
     """
 
     forth: Quantity
@@ -251,10 +248,9 @@ class QuickReturn:
 def quick_return_between(
     motion: Motion, design: int, cycle: float, name: str, ends: tuple[PlacedFigure, PlacedFigure]
 ) -> QuickReturn | None:
-    """Return how long a stroke takes forth and back.
+    """Return the durations of the strokes between the least and the greatest value of a cycle of so many poses.
 
-    It is between its least and its greatest value. None where neither one driver goes round once nor the motion is in
-    time. `cycle` is how many poses it has.
+    None unless one driver makes one full turn or the motion is in time.
     """
     begin, end = drivers_at(motion, design, [0.0, cycle])
     driver, first = next(iter(begin.items()))
@@ -267,27 +263,20 @@ def quick_return_between(
     if not min(forth, back) > 0.0:
         return None
     ratio = Quantity(f"{name}.{TIME_RATIO}", "", max(forth, back) / min(forth, back))
-    imbalance = (
-        scalar_quantity(f"{name}.{IMBALANCE}", abs(forth - back) / 2.0, first.unit) if first.unit == RADIANS else None
-    )
-    there, back_again = (
-        scalar_quantity(f"{name}.forth", forth, first.unit),
-        scalar_quantity(f"{name}.back", back, first.unit),
-    )
-    return QuickReturn(there, back_again, ratio, imbalance)
+    half = abs(forth - back) / 2.0
+    imbalance = scalar_quantity(f"{name}.{IMBALANCE}", half, first.unit) if first.unit == RADIANS else None
+    strokes = (scalar_quantity(f"{name}.{word}", v, first.unit) for word, v in (("forth", forth), ("back", back)))
+    return QuickReturn(*strokes, ratio, imbalance)
 
 
 def _goes_round(begin: Mapping[str, Quantity], whole: float) -> bool:
-    """Tell whether one driver alone moves, by a full turn."""
+    """Return whether one driver alone moves, by a full turn."""
     return len(begin) == 1 and next(iter(begin.values())).unit == RADIANS and abs(abs(whole) - TURN) <= SAME
 
 
 @dataclass(frozen=True, eq=False)
 class PieceStroke:
-    """The stroke of an output over one assembled piece of a motion.
-
-    The piece goes from `begin` to `end` of the drivers.
-    """
+    """The stroke of an output over one assembled piece of a motion, between drivers' values `begin` and `end`."""
 
     begin: Mapping[str, Quantity]
     end: Mapping[str, Quantity]
@@ -296,7 +285,7 @@ class PieceStroke:
 
     @property
     def stroke(self) -> Quantity:
-        """The greatest less the least value."""
+        """The greatest minus the least value."""
         far = float(self.greatest.values) - float(self.least.values)
         return scalar_quantity(self.greatest.name.replace(GREATEST, STROKE), far, self.greatest.unit)
 

@@ -30,17 +30,16 @@ from compoundkin.model.attributes import (
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 
-# How many outputs are chosen where the mechanism names none.
+# Number of outputs of a mechanism that names none.
 MOST_OUTPUTS = 6
 
 
 @dataclass(frozen=True)
 class Output:
-    """An output: a point that moves in the plane, or a coordinate.
+    """An output: a point that moves in the plane, or a coordinate of a link, pair, driver or point.
 
-    That is of a link, a pair or a driver, or of a point along an axis. `coordinate`, `rate` and `second` are names of
-    real quantities; a point that moves in the plane has no coordinate, and its rates are lengths of vectors. What is
-    derived, such as a transmission angle, has no rates.
+    `coordinate`, `rate` and `second` are names of real quantities; a point that moves in the plane has no coordinate,
+    and its rates are lengths of vectors. Derived quantities, such as a transmission angle, have no rates.
     """
 
     name: str
@@ -57,14 +56,11 @@ class Output:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of its quantities, as far as it has them."""
+        """The names of its quantities."""
         return tuple(name for name in (self.coordinate, self.rate, self.second) if name)
 
     def measures(self, motion: Motion) -> tuple[str | Measure, ...]:
-        """Return its quantities as they are searched along a motion.
-
-        They are read without looking for names each time.
-        """
+        """Return its quantities as measures along a motion, without a search by name each time."""
         if not self.rate or (self.kind == "points" and self.coordinate):
             return self.names
         is_angle = self.kind == "links" or (self.kind != "points" and getattr(motion, self.kind)[self.owner].is_angle)
@@ -85,14 +81,14 @@ class Output:
 
 
 def outputs_of(motion: Motion, names: Sequence[str]) -> tuple[Output, ...]:
-    """Return the outputs that names of quantities mean, each once. Raises UnknownName with the nearest known name.
+    """Return the outputs of names of quantities, each once. Raises UnknownName with the nearest known name.
 
     >>> import compoundkin as ck
     >>> motion = ck.solve(ck.load("six-bar"))
     >>> [(one.name, one.coordinate, one.rate) for one in outputs_of(motion, ["G.velocity", "rocker"])]
     [('G', '', 'G.velocity.length'), ('rocker.angle', 'rocker.angle', 'rocker.angular_velocity')]
     """
-    # the figure of a whole motion means the quantity that it is of
+    # a figure of the whole motion stands for its quantity
     found = (_output(motion, motion_figure(name)[0]) for name in names)
     return tuple({one.name: one for one in found}.values())
 
@@ -109,7 +105,7 @@ def _output(motion: Motion, name: str) -> Output:
 
 
 def _derived(motion: Motion, name: str) -> Output:
-    """Return what is derived of an owner as an output; a vector goes by its length."""
+    """Return a derived quantity of an owner as an output, a vector by its length."""
     found = quantity(motion, name)
     owner, kind = next(
         (owner, kind)
@@ -121,7 +117,7 @@ def _derived(motion: Motion, name: str) -> Output:
 
 
 def _readings(name: str) -> list[tuple[str, str, str]]:
-    """Return how a name may be read: as an owner with a word and the part of a vector, both perhaps left out."""
+    """Return the readings of a name as owner, word and part of a vector, the last two optional."""
     head, _, last = name.rpartition(".")
     front, _, middle = head.rpartition(".")
     return [(name, "", ""), (head, last, ""), (front, middle, last)]
@@ -140,7 +136,7 @@ def _of(motion: Motion, kind: Kind, owner: str, word: str, part: str) -> Output:
 
 
 def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the outputs of a mechanism that names none. Tracer points and links without a driver, a few.
+    """Return the outputs that a mechanism names, else a few tracer points and links without a driver.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = link("crank", A=0, B=1), link("rod", B=0, P=2), link("frame", A=0)
@@ -162,8 +158,5 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the outputs asked for, else the mechanism's by default.
-
-    The motion must have been solved for the latter.
-    """
+    """Return the given outputs, else the default ones within the order of the motion."""
     return tuple(outputs) or tuple(n for n in default_outputs(motion.mechanism) if derivative_order(n) <= motion.order)

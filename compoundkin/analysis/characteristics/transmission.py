@@ -40,10 +40,9 @@ LEAST_ANGLE = np.deg2rad(40.0)
 
 @dataclass(frozen=True, eq=False)
 class GroupFigures:
-    """How the group of some links passes on forces.
+    """The range of the transmission angle (radians) of a dyad, or of the index (0 to 1) of another group.
 
-    The range is that of the transmission angle (radians) or index. A dyad has an angle, other groups an index from 0 to
-    1. It is on the way where an output that was named depends on it.
+    It is `on_the_way` where an output depends on it.
     """
 
     group: Group
@@ -59,16 +58,16 @@ class GroupFigures:
 
 
 def index_names(motion: Motion) -> dict[str, Group]:
-    """Return the transmission indices of a motion's groups, by the names of their quantities.
+    """Return the groups by the names of their transmission indices.
 
-    Of a dyad it is the sine of the transmission angle, and smooth where that is a right one.
+    A dyad's index is the sine of its transmission angle, which is smooth at a right angle.
     """
     owners = ((group, owner_of(motion, "links", group.links[0])) for group in motion.structure.groups)
     return {f"{group.links[0]}.{TRANSMISSION_INDEX}": group for group, one in owners if one.has(TRANSMISSION_INDEX)}
 
 
 def pressure_names(motion: Motion) -> tuple[str, ...]:
-    """Return the pressure angles of a motion's cams, by the names of their quantities."""
+    """Return the names of the pressure angles of a motion's cams."""
     return tuple(_names(motion, PRESSURE_ANGLE))
 
 
@@ -82,9 +81,7 @@ def _names(motion: Motion, word: str) -> Iterable[str]:
 
 
 def groups_of_outputs(structure: Structure, outputs: Iterable[Output]) -> set[int]:
-    """Return the groups, by their indices, that outputs depend on.
-
-    They are those that solve them, and all before those.
+    """Return the indices of the groups that outputs depend on.
 
     >>> import compoundkin as ck
     >>> from compoundkin.analysis.characteristics.outputs import outputs_of
@@ -104,7 +101,7 @@ def groups_of_outputs(structure: Structure, outputs: Iterable[Output]) -> set[in
 
 
 def _links(structure: Structure, output: Output) -> tuple[str, ...]:
-    """Return the links whose motion an output is that of."""
+    """Return the links that move an output."""
     if output.kind == "links":
         return (output.owner,)
     if output.kind == "points":
@@ -116,7 +113,7 @@ def _links(structure: Structure, output: Output) -> tuple[str, ...]:
 def group_figures(
     motion: Motion, names: Mapping[str, Group], ranges: Mapping[str, Range], on_the_way: set[int]
 ) -> tuple[GroupFigures, ...]:
-    """Return the figures of groups, in solving order: of dyads angles, of others indices."""
+    """Return the figures of groups in solving order: angles of dyads, indices of others."""
     index = {group.links: k for k, group in enumerate(motion.structure.groups)}
     found = []
     for name, group in names.items():
@@ -144,11 +141,10 @@ TURNS = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class AdvantageFigures:
-    """The velocity ratio of an output to the driver, and its mechanical advantage.
+    """The velocity ratio of an output to the only driver that moves, and its mechanical advantage.
 
-    The driver is the only one that moves. The advantage is the reciprocal of the ratio: least where the ratio is
-    farthest from zero. Where the ratio passes zero, at the dead points of the output, it grows without limit: those are
-    `toggles`.
+    The advantage is the reciprocal of the ratio, least where the ratio is farthest from zero. It grows without limit at
+    `toggles`, the dead points of the output, where the ratio passes zero.
     """
 
     owner: str
@@ -174,16 +170,16 @@ class AdvantageFigures:
 
     @property
     def toggles(self) -> bool:
-        """Whether it grows without limit somewhere."""
+        """Whether the advantage grows without limit at some place."""
         most = abs(self.ratio.absolute.number)
         slack = ROUNDING * most if np.isfinite(most) else 0.0
         return self.ratio.least.number <= slack and self.ratio.greatest.number >= -slack
 
 
 def ratio_names(motion: Motion, outputs: Iterable[Output], design: int) -> dict[str, str]:
-    """Return the names of the velocity ratios to be searched, by their owners.
+    """Return the names of the velocity ratios by their owners.
 
-    None where the driver has one speed: ratios then follow from rates.
+    It is empty for a driver of constant speed: ratios then follow from rates.
     """
     if len(moving_drivers(motion, design)) > 1 or steady_speed(motion, design) is not None:
         return {}
@@ -193,7 +189,7 @@ def ratio_names(motion: Motion, outputs: Iterable[Output], design: int) -> dict[
 
 
 def _turning(motion: Motion, outputs: Iterable[Output]) -> Iterator[Output]:
-    """Return the links and pairs among outputs that have a velocity ratio; drivers themselves have none."""
+    """Yield the outputs with a velocity ratio: turning links, and pairs, without drivers."""
     driven = {drive.link for drive in motion.mechanism.drives} | set(motion.drives)
     for one in (one for one in outputs if one.kind in ("links", "pairs") and one.owner not in driven and one.rate):
         turns = one.kind == "pairs" or _turned(motion.links[one.owner].angle) > TURNS
@@ -202,7 +198,7 @@ def _turning(motion: Motion, outputs: Iterable[Output]) -> Iterator[Output]:
 
 
 def _turned(angle: Number) -> float:
-    """Return by how much an angle changes along a motion at most, 0 where nothing is assembled."""
+    """Return the greatest change of an angle along a motion, 0 if nothing is assembled."""
     shape = np.shape(angle)
     known = np.reshape(angle, (-1, shape[-1] if shape else 1))
     rows = [row[np.isfinite(row)] for row in known]
@@ -210,7 +206,7 @@ def _turned(angle: Number) -> float:
 
 
 def steady_speed(motion: Motion, design: int) -> float | None:
-    """Return the speed of the only driver that moves. None where it changes, is zero, or several move."""
+    """Return the constant speed of the only driver that moves, else None."""
     moving = moving_drivers(motion, design)
     if len(moving) != 1:
         return None
@@ -222,7 +218,7 @@ def steady_speed(motion: Motion, design: int) -> float | None:
 def advantages(
     motion: Motion, design: int, outputs: Iterable[Output], names: Mapping[str, str], ranges: Mapping[str, Range]
 ) -> tuple[AdvantageFigures, ...]:
-    """Return the figures of all outputs that move at some pose."""
+    """Return the advantages of all outputs that move."""
     speed = steady_speed(motion, design)
     found = {owner: ranges[name] for owner, name in names.items() if name in ranges}
     if speed is not None:
@@ -232,7 +228,7 @@ def advantages(
 
 
 def _by_speed(motion: Motion, design: int, output: Output, rate: Range, speed: float) -> Range:
-    """Return the range of a velocity ratio from that of a rate, the driver having one speed."""
+    """Return the range of a velocity ratio from that of a rate, at a constant speed of the driver."""
     driver = motion.drives[moving_drivers(motion, design)[0]]
     own = output.kind == "links" or motion.pairs[output.owner].is_angle
     unit = ratio_unit(motion.mechanism.unit, coordinate_dimension(own), coordinate_dimension(driver.is_angle))
