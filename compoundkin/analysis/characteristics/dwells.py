@@ -17,7 +17,7 @@ from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import derivative_order
 
-# A motion is shown by about so many samples when dwells are looked for.
+# Approximate number of samples of a motion in the search for dwells.
 SAMPLES = 288
 # A dwell takes at least this part of the motion.
 SHORTEST = 1.0 / 36.0
@@ -27,8 +27,8 @@ SHORTEST = 1.0 / 36.0
 class Dwell:
     """An interval in which an output changes by no more than a tolerance.
 
-    `begin` and `end` are the drivers' values there, `span` how far the only driver that moves goes, or for how long
-    where the motion is in time; `value` is the middle of the band the output stays in, `poses` how many poses it takes.
+    `begin` and `end` are the drivers' values, `span` is the travel of the only moving driver, or the duration in a
+    motion in time; `value` is the middle of the band of the output, `poses` the number of poses.
     """
 
     begin: Mapping[str, Quantity]
@@ -39,11 +39,10 @@ class Dwell:
 
 
 @dataclass(frozen=True, eq=False)
-class OutputCourse:
-    """The course of a coordinate along a motion, in which dwells are looked for.
+class OutputDwells:
+    """A coordinate along a motion, with its dwells within a `tolerance`.
 
-    They are within a `tolerance`. It comes again after a `cycle` of so many poses, where that is not zero. `turns` are
-    the places of its dead points.
+    It repeats after a `cycle` of so many poses, unless that is zero. `turns` are the places of its dead points.
     """
 
     motion: Motion
@@ -55,12 +54,12 @@ class OutputCourse:
     turns: tuple[float, ...]
 
     def dwells(self) -> tuple[Dwell, ...]:
-        """Return its dwells in their order."""
+        """Return the dwells in order."""
         spans = dwells(self._sampled, self.tolerance, SHORTEST * (self.motion.inputs.poses - 1))
         return tuple(map(self._dwell, spans))
 
     def may_dwell(self, part: float) -> bool:
-        """Tell from the poses whether a dwell may take a part of the motion."""
+        """Return, from the poses alone, whether a dwell may last a part of the motion."""
         shape = self.motion.inputs.designs, self.motion.inputs.poses
         found = quantity(self.motion, self.coordinate).values
         values = np.broadcast_to(found, self.motion.shape).reshape(shape)[self.design]
@@ -68,7 +67,7 @@ class OutputCourse:
 
     @cached_property
     def _sampled(self) -> Sampled:
-        """The coordinate at places, the poses and dead points among them."""
+        """The coordinate at places that include the poses and dead points."""
         last = self.motion.inputs.poses - 1
         count = last * max(1, -(-SAMPLES // last)) + 1
         places = np.union1d(np.linspace(0.0, last, count), self.turns)
@@ -97,17 +96,15 @@ class OutputCourse:
         )
 
 
-# It is slower in a dwell than this part of its mean speed.
+# In a dwell the speed is below this part of the mean.
 SLOW = 0.7
-# The ends are right to this part of the tolerance, after so many steps of false position at most.
+# Accuracy of the ends, in parts of the tolerance, and most steps of false position.
 FLAT, TRIALS = 1e-12, 60
 
 
 @dataclass(frozen=True)
 class DwellSpan:
-    """An interval in which a quantity stays between `low` and `high`.
-
-    It goes from place to place, 0 the first pose.
+    """An interval of places (0 the first pose) in which a quantity stays between `low` and `high`.
 
     In a cycle it may end beyond the last place, which is the first one again.
     """
@@ -120,9 +117,9 @@ class DwellSpan:
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """A real quantity at places in their order, and a function for all others.
+    """A real quantity at places in order, and a function for all others.
 
-    After a `cycle` it comes again, greater by `advance`: the last sample is then the first one of the next.
+    After a `cycle` it repeats, greater by `advance`: the last sample is then the first one of the next cycle.
     """
 
     places: Number

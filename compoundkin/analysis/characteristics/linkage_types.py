@@ -48,7 +48,7 @@ class SliderCrank:
 
     @property
     def margin(self) -> float:
-        """The longer bar less the shorter one and the offset. Negative: none turns fully."""
+        """The longer bar minus the shorter one and the offset; negative if none turns fully."""
         return max(self.lengths) - min(self.lengths) - self.offset
 
     @property
@@ -67,7 +67,7 @@ class SliderCrank:
 
     @property
     def name(self) -> str:
-        """What such a linkage is called, by its base."""
+        """The name of the type, by its base."""
         if self.links[0] in self.bars:
             return f"inverted slider-crank, {self._guide} guide"
         line = "in-line" if self.offset <= EQUAL * sum(self.lengths) else "offset"
@@ -76,7 +76,7 @@ class SliderCrank:
 
     @property
     def _pinned(self) -> str:
-        """The bar that is pinned to the base, where that is no bar itself."""
+        """The bar pinned to a base that is no bar itself."""
         return self.bars[0] if self.bars[0] in (self.links[1], self.links[3]) else self.bars[1]
 
     @property
@@ -94,8 +94,8 @@ class SliderCrank:
 def linkage_types(what: Mechanism | Structure, design: int = 0) -> tuple[FourBar | SliderCrank, ...]:
     """Return the type of every loop of four links, those with the frame first.
 
-    Of several designs that of one, by its index; `four_bar_code` takes arrays of lengths. Raises InvalidInput for a
-    design that is not there.
+    `design` is the index of one of several designs; `four_bar_code` takes arrays of lengths. Raises InvalidInput for an
+    unknown design.
 
     >>> import compoundkin as ck
     >>> linkage_types(ck.load("crank-rocker"))[0].name
@@ -111,7 +111,7 @@ def linkage_types(what: Mechanism | Structure, design: int = 0) -> tuple[FourBar
 
 
 def _designs(structure: Structure) -> int:
-    """Tell how many designs the dimensions of the links are of: the product of all axes but the last."""
+    """Return the number of designs of the dimensions: the product of all axes but the last."""
     shapes = (np.shape(value) for points in structure.mechanism.geometry.points.values() for value in points.values())
     return prod(np.broadcast_shapes(*shapes)[:-1])
 
@@ -124,10 +124,7 @@ class MeasuredLoops:
     design: int = 0
 
     def four_bar(self, loop: FourLinks) -> FourBar | None:
-        """Return a loop of four pins with its type.
-
-        None where two of its pins are at one place.
-        """
+        """Return a loop of four pins with its type, None if two of its pins coincide."""
         base, one, coupler, other = (
             self._distance(link, loop.joints[k - 1], loop.joints[k]) for k, link in enumerate(loop.links)
         )
@@ -137,10 +134,7 @@ class MeasuredLoops:
         return FourBar(loop.links, loop.joints, (base, one, coupler, other), code, loop.driven)
 
     def slider_crank(self, loop: FourLinks) -> SliderCrank | None:
-        """Return a loop with a slide and its type, or None.
-
-        There is none where a bar has no length.
-        """
+        """Return a loop with a slide and its type, None if a bar has no length."""
         at = loop.joints.index(loop.slide)
         sides = loop.links[at], loop.links[(at + 1) % 4]
         k = [(at + 2) % 4, (at + 3) % 4]
@@ -156,7 +150,7 @@ class MeasuredLoops:
         return abs(complex(self._one(points[second] - points[first])))
 
     def _offset(self, slide: str, pins: dict[str, str]) -> float:
-        """Return how far apart the lines are along which the pins on the two sides of a slide move."""
+        """Return the distance of the lines along which the pins on the two sides of a slide move."""
         geometry = self.structure.mechanism.geometry
         pair = next(pair for pair in self.structure.mechanism.written_pairs if pair.name == slide)
         across = []
@@ -173,7 +167,7 @@ class MeasuredLoops:
         return rows[min(self.design, len(rows) - 1), 0]
 
 
-# Lengths whose sums differ by less than this part of the loop are equal: a change point, and not a gap of rounding.
+# Sums of lengths that differ by less than this part of the loop are equal: a change point.
 EQUAL = 1e-9
 # Three links that rock, before the number of the longest link.
 _ROCKERS = 3 * "R"
@@ -212,7 +206,7 @@ class FourBar:
 
     @property
     def name(self) -> str:
-        """What such a linkage is called."""
+        """The name of the type."""
         if self.code == "S2X":
             base, one, _, other = self.lengths
             return PARALLELOGRAM if abs(one - other) < min(abs(base - one), abs(base - other)) else KITE
@@ -232,7 +226,7 @@ class FourBar:
         return tuple(link for link, letter in zip(self.links[1:], letters, strict=False) if letter == "C")
 
     def _may_turn(self, k: int) -> bool:
-        """Tell whether a link can be beside the base in both directions."""
+        """Return whether a link can be in line with the base in both directions."""
         base, own = self.lengths[0], self.lengths[k]
         one, other = (length for i, length in enumerate(self.lengths) if i not in (0, k))
         near = EQUAL * sum(self.lengths)
@@ -245,7 +239,7 @@ class FourBar:
 
     @property
     def margin(self) -> float:
-        """The other two lengths less the shortest and the longest. Negative: no link turns."""
+        """The other two lengths minus the shortest and the longest; negative if no link turns fully."""
         short, second, third, long = sorted(self.lengths)
         return second + third - short - long
 
@@ -256,9 +250,7 @@ class FourBar:
 
 @checked
 def four_bar_code(base: Any, input: Any, coupler: Any, output: Any) -> Number:
-    """Return Barker's codes of four-bars by their lengths, numbers or arrays.
-
-    An empty code where no such lengths can be assembled.
+    """Return Barker's codes of four-bars by their lengths, numbers or arrays; empty where they cannot be assembled.
 
     >>> four_bar_code(2.0, 1.0, [2.5, 0.7, 6.0], 2.5).tolist()
     ['GCRR', 'RRR4', '']
@@ -278,11 +270,11 @@ def four_bar_code(base: Any, input: Any, coupler: Any, output: Any) -> Number:
 
 
 def _lengths(**given: Any) -> Number:
-    """Return the lengths of links in a last axis of four. Raises InvalidInput for what is no length."""
+    """Return the lengths of links in a last axis of four. Raises InvalidInput for invalid lengths."""
     lengths = {name: real_numbers(name, value) for name, value in given.items()}
     for name, value in lengths.items():
         if not np.all((value > 0) & (value < LONGEST)):
-            raise InvalidInput(Problem(name, "links of a four-bar are longer than nothing", "give positive lengths"))
+            raise InvalidInput(Problem(name, "the length of a link of a four-bar is positive", "give positive lengths"))
     try:
         return np.stack(np.broadcast_arrays(*lengths.values()), axis=-1)
     except ValueError:
@@ -313,18 +305,18 @@ def loops_of_four(structure: Structure) -> tuple[FourLinks, ...]:
     >>> loops_of_four(ck.decompose(ck.load("slider-crank")))[0].links
     ('frame', 'crank', 'rod', 'piston')
     """
-    order = _solved_in(structure)
+    order = _solving_ranks(structure)
     joined = _joined(structure.mechanism)
     slides = {pair.name for pair in structure.mechanism.written_pairs}
     place = {link: k for k, link in enumerate(joined)}
-    found = [_as_solved(loop, order, slides) for loop in _cycles(joined, place) if _has_pins(loop, slides)]
+    found = [_in_solving_order(loop, order, slides) for loop in _cycles(joined, place) if _has_pins(loop, slides)]
     rank = {link: k for k, link in enumerate(structure.mechanism.links)}
     return tuple(sorted(found, key=lambda loop: (loop.links[0] != FRAME, [order[name] for name in loop.links],
                                                  [rank[name] for name in loop.links])))  # fmt: skip
 
 
-def _solved_in(structure: Structure) -> dict[str, int]:
-    """Tell when each link is solved: the frame and its driven links one by one, then the groups."""
+def _solving_ranks(structure: Structure) -> dict[str, int]:
+    """Return the rank in which each link is solved: the frame and driven links one by one, then the groups."""
     order = {link: k for k, link in enumerate(structure.ground.links)}
     for group in structure.groups:
         after = len(order)
@@ -333,7 +325,7 @@ def _solved_in(structure: Structure) -> dict[str, int]:
 
 
 def _joined(mechanism: Mechanism) -> dict[str, list[tuple[str, str]]]:
-    """Return which links each link is joined to, and by what."""
+    """Return the neighbours of each link, with the joints."""
     joints = [(letter, links) for letter, links in mechanism.pins.items()]
     joints += [(p.name, p.members) for p in mechanism.written_pairs if p.is_simple and not p.free_is_angle]
     found: dict[str, list[tuple[str, str]]] = {link: [] for link in mechanism.links}
@@ -346,7 +338,7 @@ def _joined(mechanism: Mechanism) -> dict[str, list[tuple[str, str]]]:
 def _cycles(
     joined: Mapping[str, list[tuple[str, str]]], place: Mapping[str, int]
 ) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
-    """Find every loop of four links once: from its first link on, to the earlier of that one's neighbours."""
+    """Yield every loop of four links once, from its first link towards the earlier of its neighbours."""
     for first in joined:
         later = [(link, by) for link, by in joined[first] if place[link] > place[first]]
         # two steps from the first link to the one opposite
@@ -366,8 +358,10 @@ def _has_pins(loop: tuple[tuple[str, ...], tuple[str, ...]], slides: set[str]) -
     return sum(name in slides for name in loop[1]) <= 1
 
 
-def _as_solved(loop: tuple[tuple[str, ...], tuple[str, ...]], order: Mapping[str, int], slides: set[str]) -> FourLinks:
-    """Turn a loop so that its base comes first and then the earlier of its neighbours."""
+def _in_solving_order(
+    loop: tuple[tuple[str, ...], tuple[str, ...]], order: Mapping[str, int], slides: set[str]
+) -> FourLinks:
+    """Return a loop that begins with its base and the neighbour solved earlier."""
     links, joints = loop
     k = min(range(4), key=lambda i: (links[i] != FRAME, order[links[i]], i))
     links, joints = links[k:] + links[:k], joints[k:] + joints[:k]

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.dwells import Dwell, OutputCourse
+from compoundkin.analysis.characteristics.dwells import Dwell, OutputDwells
 from compoundkin.analysis.characteristics.figures import (
     PlacedFigure,
     Range,
@@ -152,16 +152,16 @@ class OutputFigures:
     @cached_property
     def dwells(self) -> tuple[Dwell, ...]:
         """The intervals in which it changes by no more than the part `dwell` of its stroke."""
-        return self._course.dwells() if self.moves and self.stroke is not None else ()
+        return self._output_dwells.dwells() if self.moves and self.stroke is not None else ()
 
     def may_dwell(self, part: float) -> bool:
         """Return, from the poses alone, whether a dwell may last a part of the motion."""
-        return self.moves and self.stroke is not None and self._course.may_dwell(part)
+        return self.moves and self.stroke is not None and self._output_dwells.may_dwell(part)
 
     @property
-    def _course(self) -> OutputCourse:
+    def _output_dwells(self) -> OutputDwells:
         assert self.stroke is not None
-        return OutputCourse(
+        return OutputDwells(
             self.motion,
             self.design,
             self.output.coordinate,

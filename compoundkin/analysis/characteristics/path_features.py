@@ -17,20 +17,17 @@ from compoundkin.base.curves.samples import crossings
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 
-# A path is a line or a circle where its samples are off by less than this part of its extent: rounding, no feature.
+# A path is a line or a circle if its samples deviate by less than this part of its extent.
 EXACT = 1e-9
-# A stretch is straight, or an arc, where it is off by less than this part of the path's extent, if nothing is said.
+# Default tolerance of straight stretches and arcs, a part of the path's extent.
 TOLERANCE = 1e-3
-# What lies on itself has as many crossings as samples; a coupler curve of a four-bar, of order six, has three.
+# A path that lies on itself has as many crossings as samples; a coupler curve of a four-bar, of order six, has three.
 MOST_CROSSINGS = 60
 
 
 @dataclass(frozen=True, eq=False)
 class PathPlace:
-    """A cusp, or a point that a path passes twice.
-
-    Where it is, and the drivers' values each time.
-    """
+    """A cusp, or a point that a path passes twice, with the drivers' values each time."""
 
     point: complex
     at: tuple[dict[str, float], ...]
@@ -38,11 +35,10 @@ class PathPlace:
 
 @dataclass(frozen=True, eq=False)
 class PathFeatures:
-    """The features of the path of a point of one design.
+    """The features of the path of a point of one design over a motion, or its longest part without a gap.
 
-    It is that over a motion, or over the longest part without a break. Straight stretches and arcs stay within the
-    `tolerance`, a length. The path is `retraced` where the point turns back on it: then it is the path from one end to
-    the other.
+    Straight stretches and arcs stay within the `tolerance`, a length. The path is `retraced` if the point turns back on
+    it: then it is the path from one end to the other.
     """
 
     path: TracedPath
@@ -67,7 +63,7 @@ class PathFeatures:
 
     @cached_property
     def line(self) -> Stretch:
-        """The whole path beside the line from which it is least far."""
+        """The whole path beside the line of least greatest distance."""
         return stretch_of(self.path, fitted_lines, 0, len(closed_samples(self.path)) - 1)
 
     @cached_property
@@ -77,12 +73,12 @@ class PathFeatures:
 
     @cached_property
     def is_straight(self) -> bool:
-        """Whether it is a line but for rounding."""
+        """Whether it is a line within rounding."""
         return self.line.deviation <= EXACT * self.size
 
     @cached_property
     def is_circular(self) -> bool:
-        """Whether it is a circle or an arc of one, but for rounding."""
+        """Whether it is a circle or an arc within rounding."""
         return not self.is_straight and self.circle.deviation <= EXACT * self.size
 
     @cached_property
@@ -106,7 +102,7 @@ class PathFeatures:
 
     @cached_property
     def double_points(self) -> tuple[PathPlace, ...]:
-        """The points that the path passes twice; none where it lies on itself."""
+        """The points that the path passes twice; empty for a path that lies on itself."""
         if self.is_straight or self.is_circular:
             return ()
         found = crossings(self.path.samples, self.path.expansion)
@@ -121,14 +117,12 @@ class PathFeatures:
     def __repr__(self) -> str:
         kind = "a line" if self.is_straight else "a circle" if self.is_circular else "a curve"
         ends = "closed" if self.closed else "open"
-        told = f"{len(self.cusps)} cusps, {len(self.double_points)} double points"
-        return f"PathFeatures({self.point}: {kind}, {ends}, {self.length:.6g} long, {told})"
+        features = f"{len(self.cusps)} cusps, {len(self.double_points)} double points"
+        return f"PathFeatures({self.point}: {kind}, {ends}, {self.length:.6g} long, {features})"
 
 
 def simple_shape(motion: Motion, point: str, design: int = 0) -> str:
-    """Tell from the poses whether a path is a line or a circle.
-
-    It is a "line" or a "circle" but for rounding; "" for other curves.
+    """Return, from the poses alone, "line" or "circle" for such a path within rounding, else "".
 
     >>> import compoundkin as ck
     >>> simple_shape(ck.solve(ck.load("slider-crank")), "A")
@@ -148,9 +142,9 @@ def simple_shape(motion: Motion, point: str, design: int = 0) -> str:
 def path_features(motion: Motion, point: str, tolerance: float | None = None, design: int = 0) -> PathFeatures:
     """Return the features of a point's path: straight stretches, arcs, cusps, double points.
 
-    Stretches are within `tolerance`, a length, 1/1000 of the path's extent if left out. Of a motion that cannot be
-    assembled throughout it is the longest part that can. Loops and stretches shorter than 1/360 of it are not seen.
-    Raises UnknownName for a point that is not there, InvalidInput for one that does not move.
+    Stretches are within `tolerance`, a length, by default 1/1000 of the path's extent. For a motion with gaps it is the
+    path over the longest assembled part. Loops and stretches shorter than 1/360 of it may be missed. Raises UnknownName
+    for an unknown point, InvalidInput for one that does not move.
 
     >>> import compoundkin as ck
     >>> found = path_features(ck.solve(ck.load("rolling-wheel")), "P")    # a cycloid
@@ -163,14 +157,14 @@ def path_features(motion: Motion, point: str, tolerance: float | None = None, de
     return PathFeatures(path, point, TOLERANCE * path.samples.size if tolerance is None else tolerance, retraced)
 
 
-# A driver's value beyond an end of its range by less than this (radians, or parts of the size) is at the end: rounding
-# of degrees.
+# A driver's value within this (radians, or parts of the size) of an end of its range is at the end: rounding of
+# degrees.
 AT_END = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """A stretch of a path near a line or a circle. `radius` is infinite for a line, of which `centre` is a point.
+    """A stretch of a path near a line or a circle. A line has an infinite `radius`, and `centre` is a point on it.
 
     `begin` and `end` are the drivers' values at its ends (radians or lengths), `deviation` the greatest distance from
     the line or circle on either side, `length` the extent along the line or the arc, `ends` its first and last point.
@@ -187,12 +181,12 @@ class Stretch:
 
     @property
     def is_straight(self) -> bool:
-        """Whether it is compared with a line."""
+        """Whether it is fitted by a line."""
         return not np.isfinite(self.radius)
 
     @property
     def straightness(self) -> float:
-        """The width of the strip it stays in, as a part of its length."""
+        """The width of the strip around it, as a part of its length."""
         return 2.0 * self.deviation / self.length
 
     def __repr__(self) -> str:
@@ -202,10 +196,7 @@ class Stretch:
 
 
 def stretch_of(path: TracedPath, fit: Callable[[Number], Fit], first: int, last: int) -> Stretch:
-    """Return the stretch of a path between two of its samples.
-
-    On a closed one they count on beyond the end.
-    """
+    """Return the stretch of a path between two samples, which on a closed path count on beyond the end."""
     samples = path.samples
     points = samples.points[np.arange(first, last + 1) % len(samples.points)]
     found = fit(points)
@@ -225,9 +216,9 @@ def stretch_of(path: TracedPath, fit: Callable[[Number], Fit], first: int, last:
 
 @checked
 def straightness(motion: Motion, point: str, begin: float, end: float, design: int = 0) -> Stretch:
-    """Return how straight a point's path is between two values of the driver.
+    """Return the fit of a line to a point's path between two values of the only moving driver (radians or length).
 
-    They are of the only driver that moves (radians or length). The line is that of least greatest distance. Raises as
+    The line is that of least greatest distance. Raises as
     `path_features`, and InvalidInput for values outside.
 
     >>> import compoundkin as ck

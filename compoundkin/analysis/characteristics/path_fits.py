@@ -25,7 +25,7 @@ ROUNDS = 2
 class Fit(NamedTuple):
     """Lines or circles fitted to stretches.
 
-    The `deviation` is how far points are off at most, on either side. Of a line `place` is a point and `direction` a
+    The `deviation` is the greatest distance of points on either side. Of a line `place` is a point and `direction` a
     unit vector; of a circle `place` is the centre, `radius` its own.
     """
 
@@ -92,8 +92,8 @@ def _height(x: Number, y: Number, slope: Number) -> tuple[Number, Number]:
 def fitted_circles(points: Number) -> Fit:
     """Fit circles to stretches of points (..., count).
 
-    The squares of the points' powers are least. Of points on a line the radius is infinite and the deviation not a
-    number. Source: I. Kasa, A circle fitting procedure and its error analysis, IEEE Transactions on Instrumentation and
+    The squares of the points' powers are least. For points on a line the radius is infinite and the deviation NaN.
+    Source: I. Kasa, A circle fitting procedure and its error analysis, IEEE Transactions on Instrumentation and
     Measurement 25 (1976) 8-14.
 
     >>> fit = fitted_circles(3j + 2 * np.exp(1j * np.linspace(0.1, 1.3, 20)))
@@ -114,10 +114,9 @@ def fitted_circles(points: Number) -> Fit:
 
 
 def longest_stretch(points: Number, closed: bool, tolerance: float, fit: Callable[[Number], Fit]) -> tuple[int, int]:
-    """Find the longest stretch of samples that a fit meets within a tolerance.
+    """Return the first and last sample of the longest stretch that a fit meets within a tolerance.
 
-    Returned are its first sample and its last. On a closed curve, whose last sample is the one before the first, the
-    last index may run past the end.
+    On a closed curve, without its first sample again at the end, the last index may run past the end.
     """
     around = np.concatenate([points, points]) if closed else points
     run = np.append(0.0, np.cumsum(np.abs(np.diff(around))))
@@ -131,7 +130,7 @@ def longest_stretch(points: Number, closed: bool, tolerance: float, fit: Callabl
 def _longest_from(
     first: Number, around: Number, run: Number, closed: bool, tolerance: float, fit: Callable[[Number], Fit]
 ) -> tuple[int, int]:
-    """Find the longest stretch of those that begin at some samples."""
+    """Return the longest stretch of those that begin at some samples."""
     near = np.minimum(first + 2, len(around) - 1)
     far = first + len(around) // 2 - 1 if closed else np.full(len(first), len(around) - 1)
     far = np.maximum(far, near)
@@ -151,5 +150,5 @@ def _of(first: Number, last: Number) -> Number:
 
 
 def projected(points: Number, fit: Fit) -> Number:
-    """Return how far along fitted lines points are, one line for all points."""
+    """Return the coordinates of points along a fitted line."""
     return dot(fit.direction, points - fit.place)

@@ -1,4 +1,4 @@
-"""The longest part of a point's path that it passes once, solved again wherever a value is needed.
+"""The longest part of a point's path that it passes once, solved anew at any place.
 
 A part lies on a stretch of assembled poses along which no driver turns back, up to the first cycle.
 """
@@ -21,15 +21,14 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.extremes.stretches import same_pose
 
-# A point moves where its path is longer than this part of the mechanism: rounding of a group on a group.
+# A point moves if its path is longer than this part of the mechanism: rounding over groups.
 MOVES = 1e-9
 
 
 def longest_simple_path(motion: Motion, point: str, design: int = 0, whole: bool = False) -> tuple[TracedPath, bool]:
-    """Return the longest part of a point's path that it passes once.
+    """Return the longest part of a point's path that it passes once, and whether it turns back there.
 
-    With it, whether it turns back there. It is as far as no driver turns back, and unless `whole` as far as the point
-    does not.
+    On it no driver turns back, nor, unless `whole`, the point.
     """
     check_design(design, motion.inputs.designs)
     if point not in motion.mechanism.carriers:
@@ -58,13 +57,13 @@ def _simple_part(path: TracedPath) -> tuple[TracedPath, bool]:
     return max(parts, key=lambda part: part.samples.size), True
 
 
-# A path is shown by about so many samples: loops and stretches that are shorter are not seen.
+# Approximate number of samples of a path: shorter loops and stretches may be missed.
 SAMPLES = 360
-# Two poses are one where they differ by less than this part of the size: rounding of a full turn of many groups.
+# Poses that differ by less than this part of the size are equal: rounding of a full turn of many groups.
 SAME = 1e-9
-# A point stands still where it is slower than this part of its fastest: books print dimensions of cusps to six digits.
+# A point stands still below this part of its greatest speed: books print dimensions of cusps to six digits.
 STANDS = 1e-6
-# Beside a place where it stands still the way from sample to sample is shorter than this part of the longest.
+# Beside a place of rest the distance of samples is below this part of the greatest.
 SLOW = 0.3
 # Newton from the middle of the shortest way: its error is squared with every step.
 STEPS = 6
@@ -72,12 +71,10 @@ STEPS = 6
 
 @dataclass(frozen=True, eq=False)
 class TracedPath:
-    """The path of a point of one design between two places along the motion.
+    """The path of a point of one design between two places along the motion, the first pose at place 0.
 
-    The first pose is at place 0.
-
-    A `closed` path goes on at its beginning: it is of a full cycle. A part of such a path may run beyond the last pose:
-    `cycle` is then the first place of the cycle and its length.
+    A `closed` path is that of a full cycle. A part of it may run beyond the last pose: `cycle` is then the first place
+    of the cycle and its length.
     """
 
     motion: Motion
@@ -105,7 +102,7 @@ class TracedPath:
         return tuple({name: of[k] for name, of in values.items()} for k in range(len(s)))
 
     def _inside(self, s: Number) -> Number:
-        """Return places within the motion. Those at the end of a cycle stay there."""
+        """Return places within the motion; the end of a cycle stays."""
         around = self.cycle or ((self.first, self.period) if self.closed else None)
         if around is None:
             return np.clip(s, 0.0, self.motion.inputs.poses - 1.0)
@@ -118,21 +115,18 @@ class TracedPath:
 
     @property
     def period(self) -> float:
-        """How many poses it runs along."""
+        """The number of poses along the path."""
         return self.last - self.first
 
     @cached_property
     def samples(self) -> Samples:
-        """Points at equally spaced places, every pose among them.
-
-        Of a closed path the last is left out.
-        """
+        """Points at equally spaced places, every pose among them; of a closed path without the last."""
         s, points, _ = self._sampled
         return Samples(s, points, self.closed)
 
     @cached_property
     def _sampled(self) -> tuple[Number, Number, Number]:
-        """Places, the points there, and how fast they move by the place."""
+        """Places, the points there, and their speeds by the place."""
         poses = round(self.period)
         count = 2 * (max(poses, 1) * max(1, -(-SAMPLES // (2 * max(poses, 1))))) + 1
         s = np.linspace(self.first, self.last, count)
@@ -142,10 +136,7 @@ class TracedPath:
 
     @cached_property
     def length(self) -> float:
-        """The length of the path.
-
-        It is by Simpson's rule, around a cycle by that of trapezoids, which is better there.
-        """
+        """The length of the path, by Simpson's rule, around a cycle by the more accurate trapezoidal rule."""
         speed, step = self._sampled[2], self.samples.step
         if self.closed:
             return float(np.sum(speed) * step)
@@ -153,9 +144,9 @@ class TracedPath:
 
     @cached_property
     def rests(self) -> tuple[Number, Number]:
-        """Where the point stands still, and which of the places are cusps.
+        """The places where the point stands still, and which of them are cusps.
 
-        At a cusp acceleration and jerk have different directions; where they have one, the point turns back as it came.
+        At a cusp acceleration and jerk have different directions; with a common direction the point retraces its path.
         """
         step, chords = self.samples.step, np.abs(np.diff(closed_samples(self)))
         fastest = float(np.nanmax(chords)) / step
@@ -173,11 +164,11 @@ class TracedPath:
         return self._distinct(s[still], bend[still])
 
     def _slowest(self, start: Number) -> Number:
-        """Return where the point is slowest near those places beside which it may stop."""
+        """Return the slowest places near those where the point may stop."""
         step = self.samples.step
         if start.size:
             _, v, a = self.derivatives(start, 2)
-            # it may stop where its acceleration leads to rest within two samples
+            # it may stop if its acceleration brings it to rest within two samples
             start = start[np.abs(v) <= 2.0 * step * np.abs(a)]
         s = start
         for _ in range(STEPS if start.size else 0):
@@ -189,7 +180,7 @@ class TracedPath:
         return s
 
     def _distinct(self, s: Number, cusp: Number) -> tuple[Number, Number]:
-        """Return places once that were found from both sides, in order."""
+        """Return distinct places in order, without those found from both sides."""
         s = self.first + (s - self.first) % self.period if self.closed else s
         s, index = np.unique(s, return_index=True)
         before = s[-1:] - self.period if self.closed else s[:1] - np.inf
@@ -197,43 +188,42 @@ class TracedPath:
         return s[apart], cusp[index][apart]
 
     def part(self, first: float, last: float) -> TracedPath:
-        """Return a stretch of it."""
+        """Return a part of the path."""
         cycle = (self.first, self.period) if self.closed else self.cycle
         return replace(self, first=first, last=last, closed=False, cycle=cycle)
 
 
 def closed_samples(path: TracedPath) -> Number:
-    """Return the samples of a path; a closed one ends with its first."""
+    """Return the samples of a path, of a closed one with the first again at the end."""
     points = path.samples.points
     return np.append(points, points[0]) if path.closed else points
 
 
-# A full turn may lack so many turns by rounding.
+# A full turn within rounding, in turns.
 LACKS = 1e-9
 
 
 def monotonic_stretches(motion: Motion, design: int) -> Iterator[tuple[int, int, bool]]:
-    """Find stretches of assembled poses along which no driver turns back.
+    """Yield stretches of assembled poses along which no driver turns back: first pose, last pose, whether a cycle.
 
-    Returned are first pose, last pose, and whether it is a cycle. Of drivers that turn on after a cycle, after which
-    all links are where they were, the first one.
+    Of drivers that turn on after a cycle only the first cycle counts.
 
     >>> import compoundkin as ck
     >>> list(monotonic_stretches(ck.solve(ck.load("crank-rocker")), 0))
     [(0, 72, True)]
     """
     drives = _driven(motion, design)
-    way = np.sign(np.diff(drives, axis=1))
+    sense = np.sign(np.diff(drives, axis=1))
     for begin, end in _runs(motion, design):
-        turns_back = 1 + np.flatnonzero(np.any(way[:, begin + 1 : end] != way[:, begin : end - 1], axis=0))
+        turns_back = 1 + np.flatnonzero(np.any(sense[:, begin + 1 : end] != sense[:, begin : end - 1], axis=0))
         cuts = [begin, *(begin + turns_back).tolist(), end]
         for first, last in pairwise(cuts):
-            if last > first and np.any(way[:, first]):
+            if last > first and np.any(sense[:, first]):
                 yield _first_cycle(motion, design, drives, first, last)
 
 
 def _runs(motion: Motion, design: int) -> Iterator[tuple[int, int]]:
-    """Return the first and the last of each run of assembled poses."""
+    """Yield the first and the last pose of each run of assembled poses."""
     good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))[design]
     edge = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
     yield from zip(edge[::2].tolist(), (edge[1::2] - 1).tolist(), strict=True)
@@ -246,7 +236,7 @@ def _driven(motion: Motion, design: int) -> Number:
 
 
 def _first_cycle(motion: Motion, design: int, drives: Number, first: int, last: int) -> tuple[int, int, bool]:
-    """Return a stretch up to where all links are where they were, drivers of angles having turned fully."""
+    """Return a stretch up to the first cycle: all links are back, and all turning drivers have turned fully."""
     gone = np.abs(drives[:, first : last + 1] - drives[:, first : first + 1])
     moving = gone[:, -1] > 0
     if all(one.is_angle for one, moves in zip(motion.drives.values(), moving, strict=True) if moves):

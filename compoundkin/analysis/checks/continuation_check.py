@@ -31,15 +31,15 @@ from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
 from compoundkin.kinematics.modes import distance, drawn_letters
 from compoundkin.kinematics.solving_order import BEFORE, SolvingOrder
 
-# Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
-# leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.
+# Tolerance (of the size, or radians) between the end of a continuation and the pose, besides rounding: another
+# configuration is farther away, but near the place where the two meet.
 SAME = 1e-7
-# So many ways are gone at once.
+# Number of steps followed at once.
 STEPS_AT_ONCE = 2048
 
 
 class PoseSteps(NamedTuple):
-    """Ways between poses of a motion: designs, and indices of their ends."""
+    """Steps between poses of a motion: designs, and indices of their ends."""
 
     designs: Number
     begin: Number
@@ -47,24 +47,24 @@ class PoseSteps(NamedTuple):
 
 
 def continuation_findings(motion: Motion) -> Iterator[Finding]:
-    """Yield what continuation finds between poses, and at the ends of gaps."""
+    """Yield the findings of continuation between poses, and into gaps."""
     if motion.inputs.poses < 2 or not motion.structure.groups:
         return
     usable = (motion.failed == 0) & (_sharpness(motion) < SINGULAR)
     parts = {link: np.zeros(motion.failed.shape) for link in motion.poses if link not in motion.structure.ground.links}
-    for ways in _steps_between_poses(motion, usable):
-        walk = _walk(motion, ways)
+    for steps in _steps_between_poses(motion, usable):
+        walk = _walk(motion, steps)
         arrived = walk.follow()
-        gaps = _apart(motion, walk.poses(), known_at(motion, ways.designs, ways.end))
+        gaps = _apart(motion, walk.poses(), known_at(motion, steps.designs, steps.end))
         for link, part in parts.items():
-            np.maximum.at(part, (ways.designs, ways.end), np.where(arrived, gaps[link], 0.0))
+            np.maximum.at(part, (steps.designs, steps.end), np.where(arrived, gaps[link], 0.0))
     yield worst(motion, "continuity", SAME, rounded_by(motion, 0, parts, SAME), motion.failed == 0)
     if np.any(motion.failed):
         beyond = np.zeros(motion.failed.shape)
-        for ways in _steps_into_gaps(motion, usable):
-            for number in np.unique(motion.failed[ways.designs, ways.end]):
-                there = motion.failed[ways.designs, ways.end] == number
-                some = PoseSteps(ways.designs[there], ways.begin[there], ways.end[there])
+        for steps in _steps_into_gaps(motion, usable):
+            for number in np.unique(motion.failed[steps.designs, steps.end]):
+                there = motion.failed[steps.designs, steps.end] == number
+                some = PoseSteps(steps.designs[there], steps.begin[there], steps.end[there])
                 arrived = _walk(motion, some, _groups_before(motion, number).walked).follow()
                 np.maximum.at(beyond, (some.designs, some.end), arrived.astype(float))
         yield worst(motion, "gaps that can be closed", 0.0, _by_group(motion, beyond), motion.failed != 0)
@@ -72,14 +72,14 @@ def continuation_findings(motion: Motion) -> Iterator[Finding]:
 
 
 class _Groups(NamedTuple):
-    """How many groups come before what a gap names, and how many lead to it."""
+    """The number of groups before the named cause of a gap, and of those that lead to it."""
 
     before: int
     walked: int
 
 
 def _groups_before(motion: Motion, number: int) -> _Groups:
-    """Return the groups before what a gap names by its number: a group, or the end of a pair's guide."""
+    """Return the groups before the cause of a gap by its number: a group, or the end of a guide."""
     count = len(motion.structure.groups)
     if number <= count:
         return _Groups(number - 1, number)
@@ -88,7 +88,7 @@ def _groups_before(motion: Motion, number: int) -> _Groups:
 
 
 def _before_gaps(motion: Motion) -> dict[str, Number]:
-    """Return how far groups are from closing where a gap names one after them, by a link."""
+    """Return the distances of groups from closing where a later one is the cause of a gap, by a link."""
     before: Number = np.zeros(motion.failed.shape, dtype=int)
     for number in np.unique(motion.failed[motion.failed != 0]):
         before[motion.failed == number] = _groups_before(motion, number).before
@@ -110,7 +110,7 @@ def _before_gaps(motion: Motion) -> dict[str, Number]:
 
 
 def _sharpness(motion: Motion) -> Number:
-    """Return how near to singular every pose is."""
+    """Return the norm of the inverse Jacobian at every pose."""
     found = np.full(motion.failed.shape, np.inf)
     designs, index = np.nonzero(motion.failed == 0)
     for part in _parts(PoseSteps(designs, index, index)):
@@ -119,7 +119,7 @@ def _sharpness(motion: Motion) -> Number:
 
 
 def _steps_between_poses(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
-    """Yield the ways from each pose to the next from which anything follows, where no gap lies between."""
+    """Yield the steps from each regular pose to the next without a gap between."""
     broken = np.cumsum(motion.failed != 0, axis=1)
     designs, index = np.nonzero(usable)
     goes_on = (designs[1:] == designs[:-1]) & (broken[designs[1:], index[1:]] == broken[designs[:-1], index[:-1]])
@@ -127,7 +127,7 @@ def _steps_between_poses(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
 
 
 def _steps_into_gaps(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
-    """Yield the ways from poses to neighbours that are said not to close."""
+    """Yield the steps from poses to neighbours in gaps."""
     for step in (1, -1):
         designs, index = np.nonzero(usable)
         other = index + step
@@ -137,16 +137,16 @@ def _steps_into_gaps(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
         yield from _parts(PoseSteps(designs[open_], index[open_], other[open_]))
 
 
-def _parts(ways: PoseSteps) -> Iterator[PoseSteps]:
-    for first in range(0, len(ways.designs), STEPS_AT_ONCE):
+def _parts(steps: PoseSteps) -> Iterator[PoseSteps]:
+    for first in range(0, len(steps.designs), STEPS_AT_ONCE):
         part = slice(first, first + STEPS_AT_ONCE)
-        yield PoseSteps(ways.designs[part], ways.begin[part], ways.end[part])
+        yield PoseSteps(steps.designs[part], steps.begin[part], steps.end[part])
 
 
-def _walk(motion: Motion, ways: PoseSteps, groups: int | None = None) -> GroupContinuation:
-    begin, end = (motion.inputs.pick(ways.designs, at.astype(float)) for at in (ways.begin, ways.end))
-    poses = known_at(motion, ways.designs, ways.begin)
-    return GroupContinuation(motion, begin, end, poses, len(ways.designs), groups)
+def _walk(motion: Motion, steps: PoseSteps, groups: int | None = None) -> GroupContinuation:
+    begin, end = (motion.inputs.pick(steps.designs, at.astype(float)) for at in (steps.begin, steps.end))
+    poses = known_at(motion, steps.designs, steps.begin)
+    return GroupContinuation(motion, begin, end, poses, len(steps.designs), groups)
 
 
 def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
@@ -156,7 +156,7 @@ def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
 
 
 def _apart(motion: Motion, found: Mapping[str, Pose], poses: Mapping[str, Pose]) -> dict[str, Number]:
-    """Return by how much links are apart, in parts of the size or radians, whichever is larger."""
+    """Return the distances of links, in parts of the size or radians, whichever is larger."""
     apart = {}
     for link, pose in poses.items():
         away = np.abs(found[link].z.c[0] - pose.z.c[0]) / motion.size
@@ -166,33 +166,33 @@ def _apart(motion: Motion, found: Mapping[str, Pose], poses: Mapping[str, Pose])
 
 
 def _by_group(motion: Motion, beyond: Number) -> dict[str, Number]:
-    """Return values at poses that fail, by a link of the group that does not close or the pair whose end is passed."""
+    """Return values at failed poses, by a link of the group that does not close or the pair with the passed end."""
     names = [group.links[0] for group in motion.structure.groups]
     names += [pair.name for pair in motion.solving_order.guide_ends.pairs]
     return {name: np.where(motion.failed == k, beyond, 0.0) for k, name in enumerate(names, start=1)}
 
 
-# A drawing chooses by what it shows: of two configurations whose distances from it (parts of the size) differ by less
-# it chooses none, and that of a group without signs it need not choose unless the other is this part as far.
+# A drawing does not choose between two configurations whose distances from it (parts of the size) differ by less than
+# the first; for a group without signs the other must be nearer than the second, a part of the distance.
 NEARER, CLEARLY = 1e-6, 0.5
-# The configurations of larger groups take seconds, and are not looked through.
+# The configurations of larger groups take seconds, and are not enumerated.
 MOST_BODIES = 4
 
 
 def choice_findings(motion: Motion) -> Iterator[Finding]:
-    """Yield whether groups are as drawn or hinted, and in written modes."""
+    """Yield the findings on drawn or hinted configurations, and on written modes."""
     tracker = motion.tracker
     drawn = [k for k, by in tracker.chosen_by.items() if by == tracker.shown.source and by != "default"]
     if drawn and np.any(motion.failed == 0):
-        yield worst(motion, "nearest to the drawing", 0.0, _farther(motion, drawn), motion.failed == 0)
+        yield worst(motion, "nearest to the drawing", 0.0, _excess_distances(motion, drawn), motion.failed == 0)
     written = [k for k in tracker.fixed if motion.solving_order.solvers[k].modes == 2]
     if written:
-        parts = rounded_by(motion, 0, _otherwise(motion, written), SAME)
+        parts = rounded_by(motion, 0, _distances_from_modes(motion, written), SAME)
         yield worst(motion, "written modes", SAME, parts, motion.failed == 0)
 
 
-def _farther(motion: Motion, drawn: list[int]) -> dict[str, Number]:
-    """Return by how much groups are farther from what is drawn than they could be; at the pose from which one sees."""
+def _excess_distances(motion: Motion, drawn: list[int]) -> dict[str, Number]:
+    """Return the excess distances of groups from the drawing, at the pose nearest to the drawn one."""
     closed = motion.failed == 0
     designs = np.flatnonzero(closed.any(axis=1))
     away = np.where(closed[designs], np.abs(np.arange(motion.inputs.poses) - motion.tracker.at), np.inf)
@@ -211,17 +211,17 @@ def _farther(motion: Motion, drawn: list[int]) -> dict[str, Number]:
 
 
 def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
-    """Return by how much a group is farther from what is drawn than its nearest configuration, 0 for no clear case."""
-    shown = motion.tracker.shown
-    letters = drawn_letters(motion.solving_order, solver, shown)
+    """Return the excess distance of a group from the drawing over its nearest configuration, 0 if not clear."""
+    drawing = motion.tracker.shown
+    letters = drawn_letters(motion.solving_order, solver, drawing)
     if not letters:
         return np.zeros(block.shape)
 
     def away(trial: Block) -> Number:
-        return np.sqrt(distance(motion.solving_order, letters, shown, trial)) / motion.size
+        return np.sqrt(distance(motion.solving_order, letters, drawing, trial)) / motion.size
 
     own, nearest = away(block), np.full(block.shape, np.inf)
-    # those without a sign too, which a follower may have between its outer contacts
+    # including those without a sign, between the outer contacts of a follower
     for every in (one.every(block) for one in (solver, solver.followed()) if one):
         for j in range(every.real.shape[-1]):
             trial = block.copy()
@@ -233,8 +233,8 @@ def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
     return np.where(clear & (own - nearest > NEARER), own - nearest, 0.0)
 
 
-def _otherwise(motion: Motion, written: list[int]) -> dict[str, Number]:
-    """Return how far groups are from the pose that they have in the written mode."""
+def _distances_from_modes(motion: Motion, written: list[int]) -> dict[str, Number]:
+    """Return the distances of groups from their poses in the written modes."""
     s, designs = places(slice(0, motion.inputs.poses), slice(0, motion.inputs.designs))
     block = motion.solving_order.start(motion.inputs.ends, motion.inputs.series(0), 0, motion.failed.shape)
     block.world.update({name: pose.trimmed(0) for name, pose in motion.poses.items()})
@@ -247,7 +247,7 @@ def _otherwise(motion: Motion, written: list[int]) -> dict[str, Number]:
 
 
 def _distance_of_poses(motion: Motion, solver: GroupSolver, world: Mapping[str, Pose]) -> Number:
-    """Return how far a group's bodies are from other poses of them, in parts of the size or radians."""
+    """Return the distance of a group's bodies from other poses, in parts of the size or radians."""
     far: Number = np.zeros(motion.failed.shape)
     for link in (body.links[0] for body in solver.group.bodies):
         one, other = motion.poses[link], world[link]
@@ -260,7 +260,7 @@ def _distance_of_poses(motion: Motion, solver: GroupSolver, world: Mapping[str, 
 SURE = 0.25
 # No correction is longer (radians, or parts of the size), however well conditioned a pose is.
 LONGEST = 0.1
-# Beyond this norm of the inverse Jacobian a pose is a limit position or change point, from which nothing follows.
+# Beyond this norm of the inverse Jacobian a pose is a limit position or change point, where continuation ends.
 SINGULAR = 1e7
 ORDER = 3
 NEWTON = 6
@@ -277,20 +277,17 @@ def own_equations(solver: GroupSolver, size: float) -> GroupEquations:
 
 
 def sharpness(equations: GroupEquations, state: Number, block: Block) -> Number:
-    """Return the norm of the inverse Jacobian: one over the distance from singular.
-
-    Its rows are of unit length.
-    """
+    """Return the norm of the inverse Jacobian with rows of unit length: one over the distance from singular."""
     matrix = equations.matrix(state, block) / equations.weights
     lengths = np.sqrt((matrix**2).sum(axis=-1, keepdims=True))
     return np.abs(inverted(np.nan_to_num(matrix / np.where(lengths > 0.0, lengths, 1.0)))).sum(axis=-1).max(axis=-1)
 
 
 class GroupContinuation:
-    """Ways of a mechanism, from known poses at one end to what is found.
+    """Continuation of a mechanism's groups along straight steps of its inputs, from known poses at the begin.
 
-    `begin` and `end` are inputs of columns (ways, 1), `poses` those of the links at the begin. Drivers and dimensions
-    go straight from one end to the other. All groups go along, or the first `groups` of them.
+    `begin` and `end` are inputs of columns (steps, 1), `poses` those of the links at the begin. All groups are
+    followed, or the first `groups` of them.
     """
 
     def __init__(
@@ -316,33 +313,30 @@ class GroupContinuation:
         self._stale = np.ones(count, dtype=bool)
 
     def sharpest(self) -> Number:
-        """Return the largest norm of any group's inverse Jacobian where the ways begin."""
+        """Return the largest norm of any group's inverse Jacobian at the begin."""
         worst = np.zeros((self.count, 1))
         for (solver, block), state in zip(self.groups(), self.states, strict=True):
             worst = np.fmax(worst, sharpness(self.equations[solver.index], state, block))
         return np.nan_to_num(worst[:, 0], nan=np.inf)
 
     def follow(self) -> Number:
-        """Go all ways; return which arrived."""
+        """Follow all steps; return which arrived."""
         return trace_paths(self._step, np.ones(self.count, dtype=bool), LENGTHS)
 
     def groups(self) -> Iterator[tuple[GroupSolver, Block]]:
-        """Yield each group with all links up to it, where ways have come.
-
-        Poses are columns without derivatives.
-        """
+        """Yield each group with a block of all links up to it, at the reached places, without derivatives."""
         block = self._block(np.arange(self.count), self.at, 0)
         for solver, equations, state in zip(self.solvers, self.equations, self.states, strict=True):
             self._publish(block, solver, equations, state)
             yield solver, block
 
     def poses(self) -> dict[str, Pose]:
-        """Return the links' poses where the ways have come to."""
+        """Return the links' poses at the reached places."""
         *_, (_, block) = self.groups()
         return block.world
 
     def _step(self, i: Number, h: Number) -> StepResult:
-        """Try one step of some ways; keep the good ones."""
+        """Advance some steps by a part, where the correction is sure."""
         self._expand(i[self._stale[i]])
         h = np.minimum(h, 1.0 - self.at[i])
         block, good = self._block(i, self.at[i] + h, 0), np.ones((len(i), 1), dtype=bool)
@@ -356,15 +350,15 @@ class GroupContinuation:
             found.append(result.state)
             self._publish(block, solver, equations, result.state)
             self.guide_ends.mask(block, solver.index)
-        kept = (good & (block.failed == 0))[:, 0]
+        accepted = (good & (block.failed == 0))[:, 0]
         for state, new in zip(self.states, found, strict=True):
-            state[i[kept]] = new[kept]
-        self.at[i] = np.where(kept, self.at[i] + h, self.at[i])
-        self._stale[i[kept]] = True
-        return StepResult(h, kept, self.at[i] >= 1.0)
+            state[i[accepted]] = new[accepted]
+        self.at[i] = np.where(accepted, self.at[i] + h, self.at[i])
+        self._stale[i[accepted]] = True
+        return StepResult(h, accepted, self.at[i] >= 1.0)
 
     def _expand(self, i: Number) -> None:
-        """Find the series of all groups where some ways are."""
+        """Expand all groups in series at the reached places."""
         if not len(i):
             return
         block = self._block(i, self.at[i], ORDER)
@@ -381,7 +375,7 @@ class GroupContinuation:
             block.publish(body, pose)
 
     def _block(self, i: Number, at: Number, order: int) -> Block:
-        """Return a block of some ways at their places, with derivatives by the place."""
+        """Return a block of some steps at their places, with derivatives by the place."""
         part = _interpolated_inputs(self.begin, self.end, i, at[:, None], self.count)
         drives = {name: rates(values, order) for name, values in part.drives.items()}
         return self.order.start(part.ends, drives, order, (len(i), 1))
@@ -397,13 +391,13 @@ def bases(solver: GroupSolver, poses: Mapping[str, Pose]) -> list[Pose]:
 
 
 def _interpolated_inputs(one: Inputs, two: Inputs, i: Number, at: Number, count: int) -> Inputs:
-    """Return the inputs of some ways at their places, drivers with their slopes."""
+    """Return the inputs of some steps at their places, drivers with their slopes."""
 
     def some(value: Number) -> Number:
         return value[i] if np.ndim(value) and len(value) == count else value
 
     def mixed(a: Number, b: Number) -> Number:
-        # what does not change stays as it is: the open end of a guide is infinite
+        # equal ends stay: the open end of a guide is infinite
         return some(a) if np.all(np.equal(a, b)) else some(a) + (some(b) - some(a)) * at
 
     def side(a: End, b: End) -> End:
@@ -414,6 +408,6 @@ def _interpolated_inputs(one: Inputs, two: Inputs, i: Number, at: Number, count:
     }
     drives = {}
     for name, (value, *_) in one.drives.items():
-        way = two.drives[name][0] - value
-        drives[name] = (some(np.asarray(value)) + some(np.asarray(way)) * at, some(np.asarray(way)) + 0.0 * at)
+        change = some(np.asarray(two.drives[name][0] - value))
+        drives[name] = (some(np.asarray(value)) + change * at, change + 0.0 * at)
     return replace(one, ends=ends, drives=drives)

@@ -35,7 +35,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
         return
     step = STEP * _own_time(motion)
     counted = counted & np.isfinite(step) & _before_change_points(motion, step * len(OFFSETS))
-    # a pose at rest stays where it is: what is no number there would be carried on to its neighbours
+    # a pose at rest stays where it is: NaN there would spread to its neighbours
     step = np.where(np.isfinite(step), step, 0.0)
     stencils = [_positions(motion, step * j) for j in OFFSETS]
     counted = counted & _smooth(motion, stencils)
@@ -48,7 +48,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
             for what, size in (("z", motion.size), ("u", 1.0)):
                 series = getattr(pose, what)
                 found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
-                # what is left of the differences' own error is less than what two neighbours fewer change
+                # the truncation error of the differences is below the change by two neighbours fewer
                 rest = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights - fewer, stencils, strict=True))
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
@@ -57,18 +57,18 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
 
 
 def _rounded(motion: Motion, k: int, step: Number, parts: dict[str, Number]) -> dict[str, Number]:
-    """Return what differs without what rounding leaves: of the positions, and of the derivative itself."""
+    """Return the differences beyond rounding of the positions and of the derivative itself."""
     parts = rounded_by(motion, 0, parts, LIMITS[k], motion.size * STEP**k)
     return rounded_by(motion, k, parts, LIMITS[k], motion.size * (STEP / step) ** k)
 
 
 def _beyond(gap: Number, rest: Number) -> Number:
-    """Return the size of a gap beyond what is left open."""
+    """Return the size of a gap beyond the truncation error."""
     return np.maximum(np.abs(gap) - np.abs(rest), 0.0)
 
 
 def _weights(k: int, offsets: Number) -> Number:
-    """Central-difference weights of the k-th derivative at unit step."""
+    """Return the central-difference weights of the k-th derivative at unit step."""
     powers = np.vander(offsets.astype(float), increasing=True).T
     right = np.zeros(len(offsets))
     right[k] = factorial(k)
@@ -108,8 +108,8 @@ def _largest(motion: Motion, k: int) -> Number:
 def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
     """Return the poses at a time before or after those of the motion.
 
-    The drivers follow their rates. What is solved through a double root is so beside it, too.
-    Rates beyond the motion's order are left out: they do not belong to the series that tells its time scale.
+    The drivers follow their rates. Poses solved through a double root are so beside it, too. Rates beyond the motion's
+    order are left out: they do not belong to the series that tells its time scale.
     """
     given = motion.inputs
     drives = {}
@@ -140,7 +140,7 @@ def _put(pose: Pose, other: Pose, at: tuple[Number, Number], given: Inputs) -> P
 
 
 def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
-    """Return poses around which no contact passes a jump of its profile."""
+    """Return whether no contact passes a jump of its profile around a pose."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     for pair in filter(None, map(as_profile_contact, motion.structure.pairs)):
         ends = motion.inputs.ends[pair.name]
@@ -151,10 +151,10 @@ def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
 
 
 def _away_from_change_points(motion: Motion) -> Number:
-    """Return poses whose neighbours lie on the same side of every change point."""
+    """Return whether the neighbours of a pose lie on the same side of every change point."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     if motion.tracker.expanded is not None and motion.inputs.poses == 1:
-        # a pose alone does not tell on which side of its change point its neighbours lie
+        # for a single pose the side of its change point is unknown
         good[motion.tracker.expanded[:2]] = False
     index = np.arange(motion.inputs.poses, dtype=float)
     for found in motion.change_points.values():
@@ -163,7 +163,7 @@ def _away_from_change_points(motion: Motion) -> Number:
 
 
 def _before_change_points(motion: Motion, reach: Number) -> Number:
-    """Return poses from which no change point is reached within a time."""
+    """Return whether no change point is within a time of a pose."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     for found in motion.change_points.values():
         designs, which = np.nonzero(np.isfinite(found))

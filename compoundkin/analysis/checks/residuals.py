@@ -1,8 +1,8 @@
 """Residuals of a motion in the pairs' own equations, and against instant centres.
 
-Positions: what a pair holds must be zero. Velocities: the pair's Jacobian times the links' velocities must
-be zero. Accelerations: so must the second derivative of what it holds. Links: orientations must stay unit
-vectors in every derivative. Drivers: the driven coordinate must be the one asked for.
+Positions: the closure of a pair must be zero. Velocities: the pair's Jacobian times the links' velocities must be zero.
+Accelerations: so must the second derivative of the closure. Links: orientations must stay unit vectors in every
+derivative. Drivers: the driven coordinate must be the prescribed one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from compoundkin.structure.mobility_count import DrivenPair
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.
 TOLERANCE = 1e-9
-# Dimensions that must fit although nothing holds them are given to some five digits.
+# Dimensions that must fit although no pair constrains them have some five digits.
 FITS = 1e-5
 ORDERS = ("closure", *OF_POINTS[1:])
 # n links have n (n - 1) / 2 centres and n (n - 1) (n - 2) / 6 triples: beyond this many links they take longer
@@ -51,7 +51,7 @@ def residuals(motion: Motion) -> Iterator[Finding]:
 
 
 def _fit_findings(motion: Motion) -> Iterator[Finding]:
-    """Yield by how much lengths are off that no pair holds, as they are and as they change."""
+    """Yield the errors of lengths that no pair constrains, and of their rates."""
     errors, closed = dict(_distance_errors(motion)), motion.failed == 0
     if not errors:
         return
@@ -60,7 +60,7 @@ def _fit_findings(motion: Motion) -> Iterator[Finding]:
         gap = np.where(closed, np.abs(error.c[0]), 0.0)
         parts[_off(name, gap, FITS * scale)] = gap / scale
         if motion.order:
-            # that the length is right at one place of several drivers does not keep it right
+            # a length that fits at one place of several drivers need not fit elsewhere
             parts[f"{name}, its rate"] = np.where(
                 motion.regular, np.abs(error.derivative(1)) / _scale(motion, 1, motion.regular), 0.0
             )
@@ -68,7 +68,7 @@ def _fit_findings(motion: Motion) -> Iterator[Finding]:
 
 
 def _distance_errors(motion: Motion) -> Iterator[tuple[str, Series]]:
-    """Yield by pair how far a length is off that no pair holds."""
+    """Yield by pair the error of a length that no pair constrains."""
     for name, pair in motion.solving_order.pairs.items():
         poses, counting = tuple(motion.poses[member] for member in pair.members), as_turn_counting(pair)
         error = counting.distance_error(motion.inputs.ends[name], poses) if counting else None
@@ -77,7 +77,7 @@ def _distance_errors(motion: Motion) -> Iterator[tuple[str, Series]]:
 
 
 def _off(name: str, gap: Number, limit: Number) -> str:
-    """Return a pair's name, with the length by which it is off."""
+    """Return a pair's name, with the error of its length."""
     return f"{name}, off by {float(np.max(gap)):.6g}" if np.any(gap > limit) else name
 
 
@@ -119,15 +119,15 @@ def _rigid(motion: Motion, link: str, k: int) -> Number:
 
 def _driver(motion: Motion, name: str, k: int) -> Number:
     driven = motion.structure.driven[name]
-    asked = motion.inputs.series(motion.order)[name].derivative(k) * driven.pair.driven_by(driven.drive.link)
-    gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - asked
+    prescribed = motion.inputs.series(motion.order)[name].derivative(k) * driven.pair.driven_by(driven.drive.link)
+    gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - prescribed
     if not driven.pair.free_is_angle:
         return np.abs(gap)
     return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
 
 
 def _still(motion: Motion, passive: DrivenPair, k: int) -> Number:
-    """Return by how much a link turns that may turn freely, and is held to what carries it."""
+    """Return the rotation of a passive link relative to the link that carries it."""
     gap = motion.pairs[passive.pair.name].coordinate.derivative(k)
     return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
 
@@ -157,9 +157,9 @@ def _scale(motion: Motion, k: int, counted: Number) -> Number:
 
 
 def centre_findings(motion: Motion) -> Iterator[Finding]:
-    """Find what velocities from centres leave, where poses are well conditioned. The theorem itself is checked too.
+    """Yield the findings on velocities from centres and on the theorem of Kennedy, at well conditioned poses.
 
-    Nothing for a motion without velocities, without drivers, or of more than MOST_LINKS links.
+    Empty for a motion without velocities, without drivers, or of more than MOST_LINKS links.
     """
     still = motion.order < 1 or not motion.inputs.drives or not motion.regular.any()
     if still or len(motion.mechanism.links) > MOST_LINKS:
@@ -175,7 +175,7 @@ def centre_findings(motion: Motion) -> Iterator[Finding]:
 
 
 def _finding(motion: Motion, name: str, parts: dict[str, Number]) -> Finding:
-    # NaN is where a centre is not determined or too poorly conditioned to prove anything
+    # NaN marks a centre that is undetermined or too ill-conditioned to prove anything
     shape = motion.shape or (1,)
     flat = {k: np.nan_to_num(np.broadcast_to(v, shape).reshape(motion.failed.shape), nan=0.0) for k, v in parts.items()}
     relative = rounded_by(motion, 1, flat, TOLERANCE, _scale(motion, 1, motion.regular))

@@ -50,12 +50,12 @@ class Pole(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Centrodes(ShortRepr):
-    """The two curves a pole runs along, and how fast. The moving centrode rolls on the fixed one.
+    """The two paths of a pole, and its velocities along them: the moving centrode rolls on the fixed one.
 
     `fixed` is the locus of the pole in the observing link's frame, `moving` that in the moving link's frame, pose by
     pose. `fixed_velocity`, `moving_velocity` (length/s) are the pole's velocities along them, each in its own link's
-    axes: equal lengths and one tangent say that it rolls. They are inf where the pole is at infinity, and NaN where it
-    is not defined or is a limit (the links stand still for an instant).
+    axes; their equal lengths and common tangent mean rolling. They are inf where the pole is at infinity, and NaN where
+    it is not defined or is a limit (the links stand still for an instant).
     """
 
     pole: Pole
@@ -76,9 +76,8 @@ class Centrodes(ShortRepr):
 @checked
 @np.errstate(all="ignore")
 def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
-    """Return the point of `link` without velocity as seen from `on`.
+    """Return the point of `link` without velocity in the frame of `on`, at every pose.
 
-    At every pose.
     Lengths in the user's unit. It depends on the geometry only, not on the driver's speed. Where the links stand still
     for an instant (a rocker at the end of its swing) the limit is taken from the second derivatives, if the motion has
     them. Raises UnknownName, and InvalidInput for order 0, a link seen from itself or a driver at rest.
@@ -98,9 +97,8 @@ def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
 @checked
 @np.errstate(all="ignore")
 def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
-    """Return the velocity at which the pole changes its place (pole change velocity).
+    """Return the velocity of the pole along the fixed centrode (pole change velocity), in the frame of `on`.
 
-    In the frame of `on`.
     Complex, length/s, of the motion's shape; inf where the pole is at infinity, NaN where it is not defined or a limit
     (see `pole`). Proportional to the driver's speed. Raises as `pole`, and InvalidInput below order 2.
     Source: E. A. Dijksman, Motion Geometry of Mechanisms (1976).
@@ -156,7 +154,7 @@ def centrode_curvature(motion: Motion, link: str, on: str = FRAME) -> tuple[Numb
 
 
 def pole_moves(seen: RelativeMotion) -> Number:
-    """Return where the pole changes its place. Where it does not, links are pinned, and what it does is rounding."""
+    """Return whether the pole moves by more than rounding; of pinned links it does not."""
     return seen.turning & (np.abs(seen.pole_by_angle.c[0]) > seen.noise)
 
 
@@ -177,7 +175,7 @@ def _pole(seen: RelativeMotion) -> Pole:
 
 
 def _leading(seen: RelativeMotion) -> tuple[Number, Number]:
-    """Return the pole as a fraction. Where the links stand still, l'Hopital's rule takes the next derivatives."""
+    """Return the pole as a fraction, from the next derivatives (l'Hopital's rule) where the links stand still."""
     number, weight = seen.numerator.c, seen.omega.c
     if len(weight) == 1:
         return seen.masked(number[0], ~seen.resting), weight[0]
@@ -199,6 +197,6 @@ def _change(seen: RelativeMotion, place: Series) -> Number:
 
 
 def _bend(seen: RelativeMotion, by_angle: Series, omega: Series) -> Number:
-    """Return the curvature of a curve whose derivative by the relative angle is given."""
+    """Return the curvature of a curve from its derivative by the relative angle."""
     first, second = by_angle.c[0], series_rate(by_angle).c[0] / omega.c[0]
     return seen.masked(cross(first, second) / np.abs(first) ** 3, pole_moves(seen))

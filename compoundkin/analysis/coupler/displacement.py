@@ -23,9 +23,9 @@ from compoundkin.model.geometry import FRAME
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LinkPosition(ShortRepr):
-    """A position of a link: where one of its points is, and its angle.
+    """A position of a link: the place of one of its points, and its angle.
 
-    `point` is complex or (x, y), the angle in radians; numbers, or arrays that broadcast. NaN where it is not known.
+    `point` is complex or (x, y), the angle in radians; numbers, or arrays that broadcast. NaN for an unknown position.
     Raises InvalidInput for anything else.
 
     >>> LinkPosition((3, 4), angle=0.5).point
@@ -36,7 +36,7 @@ class LinkPosition(ShortRepr):
     angle: Number
 
     def __post_init__(self) -> None:
-        """Read what is given as a vector and a number."""
+        """Convert the fields to a vector and a number."""
         object.__setattr__(self, "point", vectors_of("point", self.point))
         object.__setattr__(self, "angle", numbers_of("angle", self.angle))
         shape_of(point=self.point, angle=self.angle)
@@ -49,8 +49,8 @@ class LinkPosition(ShortRepr):
 class Displacement(ShortRepr):
     """The displacement of a link between two positions. Numbers or arrays of their shape.
 
-    `angle` is that of the rotation, between -pi and pi; `translation` the way of the point by which the positions are
-    given; `pole` the one point that comes back to its place. Where the link is only translated (`infinite`) the pole is
+    `angle` is that of the rotation, between -pi and pi; `translation` that of the reference point of the
+    positions; `pole` the fixed point. Where the link is only translated (`infinite`) the pole is
     inf and `direction` the unit vector towards it, up to its sign; elsewhere `direction` is 0. Where the pole is not
     `defined` both are NaN: the positions are not known, or are one and the same.
     """
@@ -65,7 +65,7 @@ class Displacement(ShortRepr):
     defined: Number
 
     def moved(self, points: Any) -> Number:
-        """Return where points of the link are at last, given where at first.
+        """Return the second places of points of the link from the first ones.
 
         Complex or (x, y), a number or an array that broadcasts with the positions.
         """
@@ -76,12 +76,12 @@ class Displacement(ShortRepr):
 
 @checked
 def link_position(motion: Motion, link: str, at: Any, on: str = FRAME) -> LinkPosition:
-    """Return the position of a link at poses of a motion.
+    """Return the position of a link at poses of a motion, in the frame of another.
 
-    It is seen from another link. `at` is the index of a pose along the motion, or an array of them; the position is
+    `at` is the index of a pose along the motion, or an array of them; the position is
     that of the link's origin, of the shape of designs and indices, NaN where it is not assembled. Raises UnknownName
-    for a link that is not there, InvalidInput for an index that is not there or a link seen from itself, NotAssembled
-    where no pose asked for is.
+    for an unknown link, InvalidInput for an invalid index or a link seen from itself, NotAssembled where none of the
+    poses is assembled.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -119,17 +119,17 @@ def displacement(first: LinkPosition, second: LinkPosition) -> Displacement:
     shape = shape_of(first=first.point + first.angle, second=second.point + second.angle)
     one, two = (np.broadcast_to(position.point, shape) for position in (first, second))
     angle = np.asarray(wrapped(np.broadcast_to(second.angle - first.angle, shape)))
-    # a rotation that is nothing but rounding
+    # a rotation within rounding is none
     angle = np.where(np.abs(angle) <= SMALL, 0.0 * angle, angle)
-    way = two - one
-    at_rest = (angle == 0.0) & (np.abs(way) <= SMALL * (np.abs(one) + np.abs(two)))
-    defined = np.isfinite(way) & np.isfinite(angle) & ~at_rest
+    translation = two - one
+    at_rest = (angle == 0.0) & (np.abs(translation) <= SMALL * (np.abs(one) + np.abs(two)))
+    defined = np.isfinite(translation) & np.isfinite(angle) & ~at_rest
     infinite = defined & (angle == 0.0)
     with np.errstate(all="ignore"):
-        finite = (one + two) / 2.0 + 0.5j * way / np.tan(angle / 2.0)
+        finite = (one + two) / 2.0 + 0.5j * translation / np.tan(angle / 2.0)
     pole = np.where(infinite, INFINITE, np.where(defined, finite, UNKNOWN))
-    far = np.where(infinite, 1j * unit_direction(way), np.where(defined, 0j, UNKNOWN))
-    return Displacement(first, second, angle[()], way[()], pole[()], far[()], infinite[()], defined[()])
+    far = np.where(infinite, 1j * unit_direction(translation), np.where(defined, 0j, UNKNOWN))
+    return Displacement(first, second, angle[()], translation[()], pole[()], far[()], infinite[()], defined[()])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -156,20 +156,18 @@ class PoleTriangle(ShortRepr):
 
     @property
     def corner_angles(self) -> tuple[Number, Number, Number]:
-        """The angles at the corners, each half that of the rotation.
+        """The angles at the corners, each half that of the rotation, up to half turns.
 
-        But for half turns: from the side towards the pole before to that towards the pole after, between -pi/2 and
-        pi/2; NaN at infinity.
+        From the side towards the previous pole to that towards the next one, between -pi/2 and pi/2; NaN at infinity.
         """
         one, two, three = self.displacements
         return _corner(one, three, two), _corner(two, one, three), _corner(three, two, one)
 
     @property
     def images(self) -> tuple[Number, Number, Number]:
-        """The image poles: the point that comes to P23, in position 1.
+        """The image poles: of P23 in position 1, of P31 in position 2, of P12 in position 3.
 
-        And that of P31 in position 2, that of P12 in position 3. Each is the mirror image of the pole in the opposite
-        side of the triangle; inf where the pole is.
+        Each is the mirror image of the pole in the opposite side of the triangle; inf where the pole is.
         """
         one, two, three = self.displacements
         return _mirrored(two, one, three), _mirrored(three, two, one), _mirrored(one, three, two)
@@ -211,6 +209,6 @@ def _mirrored(pole: Displacement, one: Displacement, two: Displacement) -> Numbe
     """Return the mirror image of a pole in the line through two others."""
     through = np.where(one.infinite, two.pole, one.pole)
     along: Number = np.where(one.infinite, one.direction, _toward(one, two))
-    # poles that coincide have no line, and are their own image
+    # coincident poles have no line, and are their own image
     image = through + along**2 * np.conj(pole.pole - through)
     return np.where(pole.infinite, INFINITE, image)[()]

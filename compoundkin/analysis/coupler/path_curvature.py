@@ -59,11 +59,11 @@ class PathCurvature(ShortRepr):
 @checked
 @np.errstate(all="ignore")
 def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> PathCurvature:
-    """Return the curvature of the path of a point seen from `on`.
+    """Return the curvature of the path of a point in the frame of `on`.
 
     `point` as in `relative_point`; lengths in the user's unit. Independent of the driver's acceleration and, but for
-    the sign of `curvature`, of its speed. Raises UnknownName for a link or letter that is not there; InvalidInput below
-    order 2, for a link seen from itself, a driver at rest, or what is not a point.
+    the sign of `curvature`, of its speed. Raises UnknownName for an unknown link or letter; InvalidInput below order 2,
+    for a link seen from itself, a driver at rest, or an invalid point.
     Source: ``curvature = (v x a) / |v|^3``; J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and
     Mechanisms, chapter 4.
 
@@ -87,7 +87,7 @@ def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> Pa
 @checked
 @np.errstate(all="ignore")
 def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> PathCurvature:
-    """Return what `path_curvature` does, from pole and inflection circle instead of derivatives.
+    """Return the curvature of a path as `path_curvature`, from pole and inflection circle instead of derivatives.
 
     With r the distance from the pole, psi its angle from the pole tangent and d the diameter of the inflection circle,
     the curvature is ``(r - d sin psi) / r^2``: the second, independent way. Not defined (NaN) where the links do not
@@ -139,7 +139,7 @@ def _length(motion: Motion, p: Number) -> Number:
 
 
 def _resting(seen: RelativeMotion, speed: Number, p: Number) -> Number:
-    """Return where a point stands still."""
+    """Return whether a point stands still."""
     return speed <= SMALL * seen.scale(1) * (seen.reach + _length(seen.motion, p))
 
 
@@ -156,7 +156,7 @@ def _path(seen: RelativeMotion, x: Number, left: Number, curvature: Number, rest
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StationaryCurvature(ShortRepr):
-    """The points whose paths keep their curvature for a moment, at every pose. Arrays of the motion's shape.
+    """The points whose paths have stationary curvature, at every pose. Arrays of the motion's shape.
 
     In the canonical frame `frame` at polar coordinates (r, psi) the cubic is ``1/r = inverse_m / sin psi + inverse_n /
     cos psi``, the two in 1/length: zero where the cubic falls apart into a circle and a line. `ball` is Ball's point,
@@ -173,7 +173,7 @@ class StationaryCurvature(ShortRepr):
     defined: Number
 
     def residual(self, points: Number) -> Number:
-        """Return the cubic at points of the observing link's frame, length^2. Zero for those of stationary curvature.
+        """Return the residual of the cubic at points of the observing link's frame, length^2.
 
         `points` broadcast with the motion's shape.
         """
@@ -182,10 +182,7 @@ class StationaryCurvature(ShortRepr):
         return np.abs(place) ** 2 * (self.inverse_m * x + self.inverse_n * y) - x * y
 
     def at(self, angle: Number) -> Number:
-        """Return the point of the cubic at an angle from the pole tangent.
-
-        In radians, and in the observing link's frame.
-        """
+        """Return the point of the cubic at an angle (radians) from the pole tangent, in the observing link's frame."""
         sine, cosine = np.sin(angle), np.cos(angle)
         r = sine * cosine / (self.inverse_m * cosine + self.inverse_n * sine)
         return self.frame.outer(r * (cosine + 1j * sine))
@@ -251,7 +248,7 @@ class CanonicalFrame(ShortRepr):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BresseCircle(ShortRepr):
-    """A circle, or a line, by a point it runs through. Arrays of the motion's shape.
+    """A circle, or a line, through a point. Arrays of the motion's shape.
 
     `through` is the pole, or a point of the line where the pole is at infinity; `direction` the unit vector from there
     to the centre, which for a line is its normal; `diameter` is inf for a line and 0 for a pin, where the circle is the
@@ -265,7 +262,7 @@ class BresseCircle(ShortRepr):
 
     @property
     def is_line(self) -> Number:
-        """Where it is a straight line."""
+        """Whether it is a straight line."""
         return np.isinf(self.diameter)
 
     @property
@@ -284,9 +281,7 @@ class BresseCircle(ShortRepr):
         return self._along(self.diameter)
 
     def offset(self, points: Number) -> Number:
-        """Return how far points are outside (positive) the circle.
-
-        Or beside the line, away from its normal.
+        """Return the distances of points from the circle, positive outside, or from the line, away from its normal.
 
         >>> BresseCircle(np.array([0j]), np.array([1j]), np.array([2.0]), np.array([True])).offset(2 + 1j).tolist()
         [1.0]
@@ -302,9 +297,8 @@ class BresseCircle(ShortRepr):
 @checked
 @np.errstate(all="ignore")
 def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFrame:
-    """Return the canonical frame of `link` seen from `on`: pole, tangent, normal, diameter.
+    """Return the canonical frame of `link` in the frame of `on`: pole, tangent, normal, inflection diameter.
 
-    The diameter is that of the inflection circle.
     Lengths in the user's unit; independent of the driver's speed and acceleration. Raises UnknownName, and InvalidInput
     below order 2, for a link seen from itself or a driver at rest. Source: Bottema and Roth, Theoretical Kinematics,
     chapter VIII (canonical system; b2 is the diameter).
@@ -321,9 +315,8 @@ def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFram
 @checked
 @np.errstate(all="ignore")
 def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
-    """Return the circle of points of `link` whose paths have no curvature.
+    """Return the circle of points of `link` whose paths in the frame of `on` have no curvature.
 
-    In the frame of `on`, at the moment.
     Lengths in the user's unit; independent of the driver's speed. At a pose of pure translation the pole is at
     infinity and they form a line, not defined if the translation is an exact one (no angular acceleration).
     Raises as `canonical_frame`. Source: Dijksman, Motion Geometry of Mechanisms; Bresse (1853).

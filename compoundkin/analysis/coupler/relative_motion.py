@@ -26,11 +26,10 @@ INFINITE = complex(np.inf, np.inf)
 
 @checked
 def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
-    """Return the motion of one link as seen from another.
+    """Return the motion of one link in the frame of another.
 
-    In the frame of the latter.
-    Angles in radians, their rates in rad/s; arrays of the motion's shape. Raises UnknownName for a link that is not
-    there, InvalidInput for a link seen from itself. Source: O. Bottema and B. Roth, Theoretical Kinematics (1979),
+    Angles in radians, their rates in rad/s; arrays of the motion's shape. Raises UnknownName for an unknown link,
+    InvalidInput for a link seen from itself. Source: O. Bottema and B. Roth, Theoretical Kinematics (1979),
     chapter VIII, the pose being ``pose(on)^-1 pose(link)``.
 
     >>> from compoundkin.files import load
@@ -44,13 +43,12 @@ def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
 
 @checked
 def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> PointMotion:
-    """Return the motion of a point of one link as seen from another.
+    """Return the motion of a point of one link in the frame of another.
 
-    In the frame of the latter.
     `point` is a letter of the link, or a place in the link's own frame, complex or (x, y), a number or an array.
     Lengths in the user's unit, per second, s^2, s^3; complex arrays of the motion's shape. Turn them by
-    ``motion.poses[on].u`` for world axes. Raises UnknownName for a link or letter that is not there, InvalidInput for a
-    link seen from itself and for what is not a point. Source: as `relative_link`.
+    ``motion.poses[on].u`` for world axes. Raises UnknownName for an unknown link or letter, InvalidInput for a link
+    seen from itself and for an invalid point. Source: as `relative_link`.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -62,7 +60,7 @@ def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> Po
 
 
 def local_point(motion: Motion, link: str, point: Any) -> Number:
-    """Return where a point is in its link's frame. A letter is looked up, coordinates are taken as they are."""
+    """Return the place of a point in its link's frame, from its letter or coordinates."""
     if isinstance(point, str):
         known = motion.mechanism.geometry.points[link]
         if point not in known:
@@ -84,10 +82,10 @@ def series_rate(series: Series) -> Series:
 
 @dataclass(frozen=True, eq=False)
 class RelativeMotion:
-    """A relative motion as series, and what is large and small in it.
+    """A relative motion as series: `z`, `u` are the pose of `link` in the frame of `on`.
 
-    `z`, `u` are the pose of `link` in the frame of `on`. Everything is geometry if it is divided by powers of the
-    relative angular velocity: the angle then is the parameter (instantaneous invariants).
+    Divided by powers of the relative angular velocity all of it is geometry, with the angle as the parameter
+    (instantaneous invariants).
     """
 
     motion: Motion
@@ -98,7 +96,7 @@ class RelativeMotion:
 
     @cached_property
     def omega(self) -> Series:
-        """The relative angular velocity; exactly 0 where it is nothing but rounding."""
+        """The relative angular velocity, exactly 0 within rounding."""
         omega = self.u.turning()
         return Series((np.where(np.abs(omega.c[0]) > SMALL * self.scale(1), omega.c[0], 0.0), *omega.c[1:]))
 
@@ -119,18 +117,18 @@ class RelativeMotion:
 
     @cached_property
     def turning(self) -> Number:
-        """Where the links turn relative to each other. The pole is finite and rates by the angle exist."""
+        """Whether the links turn relative to each other: the pole is finite and rates by the angle exist."""
         return self.regular & (self.omega.c[0] != 0)
 
     @cached_property
     def resting(self) -> Number:
-        """Where the links stand still relative to each other for an instant, or always."""
+        """Whether the links stand still relative to each other, for an instant or always."""
         still = np.abs(self.numerator.c[0]) <= SMALL * self.scale(1) * self.reach
         return self.regular & (self.omega.c[0] == 0) & still
 
     @cached_property
     def regular(self) -> Number:
-        """Where the pose is assembled and all its rates are finite."""
+        """Whether the pose is assembled and all its rates are finite."""
         return self.motion.regular.reshape(self.motion.shape)
 
     @cached_property
@@ -144,7 +142,7 @@ class RelativeMotion:
         return SMALL * self.reach * np.maximum(1.0, self.scale(2) / self.omega.c[0] ** 2)
 
     def scale(self, k: int) -> Number:
-        """Return how fast links and drivers are at a pose, in rad/s^k. Rounding is relative to it."""
+        """Return the greatest rate of links and drivers at a pose, in rad/s^k, the scale of rounding."""
         size, links, drives = self.motion.size, self.motion.links, self.motion.drives.values()
         rates = [np.abs(d.derivative(k)) / (1.0 if d.is_angle else size) for d in drives]
         for name in (self.link, self.on):
@@ -171,7 +169,7 @@ def relative_motion(motion: Motion, link: str, on: str, order: int, what: str) -
 
 
 def check_moving(motion: Motion, what: str) -> None:
-    """Raise InvalidInput if no driver moves at some pose. What is read off velocities is then not there."""
+    """Raise InvalidInput if no driver moves at some pose, where velocities define nothing."""
     speeds = [np.broadcast_to(np.abs(drive.rate), motion.shape) for drive in motion.drives.values()]
     still = np.asarray(motion.assembled & (np.max([*speeds, np.zeros(motion.shape)], axis=0) == 0))
     if still.any():

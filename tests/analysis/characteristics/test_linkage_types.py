@@ -42,7 +42,7 @@ def test_change_points_are_named_by_the_shortest_link_or_by_equal_ones() -> None
               for code in ("GCRR", "S2X", "RRR1", "")]  # fmt: skip
     assert shares == [True, True, False, False]
     assert names == ["parallelogram (or antiparallelogram)", "kite (deltoid)"]
-    with pytest.raises(ck.errors.InvalidInput, match="longer than nothing"):
+    with pytest.raises(ck.errors.InvalidInput, match="the length of a link of a four-bar is positive"):
         four_bar_code(1, 0, 1, 1)
 
 
