@@ -265,8 +265,8 @@ def quick_return_between(
     ratio = Quantity(f"{name}.{TIME_RATIO}", "", max(forth, back) / min(forth, back))
     half = abs(forth - back) / 2.0
     imbalance = scalar_quantity(f"{name}.{IMBALANCE}", half, first.unit) if first.unit == RADIANS else None
-    strokes = (scalar_quantity(f"{name}.{word}", v, first.unit) for word, v in (("forth", forth), ("back", back)))
-    return QuickReturn(*strokes, ratio, imbalance)
+    there = scalar_quantity(f"{name}.forth", forth, first.unit)
+    return QuickReturn(there, scalar_quantity(f"{name}.back", back, first.unit), ratio, imbalance)
 
 
 def _goes_round(begin: Mapping[str, Quantity], whole: float) -> bool:
