@@ -348,6 +348,45 @@ def guided_point(pair: Pair, ends: Ends) -> Number | None:
     return pair.guided(ends) if isinstance(pair, Guided) else None
 
 
+class StraightLine(Pair):
+    """A pair along a line of its first member: through a point, in a direction or toward a second point."""
+
+    line_word: ClassVar[str] = "line"  # what messages call it
+
+    at: str
+    through: str
+    angle: Number
+    toward: str | None
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The point on the line and the points that fix it."""
+        return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Find also a line from a point to itself."""
+        yield from super().problems(links, where)
+        if self.toward == self.through:
+            yield Problem(f"{where}.toward", f"a {self.line_word} from {self.through!r} to itself has no direction")
+
+    def line(self, geometry: Geometry) -> tuple[Number, Number]:
+        """Return a point of the line and its direction, in the first member's frame."""
+        points = geometry.points[self.members[0]]
+        start = points[self.through]
+        if self.toward is None:
+            return start, np.cos(self.angle) + 1j * np.sin(self.angle)
+        return start, (points[self.toward] - start) / np.abs(points[self.toward] - start)
+
+    def line_problems(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """Find two coincident points of the line."""
+        points = geometry.points[self.members[0]]
+        if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
+            what = (
+                f"{self.through!r} and {self.toward!r} are at one place, so that the {self.line_word} has no direction"
+            )
+            yield Problem(f"{where}.toward", what, "name another point or give an angle")
+
+
 class Equivalent(NamedTuple):
     """The lower pairs, and the link between them, that are equivalent to a higher pair at every pose.
 

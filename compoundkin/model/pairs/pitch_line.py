@@ -13,23 +13,19 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import DrawnPair, Ends, Point, Poses, TurnCounting
+from compoundkin.model.pairs.contract import DrawnPair, Ends, Point, Poses, StraightLine, TurnCounting
 from compoundkin.model.pairs.geared import FITS
 from compoundkin.model.pairs.symbols import Mark, Track, Wheel, known_range
 
 Row = tuple[Number, ...]
 
 
-class PitchLinePair(TurnCounting):
+class PitchLinePair(StraightLine, TurnCounting):
     """A wheel that rolls along a straight line of another link, which comes first."""
 
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
 
-    at: str
-    through: str
-    angle: Number
-    toward: str | None
     side: int
     phase: Number | None
 
@@ -38,29 +34,18 @@ class PitchLinePair(TurnCounting):
     def size(self) -> Number:
         """The radius of the wheel."""
 
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The axis of the wheel and the points that fix the line."""
-        return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
-
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find unknown links and points, a line without direction, a wrong side."""
         yield from super().problems(links, where)
-        if self.toward == self.through:
-            yield Problem(f"{where}.toward", f"a line from {self.through!r} to itself has no direction")
         if self.side not in (1, -1):
             what = f"{self.side!r} is not a side of the line"
             yield Problem(f"{where}.side", what, "write 1 for the left of its direction, -1 for the right")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """Find two coincident points of the line, or a radius that does not fit a drawing with all dimensions."""
-        line, _ = self.members
-        points = geometry.points[line]
-        if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
-            what = f"{self.through!r} and {self.toward!r} are at one place, so that the line has no direction"
-            yield Problem(f"{where}.toward", what, "name another point or give an angle")
-            return
-        seen = self._drawn_axis(geometry)
+        problems = list(self.line_problems(geometry, where))
+        yield from problems
+        seen = None if problems else self._drawn_axis(geometry)
         if seen is None or not all(name in geometry.as_drawn or name == "frame" for name in geometry.points):
             return
         away = self.side * (np.conjugate(seen[1]) * seen[0]).imag
@@ -77,17 +62,10 @@ class PitchLinePair(TurnCounting):
 
         The line is a point and a direction; the radius is negative to the right.
         """
-        start, along = self._line(geometry)
+        start, along = self.line(geometry)
         across = self.side * self.size
         axis = geometry.points[self.members[1]][self.at]
         return End(start, along, self._phase(geometry, across)), End(axis, None, across)
-
-    def _line(self, geometry: Geometry) -> tuple[Number, Number]:
-        points = geometry.points[self.members[0]]
-        start = points[self.through]
-        if self.toward is None:
-            return start, np.cos(self.angle) + 1j * np.sin(self.angle)
-        return start, (points[self.toward] - start) / np.abs(points[self.toward] - start)
 
     def _drawn_axis(self, geometry: Geometry) -> tuple[Number, Number] | None:
         """Return the vector from the line's point to the axis, and the line's direction, in the drawing, or None."""
@@ -100,7 +78,7 @@ class PitchLinePair(TurnCounting):
             axis = geometry.sketch[self.at]
         else:
             return None
-        start, along = self._line(geometry)
+        start, along = self.line(geometry)
         return axis - geometry.drawn[line].at(start).c[0], geometry.drawn[line].u.c[0] * along
 
     def _phase(self, geometry: Geometry, across: Number) -> Number:

@@ -26,6 +26,7 @@ from compoundkin.model.pairs.contract import (
     Orienting,
     Point,
     Poses,
+    StraightLine,
     jacobian_of_rows,
 )
 from compoundkin.model.pairs.loop_terms import (
@@ -43,7 +44,7 @@ from compoundkin.model.pairs.travel_limits import Reach, TravelLimited, reach_ke
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, DrawnGuide):
+class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, DrawnGuide, StraightLine):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of
@@ -91,6 +92,7 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
     is_simple: ClassVar[bool] = True
     force_words: ClassVar[tuple[str, ...]] = (NORMAL,)
     table: ClassVar[str] = "slides"
+    line_word: ClassVar[str] = "guide"
     wording: ClassVar[NameWording] = NameWording("slide", "name the link that carries the guide", "the one that slides")
 
     @property
@@ -98,16 +100,9 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
         """The guiding link and the sliding link."""
         return self.on, self.link
 
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The point that slides and those that fix the guide."""
-        return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
-
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find unknown links and points, and a guide on the link itself or from a point to itself."""
         yield from super().problems(links, where)
-        if self.toward is not None and self.toward == self.through:
-            yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
         yield from self.reach_problems(links, where)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
@@ -116,15 +111,10 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return guide point and direction on each link. The two directions are parallel when the pair is closed."""
-        start = geometry.points[self.on][self.through]
-        if self.toward is None:
-            guide = np.cos(self.angle) + 1j * np.sin(self.angle)
-        else:
-            line = geometry.points[self.on][self.toward] - start
-            if not np.all(np.abs(line) > 0):
-                what = f"{self.through!r} and {self.toward!r} are at one place, so that the guide has no direction"
-                raise InvalidMechanism(Problem(f"{self.name}.toward", what, "name another point or give an angle"))
-            guide = line / np.abs(line)
+        problems = list(self.line_problems(geometry, self.name))
+        if problems:
+            raise InvalidMechanism(problems)
+        start, guide = self.line(geometry)
         offset, turn = self.offset, self.turn
         along: Number = 1 + 0j if turn is None else np.cos(turn) - 1j * np.sin(turn)
         if {self.on, self.link} <= geometry.as_drawn and self.on in geometry.drawn:

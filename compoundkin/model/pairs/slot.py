@@ -18,7 +18,7 @@ from compoundkin.base.series import Series
 from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import FrictionContact, Touch, passing_rates
-from compoundkin.model.pairs.contract import Ends, Equivalent, Guided, Osculation, Pair, Poses
+from compoundkin.model.pairs.contract import Ends, Equivalent, Guided, Osculation, Pair, Poses, StraightLine
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Groove, Mark, Stud, known_range, point_array
@@ -26,7 +26,7 @@ from compoundkin.model.pairs.travel_limits import Reach, TravelLimited, reach_ke
 
 
 @dataclass(frozen=True, eq=False)
-class Slot(FrictionContact, Guided, TravelLimited):
+class Slot(FrictionContact, Guided, TravelLimited, StraightLine):
     """The point `at` of `link` runs along a straight slot in the link `on`.
 
     The slot is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of
@@ -63,37 +63,22 @@ class Slot(FrictionContact, Guided, TravelLimited):
     free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "slots"
+    line_word: ClassVar[str] = "slot"
     takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
-
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The pin and the points that fix the slot."""
-        return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find unknown links and points, a slot without direction."""
         yield from super().problems(links, where)
-        if self.toward == self.through:
-            yield Problem(f"{where}.toward", f"a slot from {self.through!r} to itself has no direction")
         yield from self.reach_problems(links, where)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """Find two coincident points of the slot, and travel limits in the wrong order."""
-        points = geometry.points[self.on]
-        if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
-            what = f"{self.through!r} and {self.toward!r} are at one place, so that the slot has no direction"
-            yield Problem(f"{where}.toward", what, "name another point or give an angle")
-        else:
-            yield from self.reach_misfits(geometry, where)
+        problems = list(self.line_problems(geometry, where))
+        yield from problems or self.reach_misfits(geometry, where)
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return a point and the direction of the slot; the pin."""
-        points = geometry.points[self.on]
-        start = points[self.through]
-        if self.toward is None:
-            along = np.cos(self.angle) + 1j * np.sin(self.angle)
-        else:
-            along = (points[self.toward] - start) / np.abs(points[self.toward] - start)
+        start, along = self.line(geometry)
         return End(start + 1j * along * self.offset, along), End(geometry.points[self.link][self.at])
 
     def touch(self, ends: Ends, poses: Poses) -> Touch:
