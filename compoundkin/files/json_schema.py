@@ -53,7 +53,7 @@ def schema() -> dict[str, Any]:
             "segment": closed_table(ProgramSegment.keys),
             "turned": closed_table(SEGMENT),
             "program": closed_table(PROGRAM),
-            "path": _tagged(PATHS, "Where a point is led in time."),
+            "path": _tagged(PATHS, "The path of a point in time."),
             "profile": _tagged(PROFILES, "The profile of a cam or curved slot, in the coordinates of its link."),
         },
     }

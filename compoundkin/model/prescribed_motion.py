@@ -71,10 +71,10 @@ class PrescribedMotion(ShortRepr):
 
     keys: ClassVar[tuple[Key, ...]] = (
         Key("name", "name", "What it is called; the point or the link where it is left out."),
-        Key("point", "name", "The point that is led."),
+        Key("point", "name", "The point whose motion is prescribed."),
         Key("link", "name", "The link whose angle is prescribed."),
         Key("on", "name", "The link whose axes are meant.", default=FRAME),
-        Key("along", "path", "Where the point is led in time."),
+        Key("along", "path", "The path of the point in time."),
         Key("x", "law", "The first coordinate of the point in time."),
         Key("y", "law", "The second coordinate of the point in time."),
         Key("angle", "law", "The angle of the link in time."),
