@@ -73,7 +73,7 @@ TABLES = (
     TableForm("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
     *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
     TableForm(CYLINDERS, "array", Cylinder.keys, "Each is a cylinder: a barrel and a rod between two pins."),
-    TableForm(DRIVES, "array", Drive.keys, "The drivers: of pairs, of points with a prescribed motion, of the angles of links."),
+    TableForm(DRIVES, "array", Drive.keys, "The drivers of pairs, and the prescribed motions of points and links."),
     *(TableForm(name, "array", kinds[0].keys, f"Each is a {kinds[0].title}.") for name, kinds in LOADS.items()),
     TableForm(OUTLINES, "array", LinkOutline.keys, "Each is an outline of a link, or a part of it."),
     TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
