@@ -7,6 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import Problem, suggestion
+from compoundkin.files import load
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import vector
 from compoundkin.model.pairs import slide
@@ -270,3 +271,14 @@ def test_problems_say_where_what_and_remedy() -> None:
     assert str(ck.errors.NotDetermined("plain")) == "plain"
     assert (ck.errors.InvalidMechanism.exit_code, ck.errors.NotAssembled.exit_code) == (2, 3)
     assert issubclass(ck.errors.UnknownName, LookupError)
+
+
+@pytest.mark.parametrize(("name", "link"), [("engine-gas-pressure", "piston"), ("jaw-crusher-loaded", "jaw")])
+@pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
+def test_report_of_a_loaded_mechanism_driven_elsewhere(name: str, link: str) -> None:
+    loaded = load(name)
+    (driver,) = loaded.drives
+    driven = ck.with_driver(loaded, link)
+    assert set(loaded.outputs) - set(driven.outputs) == {f"{driver.name}.effort"}
+    # the piston stands at its dead point, where the pose is a single one and singular; the jaw cannot go all around
+    assert "Forces" in ck.report(driven).text()
