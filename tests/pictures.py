@@ -9,8 +9,7 @@ from pathlib import Path
 from compoundkin.files import load
 from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.sketch import Picture, draw
-from compoundkin.view.sketch.sketch_style import css
-from compoundkin.view.sketch.svg import FONT
+from compoundkin.view.sketch.svg import FONT, css
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery.svg"
 ACROSS, CELL, CAPTION = 6, 240, 18

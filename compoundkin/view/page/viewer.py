@@ -20,8 +20,9 @@ from compoundkin.view.page.markup import data_script, element, lines, safe, scre
 from compoundkin.view.page.motion_data import MotionData, plot_data
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch
+from compoundkin.view.sketch.shapes import coordinate_text
 from compoundkin.view.sketch.sketch_style import page_css
-from compoundkin.view.sketch.svg import FONT, elements, link_names, svg_number
+from compoundkin.view.sketch.svg import FONT, elements, link_names
 
 # So many names below the sketch are stops of the keyboard.
 MOST_STOPS = 12
@@ -117,7 +118,7 @@ def _sketch_html(moving: MotionData) -> str:
     """Return the sketch at the initial pose; every part is an element with its own place."""
     sketch = moving.sketch
     title = f"Moving kinematic sketch of {moving.motion.mechanism.title}"
-    size = f"0 0 {svg_number(sketch.window.width)} {svg_number(sketch.window.height)}"
+    size = f"0 0 {coordinate_text(sketch.window.width)} {coordinate_text(sketch.window.height)}"
     parts = [*_parts_html(sketch)]
     inside = [
         *elements(sketch.still),
@@ -132,7 +133,7 @@ def _parts_html(sketch: MovingSketch) -> Iterator[str]:
     k = int(np.searchsorted(sketch.scene.known, sketch.pose)) if sketch.scene.known is not None else 0
     for part in sketch.parts:
         at = complex(sketch.places(part)[k])
-        place = f"translate({svg_number(at.real)} {svg_number(at.imag)})"
+        place = f"translate({coordinate_text(at.real)} {coordinate_text(at.imag)})"
         shapes = "".join(elements(part.shapes))
         yield f'<g data-links="{link_names([part.link])}"{_part_attributes(part)} transform="{place}">{shapes}</g>'
 

@@ -19,8 +19,9 @@ from compoundkin.dynamics.reactions.link_wrench import DRIVER, FRICTION, PAIR, W
 from compoundkin.dynamics.reactions.link_wrench import INERTIA as OF_INERTIA
 from compoundkin.model.geometry import FRAME
 from compoundkin.view.sketch.labels import Label, label_around, text_half
+from compoundkin.view.sketch.painter import curved_arrow
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, arrow_shapes, curved_arrow, unit_direction
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, arrow_shapes, unit_direction
 from compoundkin.view.sketch.sketch_style import INERTIA, LOAD, REACTION, SMALL
 from compoundkin.view.sketch.vectors import VectorScale, round_below
 

@@ -17,11 +17,14 @@ from compoundkin.model.outline_shapes import OutlineShape
 from compoundkin.model.pairs.symbols import Pin, Sliding
 from compoundkin.view.sketch.scene import PairMark, Scene, Window, is_inside, racks, smallest_wheel
 from compoundkin.view.sketch.shapes import (
+    HEAD,
+    ArcShape,
     Band,
     CircleShape,
     Polygon,
     Polyline,
     Shape,
+    arrow_head,
     hatching,
     rectangle_corners,
     unit_direction,
@@ -449,3 +452,13 @@ def _is_beside(scene: Scene, window: Window, letter: str, at: complex) -> bool:
             if abs(at - low) + abs(at - high) > abs(high - low) + 2.0 * NEAR:
                 return False
     return True
+
+
+def curved_arrow(at: complex, start: complex, sweep: float, radius: float, style: str) -> tuple[ArcShape, Polygon]:
+    """Draw an arrow round a place. It begins in the unit direction `start`; `sweep` (radians) is clockwise on paper."""
+    way = float(np.sign(sweep)) or 1.0
+    stop, back = start * np.exp(1j * sweep), HEAD / radius
+    end = at + stop * np.exp(-1j * way * back * 0.8) * radius
+    heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
+    arc = ArcShape(as_place(at + start * radius), as_place(end), radius, way > 0, style)
+    return arc, arrow_head(as_place(at + stop * radius), as_place(heading), f"{style}-head")

@@ -10,7 +10,6 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.view.sketch.traced_numbers import as_place
 
 HATCH = 6.0  # distance of the strokes of a hatching
 HEAD = 10.0  # length of an arrow's head
@@ -226,16 +225,6 @@ def arrow_head(tip: complex, along: complex, style: str, size: float = 1.0) -> P
     return Polygon((tip, back + 1j * e * HEAD_HALF * size, back - 1j * e * HEAD_HALF * size), style)
 
 
-def curved_arrow(at: complex, start: complex, sweep: float, radius: float, style: str) -> tuple[ArcShape, Polygon]:
-    """Draw an arrow round a place. It begins in the unit direction `start`; `sweep` (radians) is clockwise on paper."""
-    way = float(np.sign(sweep)) or 1.0
-    stop, back = start * np.exp(1j * sweep), HEAD / radius
-    end = at + stop * np.exp(-1j * way * back * 0.8) * radius
-    heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
-    arc = ArcShape(as_place(at + start * radius), as_place(end), radius, way > 0, style)
-    return arc, arrow_head(as_place(at + stop * radius), as_place(heading), f"{style}-head")
-
-
 def radial_ticks(
     middle: complex, radius: float, start: float, count: int, inner: float, outer: float
 ) -> tuple[Number, ...]:
@@ -264,3 +253,14 @@ class StrokeRow(NamedTuple):
     def moved(self, by: complex, turn: complex) -> StrokeRow:
         """Return it turned about zero, then moved."""
         return StrokeRow(self.first * turn + by, self.step * turn, self.stroke * turn, self.number)
+
+
+def coordinate_text(value: float) -> str:
+    """Return a number to a tenth of a picture unit, without idle zeros. No eye can tell less.
+
+    >>> coordinate_text(12.04), coordinate_text(-0.01), coordinate_text(3.25)
+    ('12', '0', '3.2')
+    """
+    text = f"{value:.1f}"
+    text = text.removesuffix(".0")
+    return "0" if text == "-0" else text

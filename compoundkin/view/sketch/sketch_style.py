@@ -10,18 +10,9 @@ from operator import itemgetter
 from typing import TypeAlias
 
 from compoundkin.model.attributes import ACCELERATION, VELOCITY
-from compoundkin.view.sketch.shapes import (
-    ArcShape,
-    Band,
-    CircleShape,
-    Polygon,
-    Polyline,
-    Shape,
-    ShapeGroup,
-    Strokes,
-    Text,
-)
 
+# From the middle of a line of text to its baseline, in parts of the size of the letters.
+BASELINE = 0.35
 # A colour on light and on dark paper.
 Colours: TypeAlias = tuple[str, str]
 # Sizes that shapes are made with, in picture units.
@@ -128,16 +119,6 @@ def style_of(kind: str, group: int | None = None) -> str:
     return kind if group is None else f"{kind}{group if group == 0 else (group - 1) % (len(COLOURS) - 1) + 1}"
 
 
-def css(shapes: Iterable[Shape]) -> str:
-    """Return the style sheet of some shapes on light or dark paper. A reader may prefer dark.
-
-    Of two classes of one shape the later in the alphabet counts: "pin" fills what "ink" or "frame" strokes.
-    """
-    used = sorted({name for style in _styles(shapes) for name in style.split()})
-    light, dark = _sheets(used)
-    return f"{light}\n@media (prefers-color-scheme: dark) {{\n{dark}\n}}"
-
-
 def page_css() -> str:
     """Return the style sheet of all pictures of a page. Its root may say `data-theme="light"` or "dark".
 
@@ -163,8 +144,8 @@ def declarations(name: str) -> dict[str, str]:
     return dict(rule.split(":") for rule in inside.split(";"))
 
 
-def _sheets(names: Iterable[str]) -> tuple[str, str]:
-    """The rules of classes on light paper, and those that differ on dark."""
+def sheets_of_papers(names: Iterable[str]) -> tuple[str, str]:
+    """Return the rules of classes on light paper, and those that differ on dark."""
     both = [(_rule(name, itemgetter(0)), _rule(name, itemgetter(1))) for name in sorted(names)]
     return "\n".join(light for light, _ in both), "\n".join(dark for light, dark in both if light != dark)
 
@@ -194,12 +175,3 @@ def mixed(colour: str, other: str, part: float) -> str:
     """
     two = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
     return "#" + "".join(f"{round(part * one + (1.0 - part) * rest):02x}" for one, rest in two)
-
-
-def _styles(shapes: Iterable[Shape]) -> Iterable[str]:
-    for shape in shapes:
-        if isinstance(shape, ShapeGroup):
-            yield shape.style
-            yield from _styles(shape.shapes)
-        elif isinstance(shape, Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text):
-            yield shape.style

@@ -20,14 +20,13 @@ from compoundkin.view.sketch.shapes import (
     ShapeGroup,
     Strokes,
     Text,
+    coordinate_text,
 )
-from compoundkin.view.sketch.sketch_style import PAPER, css
+from compoundkin.view.sketch.sketch_style import BASELINE, PAPER, sheets_of_papers
 
 FONT = "font-family:Helvetica,Arial,sans-serif"
 # Pixels for a picture unit where texts are as large as those of a page.
 NATURAL = 1.1
-# From the middle of a line of text to its baseline, in parts of the size of the letters.
-BASELINE = 0.35
 # A PNG has so many pixels for each of the picture's: sharp on fine screens and in print.
 FINE = 2.0
 # Where colours are in the four bytes of a pixel of Cairo's on machines of our days: blue, green, red.
@@ -56,12 +55,32 @@ def svg_document(
     """Return the source of a picture whose elements are there already. It has the style sheet of some shapes."""
     shown = size / max(width, height)
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {svg_number(width)} {svg_number(height)}" '
-        f'width="{svg_number(width * shown)}" height="{svg_number(height * shown)}" role="img" style="{FONT}">'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {coordinate_text(width)} {coordinate_text(height)}" '
+        f'width="{coordinate_text(width * shown)}" height="{coordinate_text(height * shown)}" '
+        f'role="img" style="{FONT}">'
     )
     about = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
     sheet = f"<style>\n{css(styled)}\n</style>"
     return "\n".join([head, *about, sheet, *lines, "</svg>", ""])
+
+
+def css(shapes: Iterable[Shape]) -> str:
+    """Return the style sheet of some shapes on light or dark paper. A reader may prefer dark.
+
+    Of two classes of one shape the later in the alphabet counts: "pin" fills what "ink" or "frame" strokes.
+    """
+    used = sorted({name for style in _styles(shapes) for name in style.split()})
+    light, dark = sheets_of_papers(used)
+    return f"{light}\n@media (prefers-color-scheme: dark) {{\n{dark}\n}}"
+
+
+def _styles(shapes: Iterable[Shape]) -> Iterable[str]:
+    for shape in shapes:
+        if isinstance(shape, ShapeGroup):
+            yield shape.style
+            yield from _styles(shape.shapes)
+        elif isinstance(shape, Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text):
+            yield shape.style
 
 
 def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:
@@ -72,8 +91,8 @@ def inline(shapes: Sequence[Shape], width: float, height: float, title: str, des
     """
     name = escape(f"{title}. {description}" if description else title)
     head = (
-        f'<svg viewBox="0 0 {svg_number(width)} {svg_number(height)}" '
-        f'style="max-width:{svg_number(width * NATURAL)}px;{FONT}" '
+        f'<svg viewBox="0 0 {coordinate_text(width)} {coordinate_text(height)}" '
+        f'style="max-width:{coordinate_text(width * NATURAL)}px;{FONT}" '
         f'role="img" aria-label="{name}">'
     )
     return "\n".join([head, f"<title>{escape(title)}</title>", *elements(shapes, tagged=True), "</svg>"])
@@ -86,17 +105,6 @@ def link_names(names: Iterable[str]) -> str:
     'bar,block'
     """
     return escape(",".join(names))
-
-
-def svg_number(value: float) -> str:
-    """Return a number to a tenth of a picture unit, without idle zeros. No eye can tell less.
-
-    >>> svg_number(12.04), svg_number(-0.01), svg_number(3.25)
-    ('12', '0', '3.2')
-    """
-    text = f"{value:.1f}"
-    text = text.removesuffix(".0")
-    return "0" if text == "-0" else text
 
 
 def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
@@ -118,22 +126,22 @@ def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
 def _element(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text) -> str:
     style = _class(shape.style)
     if isinstance(shape, Text):
-        x, y = svg_number(shape.at.real), svg_number(shape.at.imag)
+        x, y = coordinate_text(shape.at.real), coordinate_text(shape.at.imag)
         anchor = f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else ""
-        turn = f' transform="rotate({svg_number(shape.angle)} {x} {y})"' if shape.angle else ""
+        turn = f' transform="rotate({coordinate_text(shape.angle)} {x} {y})"' if shape.angle else ""
         return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}{turn}>{escape(shape.text)}</text>'
     if isinstance(shape, CircleShape):
-        x, y = svg_number(shape.centre.real), svg_number(shape.centre.imag)
-        return f'<circle{style} cx="{x}" cy="{y}" r="{svg_number(shape.radius)}"/>'
+        x, y = coordinate_text(shape.centre.real), coordinate_text(shape.centre.imag)
+        return f'<circle{style} cx="{x}" cy="{y}" r="{coordinate_text(shape.radius)}"/>'
     if isinstance(shape, ArcShape):
-        radius = svg_number(shape.radius)
+        radius = coordinate_text(shape.radius)
         way = f"M{_pair(shape.start)}A{radius} {radius} 0 0 {int(shape.sweep)} {_pair(shape.stop)}"
         return f'<path{style} d="{way}"/>'
     if isinstance(shape, Strokes):
         return f'<path{style} d="{"".join(_path_data(line) for line in shape.lines)}"/>'
     if isinstance(shape, Band):
         way = f'd="{_path_data(shape.points)}{"Z" if shape.closed else ""}"'
-        return f'<path{style} stroke-width="{svg_number(shape.width)}" {way}/>'
+        return f'<path{style} stroke-width="{coordinate_text(shape.width)}" {way}/>'
     return f'<path{style} d="{_path_data(shape.points)}{"Z" if isinstance(shape, Polygon) else ""}"/>'
 
 
@@ -142,7 +150,7 @@ def _path_data(points: Sequence[complex]) -> str:
 
 
 def _pair(point: complex) -> str:
-    return f"{svg_number(point.real)} {svg_number(point.imag)}"
+    return f"{coordinate_text(point.real)} {coordinate_text(point.imag)}"
 
 
 def _class(style: str) -> str:

@@ -14,7 +14,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
 from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.structure import DrivenPair
-from compoundkin.view.sketch.painter import Laid, Layer, Painter, guide_line, sliding, stops
+from compoundkin.view.sketch.painter import Laid, Layer, Painter, curved_arrow, guide_line, sliding, stops
 from compoundkin.view.sketch.scene import PairMark
 from compoundkin.view.sketch.shapes import (
     HATCH,
@@ -24,7 +24,6 @@ from compoundkin.view.sketch.shapes import (
     Shape,
     Strokes,
     arrow_shapes,
-    curved_arrow,
     hatching,
     rectangle_corners,
     unit_direction,

@@ -22,9 +22,9 @@ from compoundkin.view.sketch.shapes import (
     ShapeGroup,
     Strokes,
     Text,
+    coordinate_text,
 )
-from compoundkin.view.sketch.sketch_style import declarations
-from compoundkin.view.sketch.svg import BASELINE, svg_number
+from compoundkin.view.sketch.sketch_style import BASELINE, declarations
 
 # TeX's big points of a pixel: 72 and 96 to the inch.
 OF_PIXEL = 0.75
@@ -64,7 +64,7 @@ def tikz(shapes: Sequence[Shape], width: float, height: float, size: float, titl
         *(f"  ck-{name}/.style={{{', '.join(_style(name, own, unit))}}}," for name, own in rules.items()),
         "]",
         *(f"\\definecolor{{{_colour(one)}}}{{HTML}}{{{one[1:].upper()}}}" for one in colours),
-        f"\\useasboundingbox (0,0) rectangle ({svg_number(width)},{svg_number(height)});",
+        f"\\useasboundingbox (0,0) rectangle ({coordinate_text(width)},{coordinate_text(height)});",
     ]
     return "\n".join([*head, *_commands(shapes, height, unit), "\\end{tikzpicture}", "\\end{document}", ""])
 
@@ -155,13 +155,13 @@ def _is_of_halo(shape: Text, before: Shape | None) -> bool:
 
 
 def _node(shape: Text, height: float) -> str:
-    turn = f"rotate={svg_number(-shape.angle)}, " if shape.angle else ""
+    turn = f"rotate={coordinate_text(-shape.angle)}, " if shape.angle else ""
     anchor = f", anchor=base{ANCHORS[shape.anchor]}" if shape.anchor != "middle" else ""
     return f"\\node[{turn}{_names(shape.style)}{anchor}] at {_place(shape.at, height)} {{{tex_text(shape.text)}}};"
 
 
 def _place(point: complex, height: float) -> str:
-    return f"({svg_number(point.real)},{svg_number(height - point.imag)})"
+    return f"({coordinate_text(point.real)},{coordinate_text(height - point.imag)})"
 
 
 def _line(points: Sequence[complex], height: float) -> str:
@@ -173,7 +173,7 @@ def _line(points: Sequence[complex], height: float) -> str:
 def _line_commands(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape, height: float) -> str:
     """The way of a shape's line."""
     if isinstance(shape, CircleShape):
-        return f"{_place(shape.centre, height)} circle[radius={svg_number(shape.radius)}]"
+        return f"{_place(shape.centre, height)} circle[radius={coordinate_text(shape.radius)}]"
     if isinstance(shape, ArcShape):
         return _arc(shape, height)
     if isinstance(shape, Strokes):
@@ -191,7 +191,7 @@ def _arc(shape: ArcShape, height: float) -> str:
     arm = -chord / 2.0 - 1j * way * off * (chord / abs(chord) if chord else 1.0)
     start = float(np.rad2deg(np.angle(arm)))
     turned = way * 2.0 * float(np.rad2deg(np.arcsin(min(1.0, abs(chord) / 2.0 / radius)))) if chord else 0.0
-    options = f"start angle={start:.2f}, delta angle={turned:.2f}, radius={svg_number(radius)}"
+    options = f"start angle={start:.2f}, delta angle={turned:.2f}, radius={coordinate_text(radius)}"
     return f"{_place(shape.start, height)} arc[{options}]"
 
 
