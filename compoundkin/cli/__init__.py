@@ -40,11 +40,8 @@ VERBS = {
     "completion": "The script that completes commands in your shell.",
 }
 
-# Verbs whose file has another name.
-_FILES = {
-    **{"compare": "comparison_command", "forces": "mechanism_forces", "import": "import_command"},
-    **{"open": "report", "study": "study_command", "tolerance": "tolerance_command"},
-}
+# Verbs that are not `command` of the file of their name, as `import` is a word of Python.
+_COMMANDS = {"import": ("import_command", "command"), "open": ("report", "open_command")}
 
 EPILOG = """\b
 Examples:
@@ -74,8 +71,8 @@ class Verbs(click.Group):
         """Return the command of a verb."""
         if cmd_name not in VERBS:
             return None
-        file = import_module(f"compoundkin.cli.{_FILES.get(cmd_name, cmd_name)}")
-        command: click.Command = file.open_command if cmd_name == "open" else file.command
+        file, name = _COMMANDS.get(cmd_name, (cmd_name, "command"))
+        command: click.Command = getattr(import_module(f"compoundkin.cli.{file}"), name)
         return command
 
     def resolve_command(

@@ -34,6 +34,7 @@ from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.structure_sections import analysis_blocks, links_section
+from compoundkin.view.report.verification_sections import findings_table
 from compoundkin.view.report.whole_report import Studied, report
 from compoundkin.view.report.wording import counted, listed, sentence
 from compoundkin.view.sketch import draw
@@ -161,12 +162,11 @@ def _(what: Report) -> Iterator[str]:
 
 @_parts.register
 def _(what: Check) -> Iterator[str]:
-    columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
-               Column("", style="passed"))  # fmt: skip
-    rows = tuple((f.name, f.value, f.limit, _finding_place(f.pair, f.pose), f.passed) for f in what.findings)
     verdict = f"failed: {listed(what.failed)}" if what.failed else what.verdict
     singular = f", {what.singular} of them without rates" if what.singular else ""
-    yield plain_table(TableBlock(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
+    yield plain_table(
+        findings_table(what, _finding_place), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}"
+    )
 
 
 def _finding_place(name: str, pose: tuple[int, ...]) -> str:

@@ -29,8 +29,8 @@ from compoundkin.model.attributes import (
 from compoundkin.view.page.live.live_sketch import live_sketch
 from compoundkin.view.page.markup import component_values, packed_doubles, packed_floats
 from compoundkin.view.report.pose_sample import Sample
+from compoundkin.view.sketch import force_arrows
 from compoundkin.view.sketch.centre_pictures import centre_number
-from compoundkin.view.sketch.force_arrows import SHORTEST as SHORTEST_of_force_arrows
 from compoundkin.view.sketch.force_arrows import ForceCourse
 from compoundkin.view.sketch.force_pictures import KINDS, drawn_force_courses, force_scales
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
@@ -253,7 +253,7 @@ def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], c
         "scale": one.per_unit,
         "text": one.text,
         "length": one.amount * one.per_unit,
-        "shortest": SHORTEST_of_force_arrows,
+        "shortest": force_arrows.SHORTEST,
         "unit": forces.units.force,
         "kinds": {scale.kind: KINDS[scale.kind] for scale in scales},
         "arrows": [_force_arrow(forces, course, links, chosen, sketch.design) for course in courses],

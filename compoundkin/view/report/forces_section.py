@@ -25,7 +25,7 @@ from compoundkin.view.report.outputs_section import extremes_columns, extremes_r
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.verification_sections import findings_table, outcome_of
+from compoundkin.view.report.verification_sections import checks_table, outcome_of
 from compoundkin.view.report.wording import counted, listed, number_text, point_text, range_text
 
 BALANCES = "balances written anew by Newton and Euler, and virtual work"
@@ -55,7 +55,7 @@ def force_checks_sections(sample: Sample, forces: Forces | None) -> tuple[Sectio
     """Return the findings about forces as a section; none without forces."""
     if forces is None:
         return ()
-    blocks = Paragraph(f"By {BALANCES}."), findings_table(sample, verify(forces))
+    blocks = Paragraph(f"By {BALANCES}."), checks_table(forces.motion, verify(forces))
     return (Section("force-checks", "Checks of forces", blocks),)
 
 
@@ -78,7 +78,7 @@ def _force_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     yield from _shaking_blocks(sample, forces)
     yield from _friction_blocks(sample, forces)
     yield Paragraph(f"Checks of the forces, {BALANCES}:")
-    yield findings_table(sample, verify(forces))
+    yield checks_table(forces.motion, verify(forces))
 
 
 def _undetermined_blocks(forces: Forces) -> Iterator[Block]:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import singledispatchmethod
-from math import degrees
 from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import degrees as degrees_of_arrays
+from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.groups import DYADS
@@ -91,7 +90,7 @@ def _driver_range(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[
         return None, None, None, speed, acceleration
     values = FULL_TURN if values is None else values
     ends = float(values[0]), float(values[-1])
-    return (*(map(degrees, ends) if is_angle else ends), len(values), speed, acceleration)
+    return (*(degrees(ends).tolist() if is_angle else ends), len(values), speed, acceleration)
 
 
 def _driver_values(drive: Drive, sample: Sample | None) -> tuple[Any, Cell, Cell]:
@@ -292,7 +291,7 @@ class LawText:
                 yield f" Its {DERIVATIVES[order]} jumps at {listed(places)} s."
 
     def _value(self, value: Any) -> str:
-        shown = degrees_of_arrays(value) if self.is_angle else value
+        shown = degrees(value) if self.is_angle else value
         return f"{_range_text(shown)} {'deg' if self.is_angle else self.unit}"
 
     def _rate(self, value: Any, order: int) -> str:

@@ -34,9 +34,9 @@ from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outc
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.structure_sections import about_section, counted_sections
 from compoundkin.view.report.verification_sections import (
+    checks_table,
     comparisons,
     finding_sentence,
-    findings_table,
     gaps_sections,
     outcome_of,
     published_section,
@@ -63,7 +63,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
         text += f" Rates have fewer than three digits, by rounding next to a limit position, at {few}."
     if not check.poses:
         return Section("checks", "Checks", (Alert("No pose is assembled: there is nothing to check."),))
-    return Section("checks", "Checks", (Paragraph(text), findings_table(sample, check)))
+    return Section("checks", "Checks", (Paragraph(text), checks_table(sample.motion, check)))
 
 
 def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = "") -> Report:
@@ -119,7 +119,7 @@ def check_report(motion: Motion) -> Report:
     both = with_force_findings(check, forces)
     touching = interference_or_error(motion)
     outcome = with_interference(outcome_of(motion, both), touching)
-    alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in both.findings if not f.passed)
+    alerts = tuple(Alert(f"{finding_sentence(motion, f)}.") for f in both.findings if not f.passed)
     alerts += tuple(Alert(f"{sentence}.") for sentence in touch_sentences(motion, touching))
     failed = (Section("failed", "What failed", alerts),) if alerts else ()
     about = Section("about", "", (Paragraph(motion_summary(outcome)),))

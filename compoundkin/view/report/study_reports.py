@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from math import degrees as degrees_of_math
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,7 @@ from compoundkin.view.report.report_data import (
     TableBlock,
 )
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.verification_sections import findings_table, outcome_of
+from compoundkin.view.report.verification_sections import checks_table, outcome_of
 from compoundkin.view.report.wording import brief, counted, listed, number_text, objective_quantity, objective_text
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
@@ -270,7 +269,7 @@ def optimum_report(found: Optimum, outputs: Sequence[str] = ()) -> Report:
         *([Section("constraints", "Constraints", (_constraints_table(found),))] if found.constraints else []),
         *([Section("unknowns", "Found beside", (_unknowns_table(found),))] if found.unknowns else []),
         Section("minima", "How sure", tuple(_minima_blocks(found))),
-        Section("checks", "Checks of the answer", (findings_table(Sample(motion), check),)),
+        Section("checks", "Checks of the answer", (checks_table(motion, check),)),
     )
     return Report(found.mechanism.title, sections, outcome_of(motion, check), motion, outputs, studied=found)
 
@@ -403,7 +402,7 @@ def _comparison_verdict(found: MechanismComparison) -> str:
         return found.verdict
     angles = found.structures[0].driven_angles
     values = (
-        f"{k} {number_text(degrees_of_math(v))} deg" if angles[k] else f"{k} {number_text(v)}"
+        f"{k} {number_text(float(degrees(v)))} deg" if angles[k] else f"{k} {number_text(v)}"
         for k, v in largest.drives.items()
     )
     return f"{found.verdict} with {listed(values)}, {brief(largest.distance / found.size)} of the size"
@@ -427,9 +426,9 @@ def _distance_blocks(found: MechanismComparison) -> Iterator[Block]:
     yield TableBlock((*points, *where), rows, keys=1)
     if found.turns:
         yield Paragraph("Links without two points that tell how they turn, counted from the first pose:")
-        links = Column("link"), Column("second's"), Column("angle", "deg", "each", degrees_of_math(ROUNDING))
+        links = Column("link"), Column("second's"), Column("angle", "deg", "each", float(degrees(ROUNDING)))
         turned = tuple(
-            (one.link, one.other, degrees_of_math(one.angle), *_driver_cells(found, one.drives)) for one in found.turns
+            (one.link, one.other, float(degrees(one.angle)), *_driver_cells(found, one.drives)) for one in found.turns
         )
         yield TableBlock((*links, *where), turned, keys=1)
 
@@ -441,7 +440,7 @@ def _driver_columns(found: MechanismComparison) -> tuple[Column, ...]:
 
 def _driver_cells(found: MechanismComparison, drives: Mapping[str, float]) -> Iterator[Cell]:
     for one in found.drivers:
-        yield degrees_of_math(drives[one.name]) if one.is_angle else drives[one.name]
+        yield float(degrees(drives[one.name])) if one.is_angle else drives[one.name]
 
 
 def _driver_blocks(found: MechanismComparison) -> Iterator[Block]:
@@ -459,7 +458,7 @@ def _driver_blocks(found: MechanismComparison) -> Iterator[Block]:
     for one in found.drivers:
         unit = "deg" if one.is_angle else found.structures[0].mechanism.unit
         values = one.start, one.other_start, *one.reach
-        shown = [degrees_of_math(value) if one.is_angle else value for value in values]
+        shown = [float(degrees(value)) if one.is_angle else value for value in values]
         way = "the same" if one.sign > 0 else "the other"
         rows.append((one.name, one.other, way, *shown, unit))
     words = ("first at the common pose", "second there", "moved from", "to")

@@ -7,9 +7,9 @@ names the interval of the drivers, the group that does not close, and the reason
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import degrees, isfinite
 from typing import Any
 
@@ -51,12 +51,18 @@ def outcome_of(motion: Motion, check: Check | None = None, published: Sequence[C
     )
 
 
-def findings_table(sample: Sample, check: Check) -> TableBlock:
-    """Return all findings, each with its worst value's place."""
+def findings_table(check: Check, place: Callable[[str, tuple[int, ...]], str]) -> TableBlock:
+    """Return all findings; `place` writes the pair or link and the pose of a worst value."""
     columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
                Column("", style="passed"))  # fmt: skip
-    rows = tuple((f.name, f.value, f.limit, finding_place(sample, f.pair, f.pose), f.passed) for f in check.findings)
-    return TableBlock(columns, rows)
+    return TableBlock(
+        columns, tuple((f.name, f.value, f.limit, place(f.pair, f.pose), f.passed) for f in check.findings)
+    )
+
+
+def checks_table(motion: Motion, check: Check) -> TableBlock:
+    """Return all findings with their places in a motion."""
+    return findings_table(check, partial(finding_place, motion))
 
 
 def with_force_findings(check: Check, forces: Forces | None) -> Check:
@@ -64,11 +70,10 @@ def with_force_findings(check: Check, forces: Forces | None) -> Check:
     return check if forces is None else replace(check, findings=(*check.findings, *verify(forces).findings))
 
 
-def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
-    """Return the pair or link and the pose at which a residual is worst. "A, crank 35"."""
+def finding_place(motion: Motion, name: str, pose: tuple[int, ...]) -> str:
+    """Return the pair or link and the pose at which a residual is worst, such as "A, crank 35"."""
     if not name:
         return ""
-    motion = sample.motion
     designs, number_of_pose = motion.inputs.designs, pose[-1] if pose else 0
     design = int(np.ravel_multi_index(pose[:-1], motion.shape[:-1])) if len(pose) > 1 else 0
     column, values = Sample(motion, design).places
@@ -76,10 +81,10 @@ def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
     return f"{name}, design {design}, {at}" if designs > 1 else f"{name}, {at}"
 
 
-def finding_sentence(sample: Sample, finding: Finding) -> str:
+def finding_sentence(motion: Motion, finding: Finding) -> str:
     """Return a finding in words. What, how far, and the pair or link, the pose and the group."""
-    where = finding_place(sample, finding.pair, finding.pose)
-    place = ", ".join(part for part in (where, _group_of(sample.motion.structure, finding.pair)) if part)
+    where = finding_place(motion, finding.pair, finding.pose)
+    place = ", ".join(part for part in (where, _group_of(motion.structure, finding.pair)) if part)
     clause = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"
     return f"{clause}, at {place}" if place else clause
 

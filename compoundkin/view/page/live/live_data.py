@@ -16,8 +16,7 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs
 from compoundkin.analysis.characteristics.transmission import coriolis_names, index_names
 from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
-from compoundkin.kinematics import Motion as Motion_of_kinematics
-from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import (
@@ -232,7 +231,7 @@ class ReproducedValues:
         return bool(np.allclose(values, known, rtol=0.0, atol=AGREES * largest + 1e-12, equal_nan=True))
 
 
-def followed_quantities(motion: Motion_of_kinematics, outputs: Sequence[str] = ()) -> tuple[str, ...]:
+def followed_quantities(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the names of the quantities from which a page computes the figures of a report.
 
     They are its outputs, their rates, transmission indices and Coriolis accelerations, as far as a program computes
@@ -247,7 +246,7 @@ def followed_quantities(motion: Motion_of_kinematics, outputs: Sequence[str] = (
     return tuple(name for name in names if derivative_order(name) <= motion.order and _is_recorded(motion, name))
 
 
-def _quantity_names(motion: Motion_of_kinematics, outputs: Sequence[str]) -> Iterator[str]:
+def _quantity_names(motion: Motion, outputs: Sequence[str]) -> Iterator[str]:
     chosen = [name for name in chosen_outputs(motion, outputs) if not motion_figure(name)[1]]
     yield from chosen
     for one in outputs_of(motion, chosen):
@@ -256,7 +255,7 @@ def _quantity_names(motion: Motion_of_kinematics, outputs: Sequence[str]) -> Ite
     yield from coriolis_names(motion)
 
 
-def _is_recorded(motion: Motion_of_kinematics, name: str) -> bool:
+def _is_recorded(motion: Motion, name: str) -> bool:
     """Return whether a quantity is arithmetic of one pose."""
     try:
         output_of(motion, name)
