@@ -400,11 +400,7 @@ def branch_curve(positions: Positions, branch: Branch, one: Plotted) -> BranchCu
     count = positions.values.shape[1]
     changes = tuple(count * (i + 1) - 1 for i, v in enumerate(visits) if kinds[v.row, v.left] == CHANGE)
     driver = degrees(x) if positions.drives[found.driver].is_angle else x
-    return BranchCurve(branch, driver, _joined(y) if one.is_angle else y, limits, changes)
-
-
-def _joined(angles: Number) -> Number:
-    return np.rad2deg(unwrapped(np.deg2rad(angles)))
+    return BranchCurve(branch, driver, np.rad2deg(unwrapped(np.deg2rad(y))) if one.is_angle else y, limits, changes)
 
 
 def turn_seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:

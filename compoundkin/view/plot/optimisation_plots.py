@@ -67,7 +67,10 @@ def improvement(
     ['before', 'after']
     """
     before, after = optimum.before, optimum.motion
-    panels = [_compared(optimum, name) for name in names or _goal_quantities(optimum)]
+    # of the figures of goals the quantities that they are taken from
+    aims = [motion_figure(name)[0] for goal in optimum.goals for name in goal.outputs(before)]
+    goal_quantities = list(dict.fromkeys(aims))
+    panels = [_compared(optimum, name) for name in names or goal_quantities]
     dense = _dense_motions(optimum) if any(panel.is_path for panel in panels) else (before, after)
     labels: list[PointLabel] = []
     with plot_style.styled():
@@ -94,12 +97,6 @@ def objective_summary(optimum: Optimum) -> str:
 def _target_points(optimum: Optimum) -> dict[str, Number]:
     """The target points of the goals, by point."""
     return {point: places for goal in optimum.goals for point, places in goal.places.items()}
-
-
-def _goal_quantities(optimum: Optimum) -> list[str]:
-    """The quantities of the goals; for a figure the quantity that it is taken from."""
-    names = [name for goal in optimum.goals for name in goal.outputs(optimum.before)]
-    return list(dict.fromkeys(motion_figure(name)[0] for name in names))
 
 
 def _compared(optimum: Optimum, name: str) -> ImprovementPanel:

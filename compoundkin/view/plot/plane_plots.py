@@ -65,7 +65,8 @@ def paths(
     1.0
     """
     motion.mechanism.link(on)
-    names = [point if isinstance(point, str) else _called(motion, *point) for point in points] or _moving(motion, on)
+    names = [point if isinstance(point, str) else _called(motion, *point) for point in points]
+    names = names or [name for name in motion.points if name not in motion.mechanism.geometry.points[on]]
     curves = [_path(motion, point, on) for point in (points or names)]
     shared = shared_curves_of(motion, designs, every)
     with plot_style.styled():
@@ -84,11 +85,6 @@ def fixed_points(axes: Any, motion: Motion, on: str, shared: SharedCurves) -> No
         z = complex(np.ravel(place)[0])
         axes.plot([z.real], [z.imag], marker="x", markersize=6, color=plot_style.INK, linestyle="none", zorder=6)
         shared.labels.insert(0, PointLabel(axes, z.real, z.imag, letter, -1j))
-
-
-def _moving(motion: Motion, on: str) -> list[str]:
-    """The letters of all points that are not on the observing link."""
-    return [name for name in motion.points if name not in motion.mechanism.geometry.points[on]]
 
 
 def _called(motion: Motion, link: str, point: Any) -> str:

@@ -251,7 +251,8 @@ def pareto(
         )
         figure, (axes,) = canvas.panels(1, text, size or SIZE)
         _dots(figure, axes, both, others, front, shades)
-        _line(axes, both, front)
+        x, y = (one.values[front] for one in both)
+        axes.plot(x, y, color=COLOURS[1], linewidth=1.0, drawstyle="steps-post", zorder=0.9, label="_front")
         _axes(axes, both, upward, known)
         canvas.legend_below(figure, axes.get_legend_handles_labels()[0])
         return canvas.finished(figure, _numbers(axes, both, front, upward))
@@ -302,12 +303,6 @@ def _numbers(axes: Any, both: Sequence[Plotted], front: Number, upward: Sequence
     places = zip(*(one.values[front].tolist() for one in both), front.tolist(), strict=True)
     named = places if len(front) <= NAMED else ()
     return [PointLabel(axes, x, y, str(row), beyond, COLOURS[1]) for x, y, row in named]
-
-
-def _line(axes: Any, both: Sequence[Plotted], front: Number) -> None:
-    """The edge of the dominated region: along the front in steps."""
-    x, y = (one.values[front] for one in both)
-    axes.plot(x, y, color=COLOURS[1], linewidth=1.0, drawstyle="steps-post", zorder=0.9, label="_front")
 
 
 def _axes(axes: Any, both: Sequence[Plotted], upward: Sequence[bool], known: Number) -> None:

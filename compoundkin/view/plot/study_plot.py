@@ -195,13 +195,10 @@ def _study_bands(among: StudyColumns, column: StudyColumn, percentiles: Sequence
     rows = dict(zip(percentiles, quantity.values, strict=True))
     lower = [one for one in percentiles if one < 50.0 and 100.0 - one in rows]
     single = [one for one in percentiles if one not in lower and 100.0 - one not in lower]
-    edges = tuple((_between(one), rows[one], rows[100.0 - one]) for one in lower)
+    between = ["all designs" if one == 0.0 else f"{one:g} to {100.0 - one:g} %" for one in lower]
+    edges = tuple((name, rows[one], rows[100.0 - one]) for name, one in zip(between, lower, strict=True))
     lines = tuple((_percentile(one), rows[one], {"color": COLOURS[0]}) for one in single)
     return Bands(quantity, edges, lines)
-
-
-def _between(low: float) -> str:
-    return "all designs" if low == 0.0 else f"{low:g} to {100.0 - low:g} %"
 
 
 def _percentile(one: float) -> str:

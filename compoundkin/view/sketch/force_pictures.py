@@ -368,7 +368,7 @@ def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | N
     names = _force_names(arrows)
     for one, _, label in arcs:
         text = f"{one.turning} {force_text(abs(one.moment))}"
-        names.append((_around(label, text), text, one.kind))
+        names.append((label_around(label.key, label.places[0], text_half(text, SMALL), 3.0), text, one.kind))
     return _body_panel(painter, link, shapes, [*point_letters(painter)], names, points)
 
 
@@ -379,12 +379,6 @@ def _force_names(arrows: Sequence[DrawnForce]) -> list[tuple[Label, str, str]]:
         text = f"{one.force.name} {force_text(abs(one.force.force))}"
         found.append((one.label(text, f"force {k}"), text, one.force.kind))
     return found
-
-
-def _around(label: Label, text: str) -> Label:
-    """The label of an arc with a longer text."""
-    middle = label.places[0]
-    return label_around(label.key, middle, text_half(text, SMALL), 3.0)
 
 
 def _mass_centre(known: ForcesAtPose, window: Window, link: str) -> list[Shape]:

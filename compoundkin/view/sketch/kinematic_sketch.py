@@ -360,7 +360,8 @@ def moving_sketch(
     """
     _check_rigid(motion)
     scene = scene_in(motion, None, None, design)
-    window = window_on(scene, _sample(scene), tuple(scene.carried))
+    some = np.linspace(0, scene.count - 1, min(SAMPLED, scene.count)).round().astype(int)
+    window = window_on(scene, [scene.ghost(int(k)) for k in dict.fromkeys(some)], tuple(scene.carried))
     painter = Painter(scene, window)
     lines = [line for letter in paths for line in point_path(scene, window, letter)]
     laid = carried_shapes(painter)
@@ -390,12 +391,6 @@ def _check_rigid(motion: Motion) -> None:
             if known.shape[-1] > 1 and np.ptp(known.real, axis=-1).max() + np.ptp(known.imag, axis=-1).max() > 0:
                 what = f"{letter} on {link} is elsewhere at every pose"
                 raise InvalidInput(Problem("motion", what, "give the dimensions an axis of their own before the last"))
-
-
-def _sample(scene: Scene) -> list[Scene]:
-    """The scene at some poses along the motion."""
-    places = np.linspace(0, scene.count - 1, min(SAMPLED, scene.count)).round().astype(int)
-    return [scene.ghost(int(k)) for k in dict.fromkeys(places)]
 
 
 def carried_shapes(painter: Painter) -> list[Laid]:

@@ -246,10 +246,6 @@ def offset_shapes(scene: Scene, window: Window) -> list[Shape]:
     return shapes
 
 
-def _extension(start: complex, stop: complex) -> Shape:
-    return Polyline((start, stop), "extension")
-
-
 def _line(one: Offset, start: complex, stop: complex, along: complex) -> list[Shape]:
     """One dimension line with its number, beyond its end where it is longer."""
     short = text_width(one.text) + ROOM > abs(stop - start)
@@ -347,7 +343,7 @@ def _inclination(painter: Painter, mark: Sliding) -> list[Dimension]:
     low, high = (painter.place(FRAME, mark.at + mark.along * s) for s in (mark.low, mark.high))
     high = high if abs(high - low) > LEVEL else low + LEVEL * painter.along(FRAME, mark.along)
     level = low + LEVEL * np.sign(high.real - low.real)
-    ray = _extension(low, level)
+    ray = Polyline((low, level), "extension")
     angles = angle_dimension(painter, low, level, high)
     return [Dimension(one.text, tuple(p._replace(shapes=(ray, *p.shapes)) for p in one.places)) for one in angles]
 

@@ -426,15 +426,16 @@ def groups_in_graph(structure: Structure, size: float | None) -> Picture:
 def _part_edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]) -> list[Shape]:
     return [
         ShapeGroup(
-            (Polyline((complex(places[p.members[0]]), complex(places[p.members[1]])), _style(p, driven)),),
+            (
+                Polyline(
+                    (complex(places[p.members[0]]), complex(places[p.members[1]])),
+                    "bold" if p.name in driven else "edge",
+                ),
+            ),
             title=f"{p.name}, {p.title}",
         )
         for p in pairs
     ]
-
-
-def _style(pair: Pair, driven: set[str]) -> str:
-    return "bold" if pair.name in driven else "edge"
 
 
 def _stubs(pairs: Sequence[Pair], places: Mapping[str, complex], own: Sequence[str]) -> list[Shape]:

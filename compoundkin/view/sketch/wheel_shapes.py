@@ -184,7 +184,8 @@ def follower_stem(painter: Painter, slide: PairMark, mark: Sliding, cam: PairMar
     block, scale = slide.members[1], painter.window.scale
     eye, e = painter.place(block, mark.block), painter.along(FRAME, mark.along)
     sense = 1.0 if (np.conjugate(e) * (eye - _shaft(painter, cam))).real >= 0 else -1.0
-    away = AWAY + max([0.0, *_radii(painter, cam)])
+    rollers = (one.mark for one in painter.scene.pair_marks if one.pair is cam.pair and isinstance(one.mark, Wheel))
+    away = AWAY + max([0.0, *(float(mark.radius) * scale for mark in rollers)])
     far = painter.place(FRAME, mark.at + mark.along * (mark.high if sense > 0 else mark.low))
     start, stop = far + e * (sense * away), far + e * (sense * (away + BUSH))
     for side in (1.0, -1.0):
@@ -230,12 +231,6 @@ def _shaft(painter: Painter, cam: PairMark) -> complex:
         return painter.place(link, next(iter(own.values())))
     assert isinstance(cam.mark, Outline | Groove)
     return complex(np.mean(np.array(painter.line(link, cam.mark.line))))
-
-
-def _radii(painter: Painter, cam: PairMark) -> list[float]:
-    """The radius of the roller, if there is one."""
-    marks = (one.mark for one in painter.scene.pair_marks if one.pair is cam.pair)
-    return [float(mark.radius) * painter.window.scale for mark in marks if isinstance(mark, Wheel)]
 
 
 # Numbers that differ by less than this are one, in parts of the distance of the axes or as numbers of slots.
