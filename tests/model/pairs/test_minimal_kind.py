@@ -181,11 +181,11 @@ def without(pair: Pair, name: str) -> Pair:
 
 
 def coarse(item: Any) -> Any:
-    """A driver of fewer poses, for each is verified: a turn in steps of thirty degrees, a range in sixths."""
+    """A driver of fewer poses, for each is verified: a turn in steps of sixty degrees, a range in sixths."""
     if not isinstance(item, Drive) or item.law is not None:
         return item
-    values = np.linspace(0.0, 2.0 * np.pi, 13) if item.values is None else np.asarray(item.values)
-    return replace(item, values=values[..., :: max(1, values.shape[-1] // 12)])
+    values = np.linspace(0.0, 2.0 * np.pi, 7) if item.values is None else np.asarray(item.values)
+    return replace(item, values=values[..., :: max(1, values.shape[-1] // 6)])
 
 
 LEFT_OUT = [(kind.code, name) for kind in KINDS for name in answers(kind)]
