@@ -29,23 +29,24 @@ from compoundkin.synthesis.driver_places import (
     swapped_names,
 )
 
-# Each takes some milliseconds to decompose.
+# Each choice takes some milliseconds to decompose.
 MOST_CHOICES = 600
 MOST_WORK = 12000  # choices by links: beyond this, comparing and decomposing them takes more than some seconds
 # A class II mechanism can be solved dyad by dyad.
 DYADIC = 2
-# Links of a loop whose name may depend on the driver: a slider-crank driven at the connecting rod is a hand pump.
+# Only the names of loops of four links depend on the driver: a slider-crank driven at its connecting rod is a hand
+# pump.
 FEW = 4
 
 
 @dataclass(frozen=True, repr=False)
 class Alternative:
-    """A choice of frame and drivers, and the groups that it gives.
+    """A choice of frame and drivers, with the groups that result.
 
-    `groups` are (letters, class, order) in solving order. `class_` is the highest class, 1 where the drivers move
-    everything. `configurations` is the number of ways to assemble it at given driver values, those of larger groups
-    over the complex numbers; None where no formula knows it. `closed` says that every group is solved in closed form,
-    `faults` why it is not determined. `alike` counts the choices it stands for; `present` marks the one that is.
+    `groups` are (letters, class, order) in solving order. `class_` is the highest class, 1 if the drivers move all
+    links. `configurations` is their number at given driver values, for larger groups over the complex numbers; None if
+    unknown. `closed` is whether every group has a closed form, `faults` are the reasons why the choice is not
+    determined. `alike` counts the equivalent choices; `present` marks that of the mechanism.
     """
 
     frame: str
@@ -72,12 +73,12 @@ class Alternative:
 
 @checked
 def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None = None) -> tuple[Alternative, ...]:
-    """Return every choice of frame and drivers, alike ones once.
+    """Return every choice of frame and drivers, equivalent ones once.
 
-    A frame is any link or one of `frames`, drivers are as many as there are freedoms. Alike are choices that a symmetry
-    of the kinematic graph carries into each other. Where several drivers give more than `MOST_CHOICES` choices, one of
-    the present ones at a time is put elsewhere. Nothing is solved; it holds for generic dimensions. None without a
-    freedom. Raises InvalidInput where there are still too many choices, UnknownName for a frame that is no link.
+    A frame is any link or one of `frames`; there are as many drivers as freedoms. Choices are equivalent if a symmetry
+    of the kinematic graph maps them to each other. If several drivers give more than `MOST_CHOICES` choices, only one
+    of the present drivers at a time moves elsewhere. Nothing is solved; results hold for generic dimensions. Empty
+    without a freedom. Raises InvalidInput for still too many choices, UnknownName for a frame that is no link.
 
     >>> from compoundkin.files import load
     >>> table = alternatives(load("stephenson-iii-driven-at-dyad"), frames=["frame"])
@@ -86,21 +87,21 @@ def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None 
     """
     structure = without_leads(mechanism if isinstance(mechanism, Structure) else decompose(mechanism))
     links = structure.mechanism.links
-    wanted = [structure.mechanism.link(name).name for name in (links if frames is None else frames)]
+    requested = [structure.mechanism.link(name).name for name in (links if frames is None else frames)]
     if structure.mobility.freedoms < 1:
         return ()
     choices = _Choices(structure)
-    work = len(wanted) * choices.number * len(links)
-    classes = choices.frames(wanted) if work <= MOST_WORK else [(name, 1) for name in wanted]
+    work = len(requested) * choices.number * len(links)
+    classes = choices.frames(requested) if work <= MOST_WORK else [(name, 1) for name in requested]
     if len(classes) * choices.number > MOST_CHOICES or work > MOST_WORK:
         what = f"{len(classes) * choices.number} choices are too many"
-        fewer = f"name some frames; each gives {choices.number} choices" if len(wanted) > 1 else "take a part of it"
+        fewer = f"name some frames; each gives {choices.number} choices" if len(requested) > 1 else "take a part of it"
         raise InvalidInput(Problem("frames", what, fewer))
     return tuple(found for frame, count in classes for found in choices.of(frame, count))
 
 
 class _Choices:
-    """What is common to all choices: places for drivers, the graph and its symmetries."""
+    """The common data of all choices: places for drivers, the graph and its symmetries."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.mechanism = structure, structure.mechanism
@@ -114,13 +115,13 @@ class _Choices:
         self.one_by_one = moving and len(self.now) == self.drivers
         self.number = self.drivers * len(self.places) if self.one_by_one else everything
 
-    def frames(self, wanted: Sequence[str]) -> list[tuple[str, int]]:
-        """Return the frames to try, alike ones once, those that are wanted first. Each tells for how many."""
+    def frames(self, requested: Sequence[str]) -> list[tuple[str, int]]:
+        """Return the frames, equivalent ones once, preferring the requested ones, each with the number of its class."""
         orbits = canonical(self._graph(None)).orbits
         found = []
         for orbit in orbits:
             alike = [self.links[k] for k in orbit if k < len(self.links)]
-            chosen = [name for name in alike if name in wanted]
+            chosen = [name for name in alike if name in requested]
             if chosen:
                 found.append((FRAME if FRAME in chosen else chosen[0], len(alike)))
         return sorted(found, key=lambda entry: self.links.index(entry[0]) if entry[0] != FRAME else -1)
@@ -131,10 +132,10 @@ class _Choices:
         names = swapped_names(frame)
         for chosen, number in self._driven(frame):
             drives = tuple(driver_at(names, self.places[k]) for k in chosen)
-            yield self._found(frame, chosen, alike * number, decomposed(outline.driven(drives)))
+            yield self._alternative(frame, chosen, alike * number, decomposed(outline.driven(drives)))
 
     def _driven(self, frame: str) -> Iterator[tuple[tuple[int, ...], int]]:
-        """Yield places for drivers as indices, alike ones once. With each comes for how many it stands."""
+        """Yield places for drivers as indices, equivalent ones once, each with the number of its class."""
         choices = list(self._sets())
         index = {frozenset(chosen): k for k, chosen in enumerate(choices)}
         leader = list(range(len(choices)))
@@ -149,7 +150,7 @@ class _Choices:
         now = next((k for k, chosen in enumerate(choices) if frame == FRAME and self._is_now(chosen)), None)
         for k, chosen in enumerate(choices):
             if tops[k] == k:
-                # of several that are alike, the present one is shown
+                # the present one represents its class
                 yield choices[now] if now is not None and tops[now] == k else chosen, tops.count(k)
 
     def _is_now(self, chosen: Iterable[int]) -> bool:
@@ -161,12 +162,12 @@ class _Choices:
         now = [self.places.index(place) for place in self.now]
         sets = [tuple(now)]
         for gone in now:
-            kept = [k for k in now if k != gone]
-            sets += [tuple(sorted((*kept, k))) for k in range(len(self.places)) if k not in now]
+            others = [k for k in now if k != gone]
+            sets += [tuple(sorted((*others, k))) for k in range(len(self.places)) if k not in now]
         return dict.fromkeys(tuple(sorted(chosen)) for chosen in sets)
 
     def _moved(self, generator: Permutation, k: int) -> int:
-        """Return the place to which a symmetry carries a place."""
+        """Return the image of a place under a symmetry."""
         joint, ends = self._ends[k]
         return self._ends.index((generator[joint], frozenset(generator[end] for end in ends)))
 
@@ -195,7 +196,7 @@ class _Choices:
                 colours.append("carrier")
         return Coloured.of(colours, edges)
 
-    def _found(self, frame: str, chosen: tuple[int, ...], alike: int, structure: Structure) -> Alternative:
+    def _alternative(self, frame: str, chosen: tuple[int, ...], alike: int, structure: Structure) -> Alternative:
         back = {new: old for old, new in swapped_names(frame).items()}
         drivers = tuple(outward(self.places[k], frame, self.joints) for k in chosen)
         groups = tuple((group.name, group.class_, group.order) for group in structure.groups)
@@ -208,7 +209,7 @@ class _Choices:
         )
 
     def _title(self, frame: str, drivers: Sequence[DriverPlace]) -> str:
-        """Return the inversion's name; only of four links it depends on the driver."""
+        """Return the inversion's name, which depends on the driver for four links only."""
         links = self.joints.links
         spun = {spin.link: spin.on for spin in self.structure.passive}
         driver = spun.get(drivers[0].link, drivers[0].link)

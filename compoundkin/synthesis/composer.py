@@ -29,7 +29,7 @@ DYAD_NAMES = tuple(DYADS)
 
 
 class AttachmentPoint(NamedTuple):
-    """Where something is attached. A link, there a point, and of a guide a second one. "" for new points."""
+    """A point of attachment: a link, a point on it, and for a guide a second one; "" for new points."""
 
     link: str
     point: str = ""
@@ -38,7 +38,7 @@ class AttachmentPoint(NamedTuple):
 
 @dataclass
 class _GroupPair:
-    """A pair of a group to be written. Its letter, the two links (the first carries the guide), its points."""
+    """A pair of a group: its letter, the two links (the first carries the guide), its points."""
 
     code: str
     first: str
@@ -49,9 +49,9 @@ class _GroupPair:
 
 @dataclass
 class LetteredLinks:
-    """Links by name with the letters of their points. Two links that carry one letter are pinned there.
+    """Links by name with the letters of their points. Links that share a letter are pinned there.
 
-    Points not named get the letters A, B, C, ...
+    Points without a name get the letters A, B, C, ...
     """
 
     links: dict[str, list[str]] = field(default_factory=lambda: {FRAME: []}, kw_only=True)
@@ -61,9 +61,9 @@ class LetteredLinks:
     _letters: Iterator[str] = field(default_factory=lambda: _endless(), kw_only=True)
 
     def place(self, **points: Any) -> Self:
-        """Return where points are in the drawing: ``place(A=(0, 0), B=3+1j)``. They may be named before or after.
+        """Place points in the drawing: ``place(A=(0, 0), B=3+1j)``, before or after their use.
 
-        Raises InvalidMechanism for what is not one point.
+        Raises InvalidMechanism for an invalid point.
 
         >>> LetteredLinks().place(A=(0, 1)).places
         {'A': 1j}
@@ -72,7 +72,7 @@ class LetteredLinks:
         return self
 
     def point(self, on: str, letter: str) -> Self:
-        """Return a point more on a link: a tracing point, or one to place.
+        """Add a point to a link: a tracing point, or one to place.
 
         >>> LetteredLinks().point("frame", "A").links
         {'frame': ['A']}
@@ -81,13 +81,13 @@ class LetteredLinks:
         return self
 
     def link(self, name: str) -> str:
-        """Return the name of a link. Raises UnknownName for one that is not there yet."""
+        """Return the name of a link. Raises UnknownName for an unknown one."""
         if name not in self.links:
             raise UnknownName(Problem(name, "there is no such link yet", suggestion(name, list(self.links))))
         return name
 
     def new_links(self, names: Sequence[str], wanted: int, where: str) -> None:
-        """Add links without points. Raises InvalidInput for another number of them, or a name that is taken."""
+        """Add links without points. Raises InvalidInput for a wrong number of them, or a used name."""
         if isinstance(names, str) or len(names) != wanted:
             raise InvalidInput(Problem("links", f"{where} has {wanted} links", f"name {wanted} new links"))
         for name in names:
@@ -96,7 +96,7 @@ class LetteredLinks:
         self.links.update({name: [] for name in names})
 
     def carry(self, name: str, letter: str) -> str:
-        """Put a point on a link: a new one where no letter is given."""
+        """Put a point on a link, a new one without a letter."""
         letter = letter or next(k for k in self._letters if k not in self.carriers and k not in self.places)
         if letter in self.links[name]:
             return letter
@@ -108,18 +108,18 @@ class LetteredLinks:
         return self.share(name, letter)
 
     def share(self, name: str, letter: str) -> str:
-        """Put a point on a link that others may have already: a pin."""
+        """Put a point on a link that others may share: a pin."""
         self.carriers.setdefault(letter, []).append(name)
         self.links[name].append(letter)
         return letter
 
     def free(self, name: str) -> str:
-        """Return a point of a link at which nothing is joined to it yet. "" where there is none."""
+        """Return a point of a link without a joint, or ""."""
         alone = (k for k in self.links[name] if len(self.carriers[k]) == 1 and k not in self.guiding)
         return next(alone, "")
 
     def placed(self) -> dict[str, complex]:
-        """Return the places of all points. Those that were given, and for the others generic ones around them."""
+        """Return the places of all points, generic ones around the placed points for the others."""
         letters = list(dict.fromkeys(letter for carried in self.links.values() for letter in carried))
         number = {letter: k for k, letter in enumerate(letters)}
         generic = layout(len(letters), [[number[k] for k in carried] for carried in self.links.values()])
@@ -133,8 +133,8 @@ class LetteredLinks:
 class Composer(LetteredLinks):
     """Builds a mechanism group by group; `mechanism()` is the result, as drawn.
 
-    Points not named get the letters A, B, C, ...; those that `place` does not place get generic places, so that the
-    mechanism assembles as drawn whatever it is.
+    Points without a name get the letters A, B, C, ...; points without a place get generic ones, so that the mechanism
+    always assembles as drawn.
 
     >>> composer = Composer("Six-bar")
     >>> composer.drive("crank").attach("RRR", ("coupler", "rocker"), to=("crank", "frame")).mechanism()
@@ -149,10 +149,10 @@ class Composer(LetteredLinks):
         return f"Composer({self.title!r}: {len(self.links)} links)"
 
     def drive(self, name: str, to: str = FRAME, pair: str = REVOLUTE, **words: Any) -> Composer:
-        """Return a driven link. Pinned (`pair` "R") or sliding ("P") on the frame or another link.
+        """Add a driven link, pinned (`pair` "R") or sliding ("P") on the frame or another link.
 
-        `to` is a link, or ``"A on frame"``; `words` are those of `drive` but for the links. Raises InvalidInput for
-        another pair or a name that is taken, UnknownName for a link that is not there yet.
+        `to` is a link, or ``"A on frame"``; `words` are those of `drive` without the links. Raises InvalidInput for
+        another pair or a used name, UnknownName for an unknown link.
 
         >>> Composer("m").drive("crank", "A on frame").links
         {'frame': ['A'], 'crank': ['A']}
@@ -168,13 +168,13 @@ class Composer(LetteredLinks):
     def attach(
         self, group: str | AssurGroup, links: Sequence[str], to: Sequence[str], at: Sequence[str] = ()
     ) -> Composer:
-        """Attach an Assur group. A dyad by its letters, or a group of the atlas by its name, of revolute pairs.
+        """Attach an Assur group: a dyad by its letters, or a group of revolute pairs of the atlas by its name.
 
-        `links` name its links, those of a larger group in the order of its numbering. `to` says where it is attached,
-        one entry for each outer pair: a link, ``"B on crank"``, or for a guide ``"E toward F on frame"``. `at` may
+        `links` name its links, those of a larger group in the order of its numbering. `to` has one entry for each outer
+        pair: a link, ``"B on crank"``, or for a guide ``"E toward F on frame"``. `at` may
         name the points of its inner pairs. An outer slide has its guide on the known link, an inner one on the first.
 
-        Raises UnknownName for a group or link that is not known, InvalidInput where the numbers do not fit.
+        Raises UnknownName for an unknown group or link, InvalidInput for wrong numbers of entries.
 
         >>> composer = Composer("Class III").drive("a").drive("b").drive("c")
         >>> _ = composer.attach("4-link group 2", ("base", "x", "y", "z"), to=("a", "b", "c"))
@@ -188,10 +188,12 @@ class Composer(LetteredLinks):
         _fits("to", len(places), outer, "outer pairs")
         if at:
             _fits("at", len(at), len(inner), "inner pairs")
-        told, written = iter(places), []
+        outside, written = iter(places), []
         named = iter(at or [""] * len(inner))
         for code, first, second in pairs:
-            place = next(told) if first is None else AttachmentPoint(links[first], *next(named).partition(_TOWARD)[::2])
+            place = (
+                next(outside) if first is None else AttachmentPoint(links[first], *next(named).partition(_TOWARD)[::2])
+            )
             written.append(_GroupPair(code, place.link, links[second], place.point, place.toward))
         # pins first: a slide then runs at the pin of its block
         for pair in sorted(written, key=lambda pair: pair.code != REVOLUTE):
@@ -199,25 +201,25 @@ class Composer(LetteredLinks):
         return self
 
     def mechanism(self, **words: Any) -> Mechanism:
-        """Return what has been composed, as drawn. `words` are those of `Mechanism`, such as `unit`.
+        """Return the composed mechanism, as drawn. `words` are those of `Mechanism`, such as `unit`.
 
-        Raises InvalidMechanism where places that were given cannot be meant, such as two pins of a link at one.
+        Raises InvalidMechanism for impossible places, such as two pins of a link at one.
 
         >>> Composer("m").drive("crank").mechanism(unit="mm").unit
         'mm'
         """
-        for driven in [told["link"] for told in self._drives]:
+        for driven in [fields["link"] for fields in self._drives]:
             if len(self.links[driven]) == 1:
-                # a driven link shows its angle by two points
+                # the angle of a driven link needs two points
                 self.carry(driven, "")
         places = self.placed()
         items: list[Item] = [link(name, *letters) for name, letters in self.links.items() if letters]
-        items += [slide(**told) for told in self._slides]
-        items += [drive(**self._driver(told, places)) for told in self._drives]
+        items += [slide(**fields) for fields in self._slides]
+        items += [drive(**self._driver(fields, places)) for fields in self._drives]
         return Mechanism(self.title, *items, drawn(**places), **words)
 
     def _place(self, text: str) -> AttachmentPoint:
-        """Return a link, or points on it. "B on crank", "E toward F on frame"."""
+        """Return the attachment "crank", "B on crank" or "E toward F on frame"."""
         if text in self.links:
             return AttachmentPoint(text)
         points, on, name = text.partition(ON)
@@ -227,7 +229,7 @@ class Composer(LetteredLinks):
         return AttachmentPoint(self.link(name), point.strip(), toward.strip())
 
     def _write(self, pair: _GroupPair) -> str:
-        """Write a pair: its letter, or the name of the slide."""
+        """Add a pair; return its letter, or the name of the slide."""
         if pair.code == REVOLUTE:
             return self.share(pair.second, self.carry(pair.first, pair.point or self.free(pair.first)))
         block = self.links[pair.second]
@@ -238,12 +240,12 @@ class Composer(LetteredLinks):
         for letter in (at, through, toward):
             self.guiding[letter] = self.guiding.get(letter, 0) + 1
         if len(block) == 1 and self.guiding[at] > 1:
-            # one point shows no direction, which a block with two guides needs
+            # a block with two guides needs a direction, that is two points
             self.carry(pair.second, "")
         return f"{pair.second}/{pair.first}"
 
     def _driver(self, words: dict[str, Any], places: dict[str, complex]) -> dict[str, Any]:
-        """Return the words of a driver. A slide without values stays as it is drawn."""
+        """Return the arguments of a driver; a slide without values stays as drawn."""
         written = next((s for s in self._slides if f"{s['link']}/{s['on']}" == words["pair"]), None)
         if written is None or "values" in words:
             return words
@@ -253,7 +255,7 @@ class Composer(LetteredLinks):
 
 
 def pairs_of(group: str | AssurGroup) -> tuple[list[tuple[str, int | None, int]], int, int]:
-    """Return a group's pairs as code, first body (None where known) and second. Outer pairs, links."""
+    """Return a group's pairs as code, first body (None: outside) and second; the number of outer pairs and of links."""
     if isinstance(group, str) and group in DYADS:
         return [(group[0], None, 0), (group[1], 0, 1), (group[2], None, 1)], 2, 2
     found = assur_group(group, [*DYADS]) if isinstance(group, str) else group
@@ -266,9 +268,9 @@ def random_mechanism(
 ) -> Mechanism:
     """Return a crank with so many random groups, the same for the same seed.
 
-    A share `multiple` of outer pins are put on pins that there are already. Links of group k are "k-0", "k-1", ...
-    It assembles as drawn, where the crank stays; it may not far from there.
-    Raises InvalidInput for a negative number of groups, UnknownName for a kind that is not known.
+    A share `multiple` of outer pins joins existing pins. Links of group k are "k-0", "k-1", ... It assembles as drawn,
+    where the crank stays, but perhaps not far from there. Raises InvalidInput for a negative number of groups,
+    UnknownName for an unknown kind.
 
     >>> random_mechanism(groups=3, seed=1)
     Mechanism('3 random groups, seed 1': 8 links, 1 driver)
@@ -295,7 +297,7 @@ def random_mechanism(
 
 
 def _entry(composer: Composer, chosen: random.Random, code: str, on: str, multiple: float) -> str:
-    """Return where an outer pair goes. On a link, or now and then on a pin that it has."""
+    """Return the attachment of an outer pair: a link, or at times one of its pins."""
     if code == REVOLUTE and composer.links[on] and chosen.random() < multiple:
         return f"{chosen.choice(composer.links[on])}{ON}{on}"
     return on
@@ -303,10 +305,12 @@ def _entry(composer: Composer, chosen: random.Random, code: str, on: str, multip
 
 def _fits(where: str, given: int, wanted: int, what: str) -> None:
     if given != wanted:
-        raise InvalidInput(Problem(where, f"there are {wanted} {what}, but {given} given", f"give {wanted} entries"))
+        raise InvalidInput(
+            Problem(where, f"there are {wanted} {what}, but entries for {given}", f"give {wanted} entries")
+        )
 
 
-# What stands between a point and its link: "B on crank".
+# Separator of a point and its link: "B on crank".
 ON = " on "
 
 

@@ -1,4 +1,4 @@
-"""Where drivers may be, and outlines of mechanisms with another frame and drivers."""
+"""Possible places of drivers, and unchecked mechanisms with another frame and drivers."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.synthesis.chains.joints import Joints
 
-# What the old frame is called while another link is the frame.
+# Name of the old frame while another link is the frame.
 OTHER = "other frame"
 Joint = TypeVar("Joint", bound=Pair | Cylinder)
 
 
 @dataclass(frozen=True)
 class DriverPlace:
-    """Where a driver is. The link that it drives, on which one, and the pin or pair between them."""
+    """The place of a driver: the driven link, the link that it is driven on, and the pin or pair between them."""
 
     link: str
     on: str
@@ -44,7 +44,7 @@ class DriverPlace:
 
 
 class UncheckedMechanism(Mechanism):
-    """A mechanism of which only the structure counts. It is not checked, and has no drawing."""
+    """A mechanism without checks and drawing, for its structure alone."""
 
     def __init__(self, title: str, items: tuple[Item, ...]) -> None:
         self.title, self.items = title, items
@@ -53,7 +53,7 @@ class UncheckedMechanism(Mechanism):
 
     @classmethod
     def of(cls, mechanism: Mechanism, frame: str) -> UncheckedMechanism:
-        """Return one with another frame, and no drivers."""
+        """Return a mechanism with another frame and without drivers."""
         names = swapped_names(frame)
         points = _general_points(mechanism) if mechanism.unplaced else mechanism.geometry.points
         links = [replace(item, name=names.get(name, name), points=points[name])
@@ -67,7 +67,7 @@ class UncheckedMechanism(Mechanism):
 
 
 def _general_points(mechanism: Mechanism) -> Mapping[str, Mapping[str, Number]]:
-    """Return places anywhere for the points of a mechanism that has letters alone."""
+    """Return random places for the points of a mechanism without coordinates."""
     rng = np.random.default_rng(0)
     return {name: {k: complex(*rng.standard_normal(2)) for k in item.points} for name, item in mechanism.links.items()}
 
@@ -92,17 +92,14 @@ def means(item: Drive, place: DriverPlace) -> bool:
 
 
 def is_driver(item: Item, drive: Drive | None) -> bool:
-    """Return whether a word is that driver, as written."""
+    """Return whether an element is or contains a driver."""
     if drive is None or not isinstance(item, Drive | PrescribedMotion):
         return False
     return drive.name in item.drivers.values() if isinstance(item, PrescribedMotion) else item.name == drive.name
 
 
 def stays(item: Item, link: str) -> bool:
-    """Return whether a word stays where a link becomes the frame.
-
-    The link's mass does not, nor modes, a drawing and published numbers.
-    """
+    """Return whether an element stays when a link becomes the frame: not its mass, modes, drawing, expectations."""
     return not isinstance(item, Mode | Drawn | Expectation) and not (isinstance(item, Mass) and item.link == link)
 
 
@@ -126,13 +123,13 @@ def _near(joints: Joints, link: str, frame: str) -> int:
 
 
 def readable(text: str, names: Mapping[str, str]) -> str:
-    """Return a fault with the links' own names; whole words only."""
+    """Return the text of a fault with the links' own names."""
     new = names.get(FRAME)
     return text if new is None else text.replace(OTHER, "\0").replace(FRAME, new).replace("\0", FRAME)
 
 
 def renamed(item: Item, names: Mapping[str, str]) -> Item:
-    """Return a word with links renamed; drivers and pairs keep their own names."""
+    """Return an element with renamed links; drivers and pairs keep their own names."""
     if isinstance(item, Link):
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive | PrescribedMotion):
@@ -150,14 +147,14 @@ def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:
     ('bar', 'block')
     """
     fields = [key.name for key in pair.keys if key.kind == "name" and key.name != "name"]
-    told = {field: getattr(pair, field) for field in fields}
-    changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
+    members = {field: getattr(pair, field) for field in fields}
+    changed = {field: names[name] for field, name in members.items() if name in pair.members and name in names}
     renamed: Joint = replace(pair, **changed)  # type: ignore[arg-type]
     return renamed
 
 
 def without_driver(item: Item, mechanism: Mechanism, drive: Drive | None) -> Item:
-    """Return a word that names the pair of a driver in its place.
+    """Return an element that names the pair of a driver in place of the driver.
 
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.model.loads import effort

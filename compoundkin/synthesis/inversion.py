@@ -32,20 +32,20 @@ from compoundkin.structure import decompose
 from compoundkin.synthesis.driver_places import is_driver, renamed, stays, without_driver
 
 OLD_FRAME = "old frame"
-# Which of the poses is drawn, as a part of them: links are often in line, and modes meet, at the ends or half way.
+# The place of the drawn pose, a part of all poses: at the ends and half way links are often in line, and modes meet.
 WITHIN = 0.382
-# Points that keep the axes of an old frame given as drawn: its origin, and one on its x axis.
+# Points that define the axes of a drawn old frame: its origin, and one on its x axis.
 _AXES = {"old origin": 0j, "old x": 1 + 0j}
 
 
 @checked
 def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
-    """Return the inversion of a mechanism in which `link` is the frame. The frame moves as the link "old frame".
+    """Return the inversion of a mechanism with `link` as the frame. The old frame moves as the link "old frame".
 
-    Dimensions, drivers and thus all relative motions are kept, and the assembly: a drawing replaces modes. Published
-    numbers and the mass of the new frame are left out. The world's axes, also for gravity, are those of the new frame.
+    Dimensions, drivers and thus all relative motions stay, and the assembly: a drawing replaces modes. Published
+    numbers and the mass of the new frame are dropped. The world's axes, also for gravity, are those of the new frame.
 
-    Raises UnknownName for a link that there is not.
+    Raises UnknownName for an unknown link.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.synthesis.chains import structure_name
@@ -66,7 +66,7 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     if points:
         carried = {letter for item in items if isinstance(item, Link) for letter in item.points}
         items.append(drawn(**{k: p for k, p in points.items() if k in carried}))
-    # the frame first, as one writes it
+    # the frame comes first
     items.sort(key=lambda item: not (isinstance(item, Link) and item.name == FRAME))
     outputs = [".".join([names.get(name.partition(".")[0], name.partition(".")[0]), *name.split(".")[1:]])
                for name in mechanism.outputs]  # fmt: skip
@@ -77,14 +77,13 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
 def with_driver(
     mechanism: Mechanism, link: str, on: str = FRAME, *, pair: str = "", instead: str = "", **words: Any
 ) -> Mechanism:
-    """Return a mechanism driven elsewhere.
+    """Return a mechanism with a driver of `link` on the link `on` in place of its own, or of the one named `instead`.
 
-    `link` on the link `on`, in place of its driver, or of the one called `instead`.
-    `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays.
-    Dimensions and assembly are kept, published numbers are left out.
+    `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays. Dimensions
+    and assembly stay, published numbers are dropped.
 
-    Raises UnknownName for a link or driver that there is not, InvalidInput where it is not said which driver is meant,
-    InvalidMechanism where the two links have no pair to drive.
+    Raises UnknownName for an unknown link or driver, InvalidInput if the driver to replace is ambiguous,
+    InvalidMechanism if the two links have no pair to drive.
 
     >>> from compoundkin.files import load
     >>> driven = with_driver(load("four-bar-norton"), "rocker")
@@ -97,27 +96,27 @@ def with_driver(
     new = drive(link, on=on, pair=pair, **words)
     for name in [name for name in (link, on) if name not in mechanism.cylinders and isinstance(new, Drive)]:
         mechanism.link(name)
-    kept = [without_driver(item, mechanism, old) for item in mechanism.items if not is_driver(item, old)]
-    kept = [item for item in kept if not isinstance(item, Mode | Expectation)]
+    items = [without_driver(item, mechanism, old) for item in mechanism.items if not is_driver(item, old)]
+    items = [item for item in items if not isinstance(item, Mode | Expectation)]
     if not any(item.is_drawn for item in mechanism.links.values()):
-        kept = [item for item in kept if not isinstance(item, Drawn)]
+        items = [item for item in items if not isinstance(item, Drawn)]
         if points := _assembled(mechanism):
-            kept.append(drawn(**points))
-    drives = [item.name for item in (*kept, new) if isinstance(item, Drive)]
+            items.append(drawn(**points))
+    drives = [item.name for item in (*items, new) if isinstance(item, Drive)]
     outputs = available_outputs(mechanism, drives)
-    made = _written(mechanism, f"{mechanism.title}, {link} driven", [*kept, new], outputs)
+    made = _written(mechanism, f"{mechanism.title}, {link} driven", [*items, new], outputs)
     return _standing(made, new) if isinstance(new, Drive) and new.values is None and new.law is None else made
 
 
 def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
-    """Return the driver that gives way; None where there is none."""
+    """Return the driver to replace, None for a mechanism without drivers."""
     names = [item.name for item in mechanism.drives]
     if instead:
         if instead not in names:
             raise UnknownName(Problem(instead, "there is no such driver", suggestion(instead, names)))
         return mechanism.drives[names.index(instead)]
     if len(names) > 1:
-        what = "there are several drivers, and it is not said which one gives way"
+        what = "there are several drivers, and none is named to be replaced"
         raise InvalidInput(Problem("instead", what, f"name one: {', '.join(names)}"))
     return mechanism.drives[0] if names else None
 
@@ -140,19 +139,19 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
 
 
 def _written(mechanism: Mechanism, title: str, items: list[Item], outputs: list[str]) -> Mechanism:
-    told = {key: getattr(mechanism, key) for key in ("source", "description", "time")} | mechanism.unit_words
-    return Mechanism(title, *items, outputs=outputs, **told)
+    header = {key: getattr(mechanism, key) for key in ("source", "description", "time")} | mechanism.unit_words
+    return Mechanism(title, *items, outputs=outputs, **header)
 
 
 def _renamed(mechanism: Mechanism, link: str) -> dict[str, str]:
-    """New names of the two links that change places. No link or point has them already."""
+    """Return unused names of the two links that change places."""
     taken = (*mechanism.links, *mechanism.carriers)
     number = next(k for k in range(1, len(taken) + 2) if f"{OLD_FRAME}{k if k > 1 else ''}" not in taken)
     return {link: FRAME, FRAME: f"{OLD_FRAME}{number if number > 1 else ''}"}
 
 
 def _with_axes(mechanism: Mechanism, link: Link) -> Link:
-    """Return the old frame with two points that keep its axes if needed."""
+    """Return the old frame with two points for its axes if needed."""
     counted = [name for pair in mechanism.written_pairs for name in pair.members]
     counted += [name for item in mechanism.drives for name in (item.link, item.on)]
     if not link.is_drawn or not mechanism.sketch or FRAME not in counted:
@@ -161,7 +160,7 @@ def _with_axes(mechanism: Mechanism, link: Link) -> Link:
 
 
 def _points_relative_to(mechanism: Mechanism, link: str) -> dict[str, Number]:
-    """Return where all points are in one pose, as seen from a link. None where nothing shows it."""
+    """Return the places of all points in one pose in the frame of a link, empty without any pose."""
     if not mechanism.sketch or not any(item.is_drawn for item in mechanism.links.values()):
         points = _assembled(mechanism)
         pose = _pose_of(mechanism, link) if points else None
@@ -176,7 +175,7 @@ def _points_relative_to(mechanism: Mechanism, link: str) -> dict[str, Number]:
 
 
 def _assembled(mechanism: Mechanism) -> dict[str, Number]:
-    """Return where all points are at some pose that assembles. None where there is none."""
+    """Return the places of all points in an assembled pose, empty without any."""
     found = _some_pose(mechanism)
     return (
         {} if found is None else {letter: _at(motion.position, found[1]) for letter, motion in found[0].points.items()}
@@ -184,7 +183,7 @@ def _assembled(mechanism: Mechanism) -> dict[str, Number]:
 
 
 def _pose_of(mechanism: Mechanism, link: str) -> Pose | None:
-    """Return the pose of a link where `_assembled` has its points."""
+    """Return the pose of a link in the pose of `_assembled`."""
     found = _some_pose(mechanism)
     if found is None:
         return None
@@ -193,7 +192,7 @@ def _pose_of(mechanism: Mechanism, link: str) -> Pose | None:
 
 
 def _some_pose(mechanism: Mechanism) -> Any:
-    """Return the motion and the index of a pose that assembles, or None."""
+    """Return the motion and the index of an assembled pose, or None."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
@@ -207,39 +206,37 @@ def _some_pose(mechanism: Mechanism) -> Any:
 
 
 def _clear(motion: Motion, found: Number) -> int:
-    """Return which of some poses a drawing shows without doubt."""
+    """Return the index of a pose whose drawing is unambiguous."""
     for item in motion.mechanism.drives:
         if any(len(motion.mechanism.links[name].points) == 1 for name in (item.link, item.on)):
             pair = motion.structure.driven[item.name].pair
             if pair.free_is_angle:
-                return int(found[0])  # taken for the first pose
-            # taken to be forward along the guide
+                return int(found[0])  # read as the first pose
+            # read as forward along the guide
             value = np.broadcast_to(motion.pairs[pair.name].value, motion.assembled.shape)
             return int(found[np.argmax(value.reshape(-1, value.shape[-1])[0][found])])
     return int(found[int(WITHIN * len(found))])
 
 
 def _at(values: Number, k: int) -> Number:
-    """Return values at one pose. A number, or of several designs an array (designs, 1)."""
+    """Return values at one pose: a number, or an array (designs, 1)."""
     array = np.asarray(values)
     if array.ndim == 0:
         return array.item()
     return array[k].item() if array.ndim == 1 else array[..., k : k + 1]
 
 
-# What a law holds at each time: value, speed, acceleration.
+# A law has value, speed and acceleration at each time.
 ORDER = 2
 
 
 @checked
 def found_law(motion: Motion, link: str, on: str = FRAME, *, pair: str = "") -> MotionTable:
-    """Return the law that a driver would have to follow for a motion.
-
-    It drives `link` against `on`.
+    """Return the driving law of `link` against `on` that a motion requires.
 
     It is a table of value, speed and acceleration at the times of the motion (radians or lengths), with quintic
-    polynomials in between. Raises InvalidInput where the two links have no such pair, for a motion that is not in time
-    or of several designs, and where it cannot be followed: from when to when, and why.
+    polynomials in between. Raises InvalidInput if the two links have no such pair, for a motion that is not in time or
+    of several designs, and for one with gaps, with their times and reasons.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -252,13 +249,10 @@ def found_law(motion: Motion, link: str, on: str = FRAME, *, pair: str = "") -> 
 
 @checked
 def driven_forward(motion: Motion, *drivers: str | Drive) -> Mechanism:
-    """Return the mechanism driven by the laws found for a motion.
+    """Return the mechanism with the driving laws that a motion requires in place of its drivers.
 
-    They take the place of all that drives it now.
-
-    `drivers` are links driven against the frame, or drivers such as ``drive("stick", on="boom")``, of which the law is
-    found. Dimensions and assembly are kept; it is drawn as in the motion, and solved at its times. Raises InvalidInput
-    as `found_law` does.
+    `drivers` are links driven against the frame, or drivers such as ``drive("stick", on="boom")``. Dimensions and
+    assembly stay; it is drawn in a pose of the motion, and solved at its times. Raises InvalidInput as `found_law`.
 
     >>> from compoundkin.files import load
     >>> from compoundkin.kinematics import solve
@@ -267,25 +261,25 @@ def driven_forward(motion: Motion, *drivers: str | Drive) -> Mechanism:
     ['left', 'right']
     """
     mechanism = motion.mechanism
-    asked = [_driver(mechanism, one) if isinstance(one, str) else one for one in drivers]
-    if not asked:
+    chosen = [_driver(mechanism, one) if isinstance(one, str) else one for one in drivers]
+    if not chosen:
         raise InvalidInput(Problem("drivers", "none is named", "name the links that are to be driven"))
-    for one in asked:
+    for one in chosen:
         _driver(mechanism, one.link, one.on, one.pair)
-    driven = [Drive(one.name, one.link, one.on, one.pair, law=_law(motion, one)) for one in asked]
+    driven = [Drive(one.name, one.link, one.on, one.pair, law=_law(motion, one)) for one in chosen]
     gone = (Drive, PrescribedMotion, Mode, Expectation)
-    kept: list[Item] = [item for item in mechanism.items if not isinstance(item, gone)]
+    items: list[Item] = [item for item in mechanism.items if not isinstance(item, gone)]
     if not any(item.is_drawn for item in mechanism.links.values()):
-        kept = [item for item in kept if not isinstance(item, Drawn)]
-        kept.append(drawn(**_places(motion, asked)))
-    told = {key: getattr(mechanism, key) for key in ("source", "description")}
+        items = [item for item in items if not isinstance(item, Drawn)]
+        items.append(drawn(**_places(motion, chosen)))
+    header = {key: getattr(mechanism, key) for key in ("source", "description")}
     title = f"{mechanism.title}, driven forward"
-    return Mechanism(title, *kept, *driven, outputs=_outputs(mechanism, driven), time=motion.time, **told,
+    return Mechanism(title, *items, *driven, outputs=_outputs(mechanism, driven), time=motion.time, **header,
                      **mechanism.unit_words)  # fmt: skip
 
 
 def _driver(mechanism: Mechanism, link: str, on: str = FRAME, pair: str = "") -> Drive:
-    """Return the driver of a pair. Raises UnknownName or InvalidInput where there is none, or not one."""
+    """Return the driver of a pair. Raises UnknownName or InvalidInput unless there is exactly one."""
     for name in [name for name in (link, on) if name not in mechanism.cylinders]:
         mechanism.link(name)
     drive = Drive(link, link, on, pair)
@@ -301,15 +295,17 @@ def _law(motion: Motion, drive: Drive) -> MotionTable:
     times = _times(motion)
     found = _coordinate(motion, motion.mechanism.resolved(drive))
     columns = [np.broadcast_to(found.derivative(k), motion.shape) for k in range(ORDER + 1)]
-    lost = ~np.all(np.isfinite(columns), axis=0)
-    if np.any(lost):
-        what = f"at {times[lost][0]:g} s the motion is at a limit position, where {drive.link!r} has no finite rates"
-        raise InvalidInput(Problem(f"law of {drive.name}", what, "let it not reach that place, or leave the time out"))
+    infinite = ~np.all(np.isfinite(columns), axis=0)
+    if np.any(infinite):
+        what = (
+            f"at {times[infinite][0]:g} s the motion is at a limit position, where {drive.link!r} has no finite rates"
+        )
+        raise InvalidInput(Problem(f"law of {drive.name}", what, "stop before that place, or leave the time out"))
     return MotionTable(times, *columns)
 
 
 def _coordinate(motion: Motion, drive: Drive) -> PairMotion:
-    """Return the motion of the pair that a driver would prescribe, in the driver's sense."""
+    """Return the motion of the driver's pair, in the driver's sense."""
     pair = driven_pair(Pins(motion.mechanism), drive)
     ends = tuple(mapped(end, fit(motion.shape)) for end in pair.ends(motion.mechanism.geometry))
     poses = tuple(motion.poses[name] for name in pair.members)
@@ -319,7 +315,7 @@ def _coordinate(motion: Motion, drive: Drive) -> PairMotion:
 
 
 def _times(motion: Motion) -> Number:
-    """Return the times of a motion that can be followed. Raises InvalidInput for any other."""
+    """Return the times of a motion without gaps. Raises InvalidInput for any other."""
     motion.grid.require(ORDER)
     if motion.time is None:
         raise InvalidInput(Problem("motion", "it is not in time", "give times: solve(mechanism, time=...)"))
@@ -340,19 +336,19 @@ def _when(times: tuple[float, float] | None) -> str:
 
 
 def _places(motion: Motion, drives: list[Drive]) -> dict[str, Any]:
-    """Return where all points are at a pose of the motion that a drawing shows without doubt."""
+    """Return the places of all points in a pose of the motion whose drawing is unambiguous."""
     links = motion.mechanism.links
     members = [name for one in map(motion.mechanism.resolved, drives) for name in (one.link, one.on)]
-    # a link of a single point shows no angle: that of the first pose is taken
+    # the drawing of a link with a single point has no angle: the first pose is read
     index = 0 if any(len(links[name].points) == 1 for name in members) else int(WITHIN * motion.shape[0])
     return {letter: complex(np.broadcast_to(found.position, motion.shape)[index])
             for letter, found in motion.points.items()}  # fmt: skip
 
 
 def _outputs(mechanism: Mechanism, drives: list[Drive]) -> list[str]:
-    """Return the outputs whose owners there still are."""
-    thought = mechanism.auxiliary_links
-    pairs = (pair.name for pair in mechanism.written_pairs if thought.isdisjoint(pair.members))
-    links = (name for name in mechanism.links if name not in thought)
+    """Return the outputs whose owners remain."""
+    auxiliary = mechanism.auxiliary_links
+    pairs = (pair.name for pair in mechanism.written_pairs if auxiliary.isdisjoint(pair.members))
+    links = (name for name in mechanism.links if name not in auxiliary)
     known = {*mechanism.carriers, *links, *pairs, *(one.name for one in drives)}
     return [name for name in mechanism.outputs if name.split("(")[0].split(".")[0] in known]

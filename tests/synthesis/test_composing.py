@@ -99,7 +99,7 @@ def test_names_of_groups_are_those_they_are_found_by(links):
         (lambda c: c.attach("RRR", ("x", "y"), to=("frame", "crnk")), UnknownName, "did you mean 'crank'"),
         (lambda c: c.attach("RRR", ("x",), to=("frame", "crank")), InvalidInput, "has 2 links"),
         (lambda c: c.attach("RRR", ("x", "crank"), to=("frame", "crank")), InvalidInput, "there is a link 'crank'"),
-        (lambda c: c.attach("RRR", ("x", "y"), to=("frame",)), InvalidInput, "2 outer pairs, but 1 given"),
+        (lambda c: c.attach("RRR", ("x", "y"), to=("frame",)), InvalidInput, "2 outer pairs, but entries for 1"),
         (lambda c: c.attach("RRR", ("x", "y"), to=("frame", "Q on crank"), at=("A",)), InvalidInput, "A is a point of"),
         (lambda c: c.drive("z", pair="X"), InvalidInput, "no pair to drive"),
     ],

@@ -1,8 +1,8 @@
-"""A drawn mechanism to start from, made of a chain. One of its links the frame, drivers at some of its pairs.
+"""Drawn mechanisms made of chains: one link is the frame, some pairs have drivers.
 
-Its pins are spread out, no two links alike, the same on every machine: the distance between two pins is made to be
-the number of links between them, as far as that can be.
-Source: J. de Leeuw, Applications of convex analysis to multidimensional scaling, 1977 (majorization of stress).
+The pins are spread out, no two links alike, the same on every machine: distances of pins approximate the number of
+links between them. Source: J. de Leeuw, Applications of convex analysis to multidimensional scaling, 1977 (majorization
+of stress).
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ from compoundkin.synthesis.chains.chain_names import chain_name
 Driver: TypeAlias = int | tuple[int, int]
 # The angle that spreads points evenly over a disc: none is on a line with the others, none on a circle.
 GOLDEN = np.pi * (3.0 - 5.0**0.5)
-# Enough for layouts of some dozens of pins to settle; nothing depends on how well they have.
+# Enough iterations for layouts of some dozens of pins; nothing depends on their accuracy.
 ROUNDS = 60
 # Beyond this many pins the table of all distances would take long; the spiral alone does.
 MOST_PINS = 300
-# By how much a settled pin is moved, in lengths of a link: a symmetric layout is a special one.
-SHAKEN = 0.23
-# Pins nearer than this would make links of no length.
+# Displacement of pins after the iteration, in lengths of a link: a symmetric layout would be special.
+DISPLACEMENT = 0.23
+# Pins nearer than this would make very short links.
 NEAREST = 0.15
 
 
 @checked
 def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = "") -> Mechanism:
-    """Return a mechanism with the structure of a chain and generic dimensions, as drawn. Pins A, B, C, ...
+    """Return a mechanism with the structure of a chain, generic dimensions and pins A, B, C, ...
 
-    Link k of the chain is "link k", but for the frame. A driver is a link that is joined to the frame, or two joined
-    links; without any, the first that determine the motion are taken, those on the frame if possible. They hold the
-    drawn pose, which assembles whatever the chain; how far they may move is a matter of dimensions.
+    Link k of the chain is "link k", except the frame. A driver is a link joined to the frame, or two joined links; by
+    default the first that determine the motion, on the frame if possible. The drawn pose always assembles; the range of
+    the drivers depends on the dimensions.
 
-    Raises UnknownName for a link that the chain does not have, InvalidInput for drivers between links that are not
-    joined, or where no drivers determine the motion.
+    Raises UnknownName for an unknown link, InvalidInput for drivers between links that are not joined, or if no drivers
+    determine the motion.
 
     >>> from compoundkin.synthesis.chains.chain_atlas import chains
     >>> mechanism = mechanism_from(chains(6)[0], 0, 4)
@@ -78,7 +78,7 @@ def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = 
 
 
 def lettered(number: int) -> list[str]:
-    """Return so many names for points. A to Z, then A2 to Z2 and so on.
+    """Return so many names for points: A to Z, then A2 to Z2 and so on.
 
     >>> lettered(28)[-3:]
     ['Z', 'A2', 'B2']
@@ -113,7 +113,7 @@ def _drive(items: Sequence[Item], names: Sequence[str], on: int, driven: int) ->
 
 @checked
 def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
-    """Yield the essentially different places for one driver, each once. On which link, and which is driven.
+    """Yield the places for one driver up to symmetry, each as the link it is on and the driven link.
 
     >>> len(list(symmetric_drivers(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]), 0)))
     2
@@ -123,7 +123,7 @@ def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
 
 
 def layout(pins: int, links: Sequence[Sequence[int]]) -> list[complex]:
-    """Draw generic places for pins 0, 1, ..., given the pins of each link. A length of one is that of a link.
+    """Return generic places for pins 0, 1, ... from the pins of each link; links are about 1 long.
 
     >>> places = layout(4, [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> len(places), min(abs(places[k] - places[k - 1]) for k in range(4)) > NEAREST
@@ -132,11 +132,11 @@ def layout(pins: int, links: Sequence[Sequence[int]]) -> list[complex]:
     spiral = _spiral(pins)
     if pins < 3 or pins > MOST_PINS:
         return [complex(place) for place in spiral]
-    settled = _settled(spiral, _distances(pins, links))
-    shaken = settled + SHAKEN * spiral / np.max(np.abs(spiral))
-    apart = np.abs(shaken[:, None] - shaken[None]) + np.eye(pins)
-    chosen = shaken if np.min(apart) > NEAREST else spiral
-    # rounded, so that the last digit of another machine's arithmetic makes no other mechanism
+    spread = _majorised(spiral, _distances(pins, links))
+    moved = spread + DISPLACEMENT * spiral / np.max(np.abs(spiral))
+    apart = np.abs(moved[:, None] - moved[None]) + np.eye(pins)
+    chosen = moved if np.min(apart) > NEAREST else spiral
+    # rounded, so that all machines give the same mechanism
     return [complex(place) for place in np.round(chosen, 4)]
 
 
@@ -146,7 +146,7 @@ def _spiral(pins: int) -> Number:
 
 
 def _distances(pins: int, links: Sequence[Sequence[int]]) -> Number:
-    """Return how many links there are between every two pins. Those that nothing joins are as far as all pins."""
+    """Return the number of links between every two pins, the number of pins for unconnected ones."""
     on: list[list[int]] = [[] for _ in range(pins)]
     for number, carried in enumerate(links):
         for pin in carried:
@@ -164,10 +164,10 @@ def _distances(pins: int, links: Sequence[Sequence[int]]) -> Number:
     return found
 
 
-def _settled(places: Number, wanted: Number) -> Number:
+def _majorised(places: Number, target: Number) -> Number:
     n = len(places)
     for _ in range(ROUNDS):
         gap = places[:, None] - places[None]
         length = np.abs(gap) + np.eye(n)
-        places = np.sum(wanted / length * gap, axis=1) / n
+        places = np.sum(target / length * gap, axis=1) / n
     return places
