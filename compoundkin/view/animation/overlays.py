@@ -134,8 +134,8 @@ def _beside(sketch: MovingSketch, centres: Sequence[MovingCentre]) -> tuple[Movi
     shapes = list(leaves(sketch.shapes(k)))
     taken = [Label(f"text {n}", text_half(s.text, LETTER), (s.at,), (0.0,)) for n, s in enumerate(texts_in(shapes))]
     here = [one for one in centres if one.shown[k]]
-    wanted = [label_around(c.name, complex(c.places[k]), text_half(c.name, SMALL), 5.0, 1 + 1j) for c in here]
-    found = placed([*taken, *wanted], shapes, sketch.window.width, sketch.window.height)
+    names = [label_around(c.name, complex(c.places[k]), text_half(c.name, SMALL), 5.0, 1 + 1j) for c in here]
+    found = placed([*taken, *names], shapes, sketch.window.width, sketch.window.height)
     offs = {c.name: complex(found[c.name] - c.places[k]) for c in here}
     # farther off a name would seem to belong to nothing once the centre has moved on
     return tuple(replace(c, beside=offs[c.name]) if abs(offs.get(c.name, FAR)) < FAR else c for c in centres)

@@ -380,7 +380,7 @@ FARTHER = (1.0, 2.5, 4.5)
 SAME = 3.0
 # White around a text that keeps curves off it.
 HALO = 1.5
-# Places of a curve looked at, a few pixels from each other.
+# Places examined on a curve, a few pixels from each other.
 PLACES = 1500
 # A value smaller than this part of its scale is zero but for interpolation.
 NOTHING = 1e-6

@@ -135,7 +135,7 @@ def _title(positions: Positions) -> str:
 
 
 def _default(found: Circuits) -> tuple[str, ...]:
-    """The quantities that are drawn where none is named."""
+    """The quantities that are drawn by default."""
     outputs = tuple(name for name in found.structure.mechanism.outputs if not derivative_order(name))
     if outputs:
         return outputs

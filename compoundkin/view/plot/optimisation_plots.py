@@ -38,7 +38,7 @@ class ImprovementPanel:
 
     name: str
     is_path: bool
-    wanted: Number | None = None
+    targets: Number | None = None
 
     @property
     def height(self) -> float:
@@ -126,10 +126,10 @@ def _path(
             axes.plot(
                 at.real, at.imag, linestyle="none", marker="o", markersize=3.5, color=look["color"], label="_poses"
             )
-    if panel.wanted is not None:
-        axes.plot(panel.wanted.real, panel.wanted.imag, linestyle="none", marker="+", markersize=9, color=COLOURS[1],
+    if panel.targets is not None:
+        axes.plot(panel.targets.real, panel.targets.imag, linestyle="none", marker="+", markersize=9, color=COLOURS[1],
                   label="wanted", zorder=6)  # fmt: skip
-        labels += _numbers(axes, panel.wanted)
+        labels += _numbers(axes, panel.targets)
     unit = unit_of(motions[0].mechanism.unit, "length")
     canvas.plane_axes(axes, f"{panel.name}, x [{unit}]", f"y [{unit}]")
 
@@ -140,15 +140,15 @@ LOOKS: tuple[dict[str, Any], ...] = (
 )
 
 
-def _numbers(axes: Any, wanted: Number) -> list[PointLabel]:
+def _numbers(axes: Any, targets: Number) -> list[PointLabel]:
     """The numbers of the places in their order, away from their middle."""
-    middle = complex(np.mean(wanted))
-    away = [complex(z) - middle or 1j for z in wanted[: NUMBERED + 1]]
-    if len(wanted) > NUMBERED:
+    middle = complex(np.mean(targets))
+    away = [complex(z) - middle or 1j for z in targets[: NUMBERED + 1]]
+    if len(targets) > NUMBERED:
         return []
     return [
         PointLabel(axes, float(z.real), float(z.imag), str(k), towards, GREY)
-        for k, (z, towards) in enumerate(zip(wanted, away, strict=True), 1)
+        for k, (z, towards) in enumerate(zip(targets, away, strict=True), 1)
     ]
 
 

@@ -23,7 +23,7 @@ from compoundkin.view.plot.study_columns import StudyColumns, drawn_rows, histog
 PANEL, BESIDE = 1.45, 1.5
 # The least width: a title has room.
 NARROWEST = 7.0
-# More columns than these are no picture; the first ones are drawn where none is named.
+# More columns than these cannot be read; the first ones are drawn where none is named.
 MOST_COLUMNS = 8
 # Characters that a panel has room for beside it, and ticks.
 ROOM, TICKS = 19, 3
@@ -298,7 +298,7 @@ def _dots(
 
 
 def _numbers(axes: Any, both: Sequence[Plotted], front: Number, upward: Sequence[bool]) -> list[PointLabel]:
-    """The rows of the front, beyond it; none of very many."""
+    """The rows of the front, beyond it; left out on a long front."""
     beyond = complex(*(1.0 if up else -1.0 for up in upward))
     places = zip(*(one.values[front].tolist() for one in both), front.tolist(), strict=True)
     named = places if len(front) <= NAMED else ()

@@ -67,7 +67,7 @@ class StudyColumns(ShortRepr):
     def figures(self, names: Sequence[str]) -> tuple[StudyColumn, ...]:
         """Return the columns of names with one number for each design.
 
-        Of no names they are all that there are. Raises UnknownName, InvalidInput for courses.
+        Without names they are all of these. Raises UnknownName, InvalidInput for courses.
         """
         if not names:
             return tuple(one for one in self.columns.values() if one.is_figure)
@@ -88,7 +88,7 @@ class StudyColumns(ShortRepr):
     def courses(self, names: Sequence[str]) -> tuple[StudyColumn, ...]:
         """Return the columns of names with values at every pose.
 
-        Of no names they are all that there are. Raises UnknownName, InvalidInput where there is none.
+        Without names they are all of these. Raises UnknownName, InvalidInput without any.
         """
         among = [one for name in names for one in self.named(name)] if names else self.columns.values()
         wrong = next((one for one in among if names and not one.width), None)
@@ -153,7 +153,7 @@ def toleranced_output(analysis: ToleranceAnalysis, name: str) -> OutputTolerance
 def toleranced_curves(analysis: ToleranceAnalysis, names: Sequence[str]) -> list[OutputTolerance]:
     """Return the outputs of names with values at every pose.
 
-    Of no names they are all that there are. Raises UnknownName, InvalidInput where there is none.
+    Without names they are all of these. Raises UnknownName, InvalidInput without any.
     """
     among = [one for name in names for one in toleranced_outputs(analysis, name)] if names else list(analysis.values())
     wrong = next((one for one in among if names and not one.is_course), None)

@@ -162,7 +162,7 @@ def _panels(
 
 
 def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
-    """Return percentiles, lowest first. Raises InvalidInput for what is none."""
+    """Return percentiles, lowest first. Raises InvalidInput for other numbers."""
     result: list[float] = np.unique(real_numbers("percentiles", percentiles)).tolist()
     wrong = [one for one in result if not 0.0 <= one <= 100.0]
     if wrong or not result:

@@ -151,7 +151,7 @@ def _events(axes: Sequence[Any], shown: Iterable[TimingRow]) -> None:
             last = x
 
 
-# Places looked at in every phase of a program, and all along any other law.
+# Places examined in every phase of a program, and all along any other law.
 IN_PHASE, IN_LAW = 60, 1500
 # Halvings that find where a law begins to dwell, to the last digit that is shown.
 HALVINGS = 40
@@ -176,7 +176,7 @@ class Phase:
 class TimingRow:
     """One row: its name, unit, range, and motion.
 
-    `moved` returns the value and its rate at places; `breaks` are where phases may begin, none where that is not known.
+    `moved` returns the value and its rate at places; `breaks` are where phases may begin, empty if unknown.
     """
 
     name: str
@@ -256,8 +256,8 @@ def timing_rows(what: Mechanism | Mapping[str, Any], over: str | None) -> tuple[
         found = tuple(_of_cams(what))
         if found:
             return ROTATION, found
-    wanted = {TIME: "no driver has a law", ROTATION: "no cam is made for a motion program"}
-    problem = wanted[over] if over else " and ".join(wanted.values())
+    missing = {TIME: "no driver has a law", ROTATION: "no cam is made for a motion program"}
+    problem = missing[over] if over else " and ".join(missing.values())
     raise InvalidInput(
         Problem("timing chart", problem, "write drive(..., law=laws.program(...)), or give the laws by name")
     )

@@ -82,7 +82,7 @@ def construction(what: Drawable, options: PictureOptions) -> Picture:
 
 
 def _solver(scene: Scene, link: str | None) -> DyadSolver:
-    """The solver of the dyad with a link, or of the first one; raises InvalidInput where there is none."""
+    """The solver of the dyad with a link, or of the first one; raises InvalidInput without one."""
     if scene.shown is None:
         what = "a mechanism that is shown as drawn is not constructed"
         raise InvalidInput(Problem("construction", what, "give it drivers"))

@@ -40,7 +40,7 @@ PLAIN = 8
 
 
 def force_scale(forces: Sequence[ActingForce], length: float, unit: str) -> VectorScale | None:
-    """Return the scale at which the longest force is so long. None where there are none."""
+    """Return the scale at which the longest force has a length. None without forces."""
     longest = max((abs(one.force) for one in forces), default=0.0)
     if longest <= 0:
         return None
@@ -203,7 +203,7 @@ def acting_forces(forces: Forces, scene: Scene) -> Mapping[str, tuple[ActingForc
 def is_drawn_once(one: ActingForce, legend: Mapping[str, int]) -> bool:
     """Return whether a force stands for itself and its opposite.
 
-    That in a pair does on its later link; none on the frame.
+    The force of a pair does so on its later link, a force on the frame never.
     """
     place = list(legend)
     later = one.by in legend and place.index(one.by) > place.index(one.link)

@@ -25,12 +25,12 @@ from compoundkin.view.sketch.labels import (
     Label,
     Surroundings,
     badge,
+    compared_poses,
     label_courses,
     label_shapes,
     labels_of,
     placed,
     placed_along,
-    poses_looked_at,
     text_half,
 )
 from compoundkin.view.sketch.painter import Laid, Layer, Painter, edges, link_body, link_contours, pin_shapes, skeleton
@@ -427,7 +427,7 @@ def placed_over_motion(painter: Painter, laid: Sequence[Laid], kinds: Sequence[s
     """Return places at the pose shown for the requested labels. They are where they cover least at all poses."""
     scene, window = painter.scene, painter.window
     shown = 0 if scene.known is None else int(np.searchsorted(scene.known, scene.pose[1]))
-    poses = poses_looked_at(shown, scene.count, len(scene.letters) + len(scene.legend))
+    poses = compared_poses(shown, scene.count, len(scene.letters) + len(scene.legend))
     courses = label_courses(scene, window, poses)
     around = Surroundings.of(laid, courses, window.width, window.height)
     return placed_along(labels_of(painter, laid, kinds, courses), courses, around)

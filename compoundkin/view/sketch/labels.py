@@ -189,16 +189,16 @@ def badge(scene: Scene, name: str, at: complex) -> Shape:
     return ShapeGroup((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
 
 
-# So many poses of a sketch with few labels are looked at, fewer where there are many labels.
+# The number of poses at which labels are compared: with few labels, at least, and labels times poses.
 MOST, LEAST, LABELS = 12, 3, 240
 # A label that leaves the picture makes it larger: that costs less than to be cut off.
 LARGER = 0.02
 
 
-def poses_looked_at(shown: int, count: int, labels: int) -> Number:
+def compared_poses(shown: int, count: int, labels: int) -> Number:
     """Return indices of poses along a motion, that shown first."""
-    wanted = int(np.clip(LABELS // max(labels, 1), LEAST, MOST))
-    others = np.linspace(0, count - 1, min(wanted, count)).round().astype(int)
+    poses = int(np.clip(LABELS // max(labels, 1), LEAST, MOST))
+    others = np.linspace(0, count - 1, min(poses, count)).round().astype(int)
     return np.concatenate([[shown], others[others != shown]])
 
 

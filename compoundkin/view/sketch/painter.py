@@ -137,7 +137,7 @@ class Painter:
         )
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
-        """Draw a bar from a place to its link's nearest point. It is drawn where the place is none of them."""
+        """Draw a bar from a place to its link's nearest point. It is left out where the place is one of them."""
         nearest = min(self.places(link), key=lambda p: abs(p - foot), default=foot)
         if link != FRAME and abs(nearest - foot) > PIN:
             yield Laid(Layer.BAR, Polyline((nearest, foot), self.style("bar", link)), link)
@@ -358,8 +358,8 @@ def pin_shapes(painter: Painter) -> Iterator[Laid]:
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
     """Return the names of the pins at a letter. One less than the links that it joins."""
     found = [s.pair for s in painter.scene.pair_marks if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
-    thought = painter.scene.mechanism.auxiliary_links
-    seen = [pair.name for pair in found if thought.isdisjoint(pair.members)]
+    auxiliary = painter.scene.mechanism.auxiliary_links
+    seen = [pair.name for pair in found if auxiliary.isdisjoint(pair.members)]
     # what leads a pin is one of its links: the others are joined by it all the same
     return tuple(seen if seen or not found else [pair.name for pair in found[1:] or found])
 

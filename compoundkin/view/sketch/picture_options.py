@@ -69,7 +69,7 @@ class PictureOptions:
 
 
 def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
-    """Return the requested scene. Raises InvalidInput, UnknownName or NotAssembled where there is none."""
+    """Return the requested scene. Raises InvalidInput, UnknownName or NotAssembled for a pose that does not exist."""
     if at is not None and pose is not None:
         raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
     what, design = one_design(what, design)
@@ -85,7 +85,7 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
 
 
 def one_design(what: Drawable, design: int) -> tuple[Drawable, int]:
-    """Return one of several designs by itself, and its index there. Raises InvalidInput where there is none."""
+    """Return one of several designs by itself, and its index there. Raises InvalidInput for an unknown index."""
     if isinstance(what, Motion):
         check_design(design, what.inputs.designs)
         return motion_of_design(what, design), 0
@@ -169,7 +169,7 @@ def _at_values(motion: Motion, at: dict[str, float], design: int) -> tuple[Motio
     index = int(np.argmin(off))
     if off[index] <= SAME:
         return motion, index
-    wanted = {name: at.get(name, float(row[index])) for name, row in values.items()}
+    chosen = {name: at.get(name, float(row[index])) for name, row in values.items()}
     drives = motion.inputs.drives.items()
     rates: Any = {
         key: {name: _rate(numbers, k, design, index) for name, numbers in drives}
@@ -177,7 +177,7 @@ def _at_values(motion: Motion, at: dict[str, float], design: int) -> tuple[Motio
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
-        return solve(motion.structure, wanted, **rates, order=motion.order, hint=_hint(motion, design, index)), 0
+        return solve(motion.structure, chosen, **rates, order=motion.order, hint=_hint(motion, design, index)), 0
 
 
 def _rate(numbers: tuple[Number, ...], k: int, design: int, index: int) -> float:

@@ -325,8 +325,8 @@ class Scene:
 
 def link_numbers(structure: Structure) -> dict[str, int]:
     """Return the numbers of the links. The frame is 1, the others follow as written, what leads points last."""
-    thought = structure.mechanism.auxiliary_links
-    others = sorted((name for name in structure.mechanism.links if name != FRAME), key=lambda name: name in thought)
+    auxiliary = structure.mechanism.auxiliary_links
+    others = sorted((name for name in structure.mechanism.links if name != FRAME), key=lambda name: name in auxiliary)
     return {name: k for k, name in enumerate([FRAME, *others], start=1)}
 
 
@@ -403,7 +403,7 @@ def racks(scene: Scene) -> frozenset[str]:
 
 
 def smallest_wheel(scene: Scene, letter: str) -> float:
-    """Return the least radius of the wheels about a point. It is infinite where there is none."""
+    """Return the least radius of the wheels about a point. It is infinite without wheels."""
     links = scene.mechanism.carriers[letter]
     return min(
         (

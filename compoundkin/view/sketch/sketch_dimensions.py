@@ -29,9 +29,9 @@ def dimension_shapes(
     solid = [shape for shape in drawn if not isinstance(shape, Strokes)]
     lines = np.array(list(straight_lines(solid)), dtype=complex).reshape(-1, 2)
     boxes = [(found[label.key], label.half) for label in labels]
-    wanted = [*guide_dimensions(painter), *link_dimensions(painter)]
-    places = placed_dimensions(wanted, lines, boxes, painter.window)
-    return [shape for one, at in zip(wanted, places, strict=True) for shape in dimension_drawing(one.text, at)]
+    dimensions = [*guide_dimensions(painter), *link_dimensions(painter)]
+    places = placed_dimensions(dimensions, lines, boxes, painter.window)
+    return [shape for one, at in zip(dimensions, places, strict=True) for shape in dimension_drawing(one.text, at)]
 
 
 # Numbers stand at these shares of a line, and so far beside it, in picture units.
@@ -410,12 +410,12 @@ def upright(along: complex) -> complex:
 
 
 def placed_dimensions(
-    wanted: Sequence[Dimension], lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
+    dimensions: Sequence[Dimension], lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
 ) -> list[DimensionPlace]:
     """Return a place for each dimension. It is off lines (count, 2) and boxes (middle, half), if that is possible."""
-    discs = [[_discs(place, dimension.text) for place in dimension.places] for dimension in wanted]
+    discs = [[_discs(place, dimension.text) for place in dimension.places] for dimension in dimensions]
     every = [np.array(of_one) for of_one in discs]
-    fixed = [_fixed(d, at, lines, boxes, window) for d, at in zip(wanted, every, strict=True)]
+    fixed = [_fixed(d, at, lines, boxes, window) for d, at in zip(dimensions, every, strict=True)]
     chosen: dict[int, int] = {}
     for _ in range(1 + ROUNDS):
         for k, at in enumerate(every):
@@ -429,7 +429,7 @@ def placed_dimensions(
                     + LABEL / 10.0 * (gap < 2.0 * HALF).sum(axis=(1, 2))
                 )
             chosen[k] = int(np.argmin(np.round(costs, DIGITS)))
-    return [dimension.places[chosen[k]] for k, dimension in enumerate(wanted)]
+    return [dimension.places[chosen[k]] for k, dimension in enumerate(dimensions)]
 
 
 def _discs(place: DimensionPlace, text: str) -> Number:

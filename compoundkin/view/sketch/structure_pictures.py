@@ -230,7 +230,7 @@ def _thin(scene: Scene, window: Window) -> ShapeGroup:
 
 
 def _numbered_loops(structure: Structure) -> list[tuple[int, Loop]]:
-    """The loops that are drawn, with their numbers; raises InvalidInput where there are none."""
+    """The loops that are drawn, with their numbers; raises InvalidInput without loops."""
     if not structure.loops:
         what = f"{structure.mechanism.title!r} has no closed loop"
         raise InvalidInput(Problem("structure", what, "its links are an open chain"))
@@ -261,7 +261,7 @@ NEAR = 0.3
 
 @dataclass(frozen=True)
 class Corner:
-    """A corner of a loop's polygon. Where it is, and the name of the point there, "" for none."""
+    """A corner of a loop's polygon. Where it is, and the name of the point there, or ""."""
 
     at: complex
     letter: str
@@ -540,12 +540,12 @@ def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     """
     index = {name: k for k, name in enumerate(names)}
     joined = [(index[p.members[0]], index[p.members[1]]) for p in pairs]
-    wanted = _steps(len(names), joined)
+    ideal = _steps(len(names), joined)
     rng = np.random.default_rng(0)
     # the same orders every time: the seed is fixed
     starts = min(MOST_STARTS, STARTS // len(names))
     tried = _relaxed_places(
-        wanted, np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))])
+        ideal, np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))])
     )
     places = min(tried, key=lambda found: _crossings(found, joined))
     places = places - places[0]
@@ -554,14 +554,14 @@ def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     return [complex(p) for p in places * 1j * np.conjugate(far) / (abs(far) or 1.0) * APART]
 
 
-def _relaxed_places(wanted: Number, orders: Number) -> Number:
+def _relaxed_places(ideal: Number, orders: Number) -> Number:
     """Places (orders, links) that have relaxed from circles on which the links stand in some orders."""
     count = orders.shape[1]
     places = np.exp(2j * np.pi * orders / max(count, 1) + 1j * START) * max(1.0, count / 4.0)
-    weights, itself = np.where(wanted > 0, 1.0 / np.maximum(wanted, 1.0) ** 2, 0.0), np.eye(count)
+    weights, itself = np.where(ideal > 0, 1.0 / np.maximum(ideal, 1.0) ** 2, 0.0), np.eye(count)
     for _ in range(ROUNDS if count > 2 else 0):
         apart = places[:, :, None] - places[:, None]
-        pull = weights * (places[:, None] + wanted * apart / (np.abs(apart) + itself))
+        pull = weights * (places[:, None] + ideal * apart / (np.abs(apart) + itself))
         places = pull.sum(axis=2) / weights.sum(axis=1)
     return places
 

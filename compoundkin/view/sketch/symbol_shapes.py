@@ -230,7 +230,7 @@ AROUND = 16.0
 
 
 def plate_around(painter: Painter, link: str, line: Sequence[complex]) -> tuple[complex, ...]:
-    """Return the corners of a plate around a groove. There are none where the link has points outside it."""
+    """Return the corners of a plate around a groove. It is empty where the link has points outside the plate."""
     e = painter.along(link, 1 + 0j)
     own, groove = (np.array([np.conjugate(e) * p for p in ps], complex) for ps in (painter.places(link), line))
     low = complex(groove.real.min(), groove.imag.min()) - AROUND * (1 + 1j)
@@ -332,7 +332,7 @@ def prescribed_point_arrow(painter: Painter, lead: PrescribedMotion) -> Iterator
         way = speeds.get("x", 0.0) + 1j * speeds.get("y", 0.0) or complex("x" in speeds, "x" not in speeds)
         at = complex(painter.window.at(scene.letters[letter]))
         shapes = sliding_arrow(painter, at, unit_direction(painter.along(lead.on, way)))
-    # of what is only thought: it turns with nothing, and is left out where the sketch moves by itself
+    # on an auxiliary link it turns with nothing, and is left out where the sketch moves by itself
     yield from (Laid(Layer.PIN, shape, lead.links[-1]) for shape in shapes)
 
 

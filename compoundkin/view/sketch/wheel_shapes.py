@@ -214,7 +214,7 @@ def knife_edge(painter: Painter, seen: PairMark, mark: Stud) -> Iterator[Laid]:
 
 
 def is_edge(painter: Painter, seen: PairMark) -> bool:
-    """Return whether a mark of a pair is an edge on a disc. A pin in a groove or a ring is none."""
+    """Return whether a mark of a pair is an edge on a disc. A pin in a groove or a ring is not."""
     on = [s.mark for s in painter.scene.pair_marks if s.pair is seen.pair and isinstance(s.mark, Outline)]
     return any(mark.closed and not mark.is_hollow for mark in on)
 
