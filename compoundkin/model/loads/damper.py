@@ -22,25 +22,19 @@ from compoundkin.model.loads.attachments import (
     check_ends,
     rate_of,
 )
-from compoundkin.model.loads.contract import LoadedPoses, NamedParts
+from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 from compoundkin.model.loads.spring import is_force_law
 
 _RATE = "Force or torque for a unit of speed, or the force itself as a table over that."
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Damper(PointToPointLoad):
-    """A damper between points of two links, which pulls with its rate times its speed of extension.
+class Damping(Load):
+    """What both kinds of damper share: a rate, and a force or torque that depends on velocities."""
 
-    >>> damper("arm", "A", at="S", rate=40).name
-    'damper on arm'
-    """
-
-    rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
+    rate: Amount
 
     title: ClassVar[str] = "damper"
     table: ClassVar[str] = "dampers"
-    wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a damper has its ends on two links")
     amounts: ClassVar[tuple[str, ...]] = ("rate",)
     own_variable: ClassVar[str] = "rate"
 
@@ -50,9 +44,23 @@ class Damper(PointToPointLoad):
         return True
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find unknown ends, and a negative rate."""
+        """Find unknown ends or an unknown pair, and a negative rate, with which a damper would drive."""
         yield from super().problems(written, where)
-        yield from rate_problems(self.rate, where)
+        if not is_force_law(self.rate) and np.any(np.asarray(self.rate) < 0.0):
+            yield Problem(f"{where}.rate", "a damper of negative rate drives", "give a rate above zero")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Damper(Damping, PointToPointLoad):
+    """A damper between points of two links, which pulls with its rate times its speed of extension.
+
+    >>> damper("arm", "A", at="S", rate=40).name
+    'damper on arm'
+    """
+
+    rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
+
+    wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a damper has its ends on two links")
 
     def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
         """Return its force; where its ends coincide, along their relative velocity."""
@@ -65,25 +73,10 @@ class Damper(PointToPointLoad):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairDamper(PairLoad):
+class PairDamper(Damping, PairLoad):
     """A damper along the free coordinate of a pair, against its rate."""
 
     rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
-
-    title: ClassVar[str] = "damper"
-    table: ClassVar[str] = "dampers"
-    amounts: ClassVar[tuple[str, ...]] = ("rate",)
-    own_variable: ClassVar[str] = "rate"
-
-    @property
-    def needs_rates(self) -> bool:
-        """Whether it depends on velocities."""
-        return True
-
-    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, and a negative rate."""
-        yield from super().problems(written, where)
-        yield from rate_problems(self.rate, where)
 
     def effort(self, at: LoadedPoses) -> Number:
         """Return its effort, against the rate of the coordinate."""
@@ -91,12 +84,6 @@ class PairDamper(PairLoad):
         own = {"rate": lambda: rate_of(series), "coordinate": lambda: series.c[0]}
         amount = value_of(self.where, self.rate, at, own)
         return 0.0 - (amount if is_force_law(self.rate) else amount * rate_of(series))
-
-
-def rate_problems(rate: Amount, where: str) -> Iterator[Problem]:
-    """Find a negative rate, with which a damper would drive."""
-    if not is_force_law(rate) and np.any(np.asarray(rate) < 0.0):
-        yield Problem(f"{where}.{Damper.amounts[0]}", "a damper of negative rate drives", "give a rate above zero")
 
 
 @checked
