@@ -47,7 +47,7 @@ class Damping(Load):
         """Find unknown ends or an unknown pair, and a negative rate, with which a damper would drive."""
         yield from super().problems(written, where)
         if not is_force_law(self.rate) and np.any(np.asarray(self.rate) < 0.0):
-            yield Problem(f"{where}.rate", "a damper of negative rate drives", "give a rate above zero")
+            yield Problem(f"{where}.{self.amounts[0]}", "a damper of negative rate drives", "give a rate above zero")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
