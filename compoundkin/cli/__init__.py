@@ -1,4 +1,8 @@
-"""The command line: one file per verb, each loaded when it is called."""
+"""The command line: one file per verb, each loaded when it is called.
+
+Results go to stdout, everything else to stderr. A verb imports NumPy and the rooms that it uses when it runs, so that
+`--help` and completion stay fast.
+"""
 
 from __future__ import annotations
 

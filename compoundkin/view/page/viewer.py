@@ -93,6 +93,7 @@ def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> View
 
 def player_html(moving: MotionData, data: dict[str, Any]) -> str:
     """Return the sketch with its slider and switches."""
+    caption = element("caption", "Numbers at the pose shown", class_="unseen")
     return element(
         "div",
         lines(
@@ -102,16 +103,12 @@ def player_html(moving: MotionData, data: dict[str, Any]) -> str:
                 element("p", "", class_="said", role="status"),
                 element("p", "", class_="reason"),
                 _switches(moving, data),
-                element("table", _unseen_caption("Numbers at the pose shown") + "<tbody></tbody>", class_="reading"),
+                element("table", f"{caption}<tbody></tbody>", class_="reading"),
                 *_notes(moving, data),
             ]
         ),
         class_="player",
     )
-
-
-def _unseen_caption(text: str) -> str:
-    return element("caption", safe(text), class_="unseen")
 
 
 def _sketch_html(moving: MotionData) -> str:

@@ -1,4 +1,8 @@
-"""Reports: what a lecturer would draw on the board, as data, and as text, Markdown, JSON and pages."""
+"""Reports: what a lecturer would write on the board, as data, and as text, Markdown, JSON and pages.
+
+A section is made of blocks (`report_data`); functions that make sections know nothing of forms, and each form is one
+`match` over the blocks. Tables hold numbers, their columns how they are written; rounding becomes zero by `floor`.
+"""
 
 from __future__ import annotations
 

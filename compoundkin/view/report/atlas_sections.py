@@ -92,11 +92,8 @@ def _table(found: Sequence[Chain]) -> Iterator[TableBlock]:
 
 def _row(k: int, chain: Chain) -> tuple[Cell, ...]:
     name = chain_name(chain) or f"{chain.links}-link chain"
-    return k, name, chain.assortment_text, chain.symmetries, len(chain.inversions), chain.graph6, _pairs(chain)
-
-
-def _pairs(chain: Chain) -> str:
-    return " ".join(f"{first}-{second}" for first, second in chain.pairs)
+    pairs = " ".join(f"{first}-{second}" for first, second in chain.pairs)
+    return k, name, chain.assortment_text, chain.symmetries, len(chain.inversions), chain.graph6, pairs
 
 
 def _inversions(links: int, mobility: int) -> Iterator[Block]:

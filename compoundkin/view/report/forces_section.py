@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import Field, dataclass, fields
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -266,30 +265,20 @@ def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
             rows.append((name, one.pair.members[1], (force.real, force.imag), abs(force), moment))
         yield TableBlock((Column("pair"), Column("on"), *_wrench_columns(forces)), tuple(rows), keys=1)
         return
-    figures = tuple(_reaction_figures(forces))
+    figures = tuple(figure for name in forces.pairs for figure in _pair_figures(forces, name))
     yield Paragraph(f"{what}, between the poses too. Least and greatest:")
     columns = Column("pair"), Column("on"), Column("quantity"), Column("unit"), *extremes_columns(sample)
     yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1)
 
 
-def _reaction_figures(forces: Forces) -> Iterator[ForceFigure]:
-    """Yield the size of the force in each pair, and its moment unless a driver's effort or zero."""
-    driven = {step.pair.name for step in forces.motion.structure.driven.values()}
-    for name, own in forces.pairs.items():
-        on = own.pair.members[1]
-        yield ForceFigure((name, on, "force"), forces.units.force, partial(_pair_force, name), True)
-        turns = own.pair.free_is_angle if name in driven else False
-        if not turns and not _is_negligible(forces, own.moment):
-            yield ForceFigure((name, on, "moment"), forces.units.moment, partial(_pair_moment, name))
-
-
-def _pair_force(name: str, forces: Forces) -> Number:
-    return np.abs(forces.pairs[name].force)
-
-
-def _pair_moment(name: str, forces: Forces) -> Number:
-    found: Number = forces.pairs[name].moment
-    return found
+def _pair_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
+    """Yield the size of the force in a pair, and its moment unless a driver's effort or zero."""
+    own, units = forces.pairs[name], forces.units
+    on = own.pair.members[1]
+    yield ForceFigure((name, on, "force"), units.force, lambda own: np.abs(own.pairs[name].force), True)
+    is_driven = any(step.pair.name == name for step in forces.motion.structure.driven.values())
+    if not (is_driven and own.pair.free_is_angle) and not _is_negligible(forces, own.moment):
+        yield ForceFigure((name, on, "moment"), units.moment, lambda own: own.pairs[name].moment)
 
 
 def _is_negligible(forces: Forces, moment: Number) -> bool:
@@ -319,27 +308,17 @@ def drives_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 def _drive_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
     units, is_angle = forces.units, forces.motion.drives[name].is_angle
     what, unit = ("torque", units.moment) if is_angle else ("thrust", units.force)
-    yield ForceFigure((name, what), unit, partial(_drive_effort, name))
+    yield ForceFigure((name, what), unit, lambda own: own.drives[name].effort)
     if forces.motion.order:
-        yield ForceFigure((name, "power"), units.power, partial(_drive_power, name))
-
-
-def _drive_effort(name: str, forces: Forces) -> Number:
-    found: Number = forces.drives[name].effort
-    return found
-
-
-def _drive_power(name: str, forces: Forces) -> Number:
-    found: Number = forces.drives[name].power
-    return found
+        yield ForceFigure((name, "power"), units.power, lambda own: own.drives[name].power)
 
 
 def _shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     """Yield the shaking force, and its moment about a point of the frame."""
     letter, units = _frame_point(forces), forces.units
-    figures = (ForceFigure(("force",), units.force, _shaking, True),
+    figures = (ForceFigure(("force",), units.force, lambda own: np.abs(own.shaking.force), True),
                ForceFigure((f"moment about {letter or 'the origin'}",), units.moment,
-                           partial(_shaking_moment, letter)))  # fmt: skip
+                           lambda own: own.shaking.moment_about(letter or 0j)))  # fmt: skip
     yield Paragraph("The mechanism on its frame (shaking force), reactions of the drivers included:")
     columns = Column("on the frame"), Column("unit"), *extremes_columns(sample)
     yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1)
@@ -350,14 +329,6 @@ def _frame_point(forces: Forces) -> str:
     points = forces.mechanism.geometry.points[FRAME]
     letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
     return next((one for one in (*letters, *points) if one in points), "")
-
-
-def _shaking(forces: Forces) -> Number:
-    return np.abs(forces.shaking.force)
-
-
-def _shaking_moment(letter: str, forces: Forces) -> Number:
-    return forces.shaking.moment_about(letter or 0j)
 
 
 def _friction_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
@@ -378,16 +349,8 @@ def _friction_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 def _friction_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
     units, is_moment = forces.units, forces.friction.pairs[name].is_moment
     what, unit = ("moment", units.moment) if is_moment else ("force", units.force)
-    yield ForceFigure((name, what), unit, partial(_friction_value, name))
-    yield ForceFigure((name, "power"), units.power, partial(_friction_power, name))
-
-
-def _friction_value(name: str, forces: Forces) -> Number:
-    return forces.friction.pairs[name].friction
-
-
-def _friction_power(name: str, forces: Forces) -> Number:
-    return forces.friction.pairs[name].power
+    yield ForceFigure((name, what), unit, lambda own: own.friction.pairs[name].friction)
+    yield ForceFigure((name, "power"), units.power, lambda own: own.friction.pairs[name].power)
 
 
 def _efficiency_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
