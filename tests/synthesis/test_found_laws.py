@@ -132,7 +132,7 @@ def test_a_path_that_returns_a_pair_of_arrays_is_refused() -> None:
 
 
 def test_a_value_to_hold_that_is_not_finite_names_its_drive() -> None:
-    with pytest.raises(ck.errors.InvalidMechanism, match=r"drives\.P\.x: nan is no value to hold"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"drives\.P\.x: nan is not a finite number"):
         ck.drive("P", x=np.nan)
 
 
