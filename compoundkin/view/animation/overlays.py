@@ -15,8 +15,7 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.model.attributes import unit_suffix
 from compoundkin.view.animation.timeline import pose_times
 from compoundkin.view.sketch.centre_pictures import DOT, TOGETHER, centre_number
-from compoundkin.view.sketch.force_arrows import ForceCourse
-from compoundkin.view.sketch.force_pictures import drawn_force_courses, force_scales
+from compoundkin.view.sketch.force_arrows import ForceCourse, drawn_force_courses, force_scales
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch
 from compoundkin.view.sketch.labels import Label, label_around, placed, text_half
 from compoundkin.view.sketch.picture import BELOW, lines_below, lines_of_text
@@ -150,8 +149,8 @@ def with_force_arrows(
     sketch: MovingSketch, forces: Forces, others: tuple[Arrows, ...] = ()
 ) -> tuple[MovingSketch, tuple[Arrows, ...]]:
     """Return the arrows of forces after others, and the sketch with room for all."""
-    courses = drawn_force_courses(sketch, forces)
-    scales = force_scales(sketch, forces, courses)
+    courses = drawn_force_courses(forces, sketch.scene, sketch.design)
+    scales = force_scales(forces, sketch.window.diagonal, courses)
     known = sketch.scene.known
     tips = [sketch.window.at(one.at[known]) + np.conjugate(_finite(one.force[known])) * scale.per_unit
             for scale in scales[:1] for one in courses]  # fmt: skip

@@ -31,8 +31,7 @@ from compoundkin.view.page.markup import component_values, packed_doubles, packe
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch import force_arrows
 from compoundkin.view.sketch.centre_pictures import centre_number
-from compoundkin.view.sketch.force_arrows import ForceCourse
-from compoundkin.view.sketch.force_pictures import KINDS, drawn_force_courses, force_scales
+from compoundkin.view.sketch.force_arrows import KINDS, ForceCourse, drawn_force_courses, force_scales
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
 
@@ -244,8 +243,8 @@ def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[l
 
 def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
     """Return the arrows of forces at some poses, to one scale, each with place, force, kind and text."""
-    courses = drawn_force_courses(sketch, forces)
-    scales = force_scales(sketch, forces, courses)
+    courses = drawn_force_courses(forces, sketch.scene, sketch.design)
+    scales = force_scales(forces, sketch.window.diagonal, courses)
     if not scales:
         return {}
     one = scales[0]

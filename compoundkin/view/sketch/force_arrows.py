@@ -1,4 +1,4 @@
-"""The forces on the links at one pose, with short names, as arrows; moments as arcs.
+"""The forces on the links at one pose and along a motion, with short names, as arrows; moments as arcs.
 
 They are reactions, efforts of drivers, loads, weights and inertia forces.
 """
@@ -18,13 +18,23 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.link_wrench import DRIVER, FRICTION, PAIR, WEIGHT, LinkWrench
 from compoundkin.dynamics.reactions.link_wrench import INERTIA as OF_INERTIA
 from compoundkin.model.geometry import FRAME
-from compoundkin.view.sketch.labels import Label, label_around, text_half
+from compoundkin.view.sketch.labels import (
+    Label,
+    label_around,
+    text_half,
+)
 from compoundkin.view.sketch.painter import curved_arrow
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, arrow_shapes, unit_direction
 from compoundkin.view.sketch.sketch_style import INERTIA, LOAD, REACTION, SMALL
 from compoundkin.view.sketch.vectors import VectorScale, round_below
 
+# The longest force is this part of the picture's diagonal.
+LONGEST = 0.2
+# What is smaller than this part of the largest force or moment is left out of a sketch, which has little room.
+SMALL_PART = 0.03
+# The kinds of arrows, as they are named below a picture.
+KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: "inertia"}
 # The arc of a moment: its radius, what it goes through (radians), and how much farther the next one is.
 ROUND, SWEEP, NEXT = 19.0, 2.7, 7.0
 # Arrows begin and end so far from the point at which they act, so that the pin stays visible.
@@ -272,3 +282,30 @@ def _course(one: LinkWrench, design: int, name: str, turning: str) -> ForceCours
         return rows[min(design, len(rows) - 1)]
 
     return ForceCourse(shown, row(one.place), row(one.force), row(one.moment))
+
+
+def drawn_force_courses(forces: Forces, scene: Scene, design: int) -> tuple[ForceCourse, ...]:
+    """Return the forces that are drawn along a motion.
+
+    That in each pair is drawn on its later link; forces that are always small beside the largest are left out.
+    """
+    found = force_courses(forces, scene, design)
+    kept = [one for own in found.values() for one in own if is_drawn_once(one.shown, scene.legend)]
+    largest = max(map(_longest, kept), default=0.0)
+    return tuple(one for one in kept if largest and _longest(one) >= SMALL_PART * largest)
+
+
+def force_scales(forces: Forces, diagonal: float, courses: tuple[ForceCourse, ...]) -> tuple[VectorScale, ...]:
+    """Return the scale of each kind of forces, one for all."""
+    longest = max(map(_longest, courses), default=0.0)
+    if not longest:
+        return ()
+    per_unit, amount = LONGEST * diagonal / longest, round_below(longest)
+    kinds = dict.fromkeys(one.shown.kind for one in courses)
+    return tuple(VectorScale(kind, per_unit, amount, f"{amount:g} {forces.units.force}") for kind in kinds)
+
+
+def _longest(one: ForceCourse) -> float:
+    """The greatest length of a force along the motion."""
+    sizes = np.abs(one.force)
+    return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))

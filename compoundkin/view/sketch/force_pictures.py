@@ -1,4 +1,4 @@
-"""Pictures of forces: on the sketch of a mechanism, as force polygons, on free bodies, and along a moving sketch."""
+"""Pictures of forces: on the sketch of a mechanism, as force polygons, and on free bodies."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.model.geometry import FRAME
 from compoundkin.view.sketch.force_arrows import (
     AROUND_DRIVER,
+    KINDS,
+    LONGEST,
     SHORTEST,
+    SMALL_PART,
     ActingForce,
     DrawnForce,
-    ForceCourse,
     acting_forces,
     force_arrow,
-    force_courses,
     force_name,
     force_scale,
     force_text,
     is_drawn_once,
     moment_arcs,
 )
-from compoundkin.view.sketch.kinematic_sketch import MovingSketch, by_links, in_layers, window_on
+from compoundkin.view.sketch.kinematic_sketch import by_links, in_layers, window_on
 from compoundkin.view.sketch.labels import (
     WIDE,
     Label,
@@ -63,17 +64,11 @@ from compoundkin.view.sketch.shapes import (
     sheet,
     unit_direction,
 )
-from compoundkin.view.sketch.sketch_style import INERTIA, LETTER, LINE, LOAD, REACTION, SMALL
-from compoundkin.view.sketch.vectors import VectorScale, round_below
+from compoundkin.view.sketch.sketch_style import LETTER, LINE, REACTION, SMALL
+from compoundkin.view.sketch.vectors import VectorScale
 
-# The longest force is this part of the picture's diagonal.
-LONGEST = 0.2
-# What is smaller than this part of the largest force or moment is left out of a sketch, which has little room.
-SMALL_PART = 0.03
 # An arrow that tells a colour is so long.
 KEY = 22.0
-# The kinds of arrows, as they are named below a picture.
-KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: "inertia"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -409,30 +404,3 @@ def _body_panel(
     texts = label_shapes(scene, {label.key: found[label.key] for label in own})
     texts += [part for label, text, kind in names for part in force_name(label.key, text, found[label.key], kind)]
     return headed_part(title, [*shapes, *texts], wide, tall, (link,))
-
-
-def drawn_force_courses(sketch: MovingSketch, forces: Forces) -> tuple[ForceCourse, ...]:
-    """Return the forces that are drawn along a motion.
-
-    That in each pair is drawn on its later link; forces that are always small beside the largest are left out.
-    """
-    found = force_courses(forces, sketch.scene, sketch.design)
-    kept = [one for own in found.values() for one in own if is_drawn_once(one.shown, sketch.scene.legend)]
-    largest = max(map(_longest, kept), default=0.0)
-    return tuple(one for one in kept if largest and _longest(one) >= SMALL_PART * largest)
-
-
-def force_scales(sketch: MovingSketch, forces: Forces, courses: tuple[ForceCourse, ...]) -> tuple[VectorScale, ...]:
-    """Return the scale of each kind of forces, one for all."""
-    longest = max(map(_longest, courses), default=0.0)
-    if not longest:
-        return ()
-    per_unit, amount = LONGEST * sketch.window.diagonal / longest, round_below(longest)
-    kinds = dict.fromkeys(one.shown.kind for one in courses)
-    return tuple(VectorScale(kind, per_unit, amount, f"{amount:g} {forces.units.force}") for kind in kinds)
-
-
-def _longest(one: ForceCourse) -> float:
-    """The greatest length of a force along the motion."""
-    sizes = np.abs(one.force)
-    return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
