@@ -44,8 +44,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 
-# Diagrams kept; each holds a few kilobytes.
-KEPT = 256
+# Number of cached derivations, a few kilobytes each.
+CACHED = 256
 # The derivation of more takes more than ten seconds, for its work grows with the fourth power.
 MOST_LINKS = 50
 # Each value adds one to the trial positions; the search grows by a factor of some ten with each.
@@ -78,7 +78,7 @@ class Derivation(ShortRepr):
         )  # fmt: skip
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED)
 def derive(diagram: Diagram) -> Derivation:
     """Return the derivation of a circle diagram; made once for each diagram.
 
@@ -120,7 +120,7 @@ def _round(centres: KnownCentres) -> list[Rule]:
         lines = centres.crossing(i, j)
         if lines is not None:
             found.append(LineCrossing((i, j), lines))
-    _note(centres, [rule.found for rule in found if isinstance(rule, LineCrossing)])
+    _record(centres, [rule.found for rule in found if isinstance(rule, LineCrossing)])
     return found
 
 
@@ -128,14 +128,14 @@ def _stalled(centres: KnownCentres) -> list[Rule]:
     """Return the next centres by rates or trial. What even that does not give comes from the solved velocities."""
     trial = trial_position(centres)
     if trial is not None:
-        _note(centres, list(trial.found))
+        _record(centres, list(trial.found))
         return [trial]
     solved: list[Rule] = [SolvedCentre(c) for c in centres.unknown]
-    _note(centres, centres.unknown)
+    _record(centres, centres.unknown)
     return solved
 
 
-def _note(centres: KnownCentres, found: list[Couple]) -> None:
+def _record(centres: KnownCentres, found: list[Couple]) -> None:
     now = 1 + max(centres.rounds.values(), default=0)
     centres.rounds.update(dict.fromkeys(found, now))
 
@@ -202,7 +202,7 @@ def _on_trial(sets: RateSets) -> Couple:
 
 @dataclass
 class RateSets:
-    """How far the sets have grown. Which set each body is in, and its twist in that set, (3, parameters).
+    """The set of each body, and its twist in that set, (3, parameters), while the sets grow.
 
     `rows` are the independent conditions on the parameters, `meetings` what they mean.
     """

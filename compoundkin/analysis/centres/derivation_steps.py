@@ -1,4 +1,4 @@
-"""The steps of a derivation, as data: which centre follows from what."""
+"""The steps of a derivation, as data: the origin of each centre."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class SolvedCentre:
-    """What geometry did not give: the centre is taken from the solved velocities."""
+    """A centre from the solved velocities, where geometry does not determine it."""
 
     found: Couple
 
@@ -111,7 +111,7 @@ Rule: TypeAlias = PairCentre | LineCrossing | Trial | SolvedCentre
 
 @dataclass(frozen=True)
 class DerivationStep:
-    """One line of a derivation. The centre, how it is found, and the lines that give it.
+    """One line of a derivation: the centre, its origin, and the lines that determine it.
 
     `kind` is "primary", "crossing", "rates", "trial", "velocities". Each of `lines` names the centres it runs
     through, or the pair whose normal it is. `text` says the same in words.

@@ -21,7 +21,7 @@ from compoundkin.analysis.centres.derivation_steps import Bridge, Join, Move, Tu
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.base.arrays import Number
 
-# Where the error of a twist is magnified more than this, other links are taken to carry it through.
+# Beyond this magnification of a twist's error other links carry it.
 FAIR = 1e5
 # A twist is tried through every two of so many others, those known best, and so many times at most: each body's twist
 # gets better through those next to it, and with a hundred links every two of all of them would take minutes.
@@ -47,7 +47,7 @@ class DriverRates:
         self.errors: dict[int, Number] = {}
 
     def run(self, units: Sequence[Number], rates: Sequence[Number]) -> None:
-        """Follow the derivation's moves. Where those are poor, go through whichever links are best."""
+        """Follow the derivation's moves, and where those are ill-conditioned the best links."""
         given = [np.ones(1)] if len(rates) == 1 else list(rates)
         carried = transport(self.derivation.moves, self.derivation, self.points, self.spread, units, given)
         poses = np.broadcast_shapes(*[unit.shape[1:] for unit in units])
@@ -83,13 +83,13 @@ class DriverRates:
                 break
 
     def _recarry(self, k: int, at: Number) -> bool:
-        """Return the best way to carry the twist to a body at some poses. Whether it is better than before."""
+        """Improve the twist of a body at some poses by the best links; return whether it is better."""
         if not (self.errors[k][at] > 0.0).any():
             return False
         error = self.errors[k][at]
         twist = self.twists[k][:, at]
         changed = False
-        for candidate, spread in self._ways(k, at):
+        for candidate, spread in self._carried_twists(k, at):
             better = spread * BETTER < error
             if better.any():
                 changed = True
@@ -97,7 +97,7 @@ class DriverRates:
         self.twists[k][:, at], self.errors[k][at] = twist, error
         return changed
 
-    def _ways(self, k: int, at: Number) -> Iterator[tuple[Number, Number]]:
+    def _carried_twists(self, k: int, at: Number) -> Iterator[tuple[Number, Number]]:
         """Yield a body's twist through every two others known well, with its error."""
         others = [b for b in self.errors if b != k and np.isfinite(self.errors[b][at]).any()]
         others.sort(key=lambda b: float(np.min(or_infinite(self.errors[b][at] + self._place(b, k, at)[1]))))
@@ -115,7 +115,7 @@ class DriverRates:
 
 
 def at_poses(array: Number, at: Number) -> Number:
-    """Return an array at some poses. As it is where one column stands for all.
+    """Return an array at some poses, unchanged if it has one column for all.
 
     >>> at_poses(np.arange(4.0), np.array([1, 3])).tolist()
     [1.0, 3.0]

@@ -45,8 +45,8 @@ class Evaluation:
         self.drawn: dict[tuple[int, int, int], tuple[Number, Number]] = {}
 
     def run(self, solved: Sequence[Number] | None) -> None:
-        """Apply every rule in order. `solved` are the links' twists where geometry does not do."""
-        # places that coincide make no line: what is not a number there is given as such
+        """Apply every rule in order. `solved` are the links' twists where geometry does not suffice."""
+        # coincident places have no line, and give NaN
         with np.errstate(all="ignore"):
             self._run(solved)
 
@@ -75,7 +75,7 @@ class Evaluation:
         return self.drawn[key]
 
     def keep(self, found: Couple, point: Number, spread: Number) -> None:
-        """Take a centre as found."""
+        """Store a centre."""
         self.points[found] = point
         self.spread[found] = spread
 
@@ -126,22 +126,22 @@ def _null(rows: Number) -> Number:
     return np.where(good, np.moveaxis(vh[..., -1, :], -1, 0), np.nan)
 
 
-# Where errors are magnified more than this (rounding becomes 1e-11), other lines are tried for the centre.
+# Beyond this magnification of errors (rounding becomes 1e-11) other lines are tried for the centre.
 FAIR = 1e5
 # Lines of all poses together that are drawn, in some four seconds, and rounds that are gone whatever they take. Centres
 # that remain poor say so by their conditioning.
 MOST_LINES = 25_000_000
 ROUNDS = 4
-# Centres with less than this at all poses are left alone: through them no other gets poor.
+# Centres below this magnification at all poses stay: they make no other centre ill-conditioned.
 GOOD = 1e2
-# Where all lines leave errors magnified more than this (rounding becomes 1e-10), the rates are tried.
+# Beyond this magnification by all lines (rounding becomes 1e-10) the rates are tried.
 ILL_CONDITIONED = 1e6
-# What is found otherwise is taken if it is better by this factor: less is not worth the change.
+# Another result is taken if it is better by this factor.
 BETTER = 2.0
 
 
 def recompute(evaluation: Evaluation) -> None:
-    """Repeat the best crossing for poor centres until none gets better.
+    """Repeat the best crossing for ill-conditioned centres until none gets better.
 
     Magnification grows along every chain of crossings, so that no centre comes to rest on itself.
     """
@@ -162,7 +162,7 @@ def recompute(evaluation: Evaluation) -> None:
 
 
 class _IllConditionedPoses:
-    """All lines of all centres, at the poses where a centre is poor.
+    """All lines of all centres, at the poses where a centre is ill-conditioned.
 
     `points` (3, bodies, bodies, poses) and `spread` (bodies, bodies, poses) hold each centre in both orders, so that
     all lines of one are drawn at once.
@@ -181,7 +181,7 @@ class _IllConditionedPoses:
             self._keep(c, at_poses(point, at), or_infinite(at_poses(whole.spread[c], at)))
 
     def run(self, crossed: list[Couple]) -> None:
-        """Recompute until nothing gets better, or as often as that takes some seconds."""
+        """Recompute until nothing gets better, for some seconds at most."""
         lines = len(crossed) * self.spread.shape[1] * len(self.at)
         for _ in crossed[: max(ROUNDS, MOST_LINES // lines)]:
             better = [self._take(c, *self._best(c)) for c in crossed if (self._spread(c) > GOOD).any()]
@@ -217,7 +217,7 @@ class _IllConditionedPoses:
             self._take(c, twist / length, or_infinite(found), none, none)
 
     def _take(self, c: Couple, point: Number, spread: Number, first: Number, second: Number) -> bool:
-        """Keep another point where it is better; whether it is anywhere."""
+        """Store another point where it is better; return whether it is at any pose."""
         better = spread * BETTER < self._spread(c)
         if not better.any():
             return False

@@ -36,11 +36,11 @@ NOTHING = 1e-12
 
 
 class Status(IntEnum):
-    """Why a centre is given at a pose, or not."""
+    """The status of a centre at a pose."""
 
     FOUND = 0
     NOT_ASSEMBLED = 1
-    SINGULAR = 2  # every way to it degenerates at this pose
+    SINGULAR = 2  # every derivation degenerates at this pose
     AT_REST = 3  # the two links do not move relative to each other
     UNDETERMINED = 4  # geometry and rates do not give it
 
@@ -51,7 +51,7 @@ class Centre(ShortRepr):
 
     `homogeneous` (..., 3) is (x, y, w) in the user's length unit, a unit vector in the mechanism's own
     coordinates. `conditioning` is 1 where the centre is as exact as a pin, near 0 where rounding is magnified.
-    `how` says how it is derived, `how_at` how it was found at a pose where other lines were better.
+    `how` is its derivation, `how_at` that at a pose where other lines were better.
     """
 
     links: tuple[str, str]
@@ -64,14 +64,14 @@ class Centre(ShortRepr):
 
     @cached_property
     def at_infinity(self) -> Number:
-        """Where it is at infinity, a bool array."""
+        """Whether it is at infinity, a bool array."""
         x, y, w = np.moveaxis(self.homogeneous, -1, 0)
         with np.errstate(invalid="ignore"):
             return np.asarray(np.abs(w) * (INFINITY * self.size) <= np.hypot(x, y))
 
     @cached_property
     def point(self) -> Number:
-        """Where it is, a complex array; inf where it is at infinity."""
+        """Its place, a complex array; inf at infinity."""
         x, y, w = np.moveaxis(self.homogeneous, -1, 0)
         near = ~self.at_infinity
         with np.errstate(all="ignore"):
@@ -86,11 +86,11 @@ class Centre(ShortRepr):
 
     @property
     def found(self) -> Number:
-        """Where it is given, a bool array."""
+        """Whether it is determined, a bool array."""
         return np.asarray(self.status == Status.FOUND)
 
     def how_at(self, *pose: int) -> str:
-        """Return how it was found at one pose, an index into the motion's shape. Raises InvalidInput outside it."""
+        """Return its derivation at one pose, an index into the motion's shape. Raises InvalidInput outside it."""
         shape = np.shape(self.status)
         if len(pose) != len(shape) or any(not -n <= k < n for k, n in zip(pose, shape, strict=True)):
             raise InvalidInput(Problem("pose", f"{pose} is not a pose of a motion of shape {shape}"))
@@ -119,7 +119,7 @@ class CentreVectors:
     lines: dict[Couple, tuple[Number, Number, Number]]
 
     def trusted(self, c: Couple) -> Number:
-        """Return a centre's unit vectors, NaN where it is not known well."""
+        """Return a centre's unit vectors, NaN where it is ill-conditioned."""
         return np.where(self.spread[c] * LEAST_CONDITIONING <= 1.0, self.units[c], np.nan)
 
 
@@ -180,7 +180,7 @@ class Centres(CentreVectors, DisplaysHtml):
         return velocity_check(self.velocities, motion)
 
     def collinearity(self) -> dict[tuple[str, str, str], Number]:
-        """Return how far three links' centres are from one line. It is 0 to 1, NaN where one is poor or unknown."""
+        """Return the deviation of three links' centres from one line, 0 to 1, NaN where one is ill-conditioned."""
         return collinearity_of(self)
 
     @cached_property
@@ -271,7 +271,7 @@ _BlockResult = tuple[dict[Couple, Number], dict[Couple, Number], dict[Couple, tu
 def _concatenated(
     motion: Motion, derivation: Derivation, places: PrimaryCentres, solved: Number | None
 ) -> _BlockResult:
-    """Return all blocks in one."""
+    """Return the centres of all blocks in one."""
     count = motion.inputs.designs * motion.inputs.poses
     blocks = [slice(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
     parts = [_block(derivation, places, solved, block) for block in blocks]
@@ -384,7 +384,7 @@ SLOWEST = 1e-6
 
 @dataclass(frozen=True, repr=False)
 class Velocities(ShortRepr):
-    """What the centres and the drivers' rates say. Arrays of the motion's shape, NaN where they say nothing.
+    """Velocities from the centres and the drivers' rates. Arrays of the motion's shape, NaN where undetermined.
 
     `twists[link]` (3, poses) in own coordinates relative to the frame; `conditioning[link]` is near 0 where rounding
     is magnified, relative to the fastest link.
@@ -409,11 +409,10 @@ class Velocities(ShortRepr):
 
 @dataclass(frozen=True, repr=False)
 class VelocityCheck(ShortRepr):
-    """Solved velocities against those from centres, relative to the fastest link.
+    """Solved velocities against those from centres, relative to the fastest link, by link and by point.
 
-    By link and by point.
     A link's is the larger of those of its angular velocity and of the velocity of its frame's origin. NaN where the
-    comparison is not made: at poses without rates, and where conditioning is below POOR.
+    comparison is not made: at poses without rates, and where conditioning is below LEAST_CONDITIONING.
     """
 
     links: Mapping[str, Number]
@@ -456,7 +455,7 @@ def velocities_of(centres: CentreVectors) -> Velocities:
 
 
 def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
-    """Compare a motion's velocities with those from centres, where conditioning is not below POOR."""
+    """Compare a motion's velocities with those from centres, at a conditioning of LEAST_CONDITIONING or more."""
     shape = motion.shape
     regular = np.broadcast_to(motion.regular, (motion.inputs.designs, motion.inputs.poses)).reshape(shape)
     links, points = {}, {}
@@ -478,9 +477,9 @@ def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
 
 
 def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number]:
-    """Return how far the three centres of three links are from one line. The volume of their unit vectors.
+    """Return the volume of the unit vectors of the three centres of three links, zero on one line.
 
-    NaN where one of them is not known.
+    NaN where one of them is ill-conditioned.
     """
     body, names = centres.plan.body, centres.plan.diagram.links
     shape = centres.motion.shape
@@ -497,5 +496,5 @@ def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number
 
 
 def _certain(value: Number) -> Number:
-    """Return what is not a number where it is compared is not agreement."""
+    """Return values with inf for NaN: a missing value is no agreement."""
     return np.where(np.isnan(value), np.inf, value)
