@@ -10,9 +10,8 @@ True
 from __future__ import annotations
 
 from compoundkin.analysis.comparison import compare
-from compoundkin.files.exchange.conversion import read, write
-from compoundkin.files.exchange.known_formats import formats
-from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkage
+from compoundkin.files.exchange.known_formats import formats, read, write
+from compoundkin.files.exchange.pylinkage_format import from_pylinkage
 from compoundkin.files.shipped_mechanisms import shipped
 
 __all__ = [

@@ -18,7 +18,7 @@ from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.simulation import Simulation
-from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.contract import Exported, Imported
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.configuration import Configuration, Configurations
 from compoundkin.kinematics.gaps import Gap

@@ -158,7 +158,7 @@ def _default_outputs(structure: Structure) -> list[str]:
 
 def _foreign_file(structure: Structure, form: str, options: Mapping[str, Any]) -> bytes:
     """Return the content of another program's file; what is not converted is noted on stderr."""
-    from compoundkin.files.exchange.conversion import write
+    from compoundkin.files.exchange.known_formats import write
 
     _refuse(form, options, OF_PROGRAMS)
     found = write(structure.mechanism, form, _pose(structure, options), **format_options(options["options"]))

@@ -16,7 +16,7 @@ from compoundkin.base.suffixes import SUFFIXES, alternatives, file_format, suffi
 from compoundkin.cli.shell import NOT_ASSEMBLED, has_colour, put, report_width, say, working
 
 if TYPE_CHECKING:
-    from compoundkin.files.exchange.exchanged import Imported
+    from compoundkin.files.exchange.contract import Imported
     from compoundkin.kinematics.quantities import Table
     from compoundkin.model.mechanism import Mechanism
     from compoundkin.structure import Structure
@@ -229,8 +229,7 @@ def is_foreign_file(source: str) -> bool:
         return True
     if suffix_of(source) == suffix_for("mechanism", "toml") or not isfile(source):
         return False
-    from compoundkin.files.exchange.known_formats import readable_formats
-    from compoundkin.files.exchange.recognition import recognised
+    from compoundkin.files.exchange.known_formats import readable_formats, recognised
 
     try:
         recognised(content_of(Path(source)), readable_formats())
@@ -242,7 +241,7 @@ def is_foreign_file(source: str) -> bool:
 
 def import_with_notes(source: str, form: str = "") -> Imported:
     """Return the mechanism of a file, a link or standard input; what is not converted is noted on stderr."""
-    from compoundkin.files.exchange.conversion import read
+    from compoundkin.files.exchange.known_formats import read
 
     found = read(_standard_input() if source == "-" else source, form)
     say(f"Read {found.mechanism.title!r} ({found.form}): {_summary(found)}.")

@@ -77,7 +77,7 @@ def run_simulation(structure: Structure, options: dict[str, Any]) -> Simulation:
     import numpy as np
 
     from compoundkin.dynamics.simulation.forward_dynamics import simulate
-    from compoundkin.files.written_quantities import spaced
+    from compoundkin.files.read_values import spaced
 
     step, until = options["step"], options["until"]
     times = None if step is None else spaced(0.0, until, step)

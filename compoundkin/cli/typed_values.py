@@ -10,8 +10,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, degrees, first_entry
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
-from compoundkin.files.worded_numbers import warn_of_radians, worded_rate, written_end
-from compoundkin.files.written_quantities import MOST_VALUES, rate, spaced
+from compoundkin.files.read_values import MOST_VALUES, rate, spaced, warn_of_radians, worded_rate, written_end
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.model.elements import Drive
 from compoundkin.structure import Structure

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compoundkin.base.arrays import Number
-from compoundkin.files.written_quantities import RPM, spaced
+from compoundkin.files.read_values import RPM, spaced
 from compoundkin.model.geometry import polar
 
 Floats: TypeAlias = NDArray[np.float64]

@@ -11,8 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
-from compoundkin.files.load_entries import load_table
-from compoundkin.files.reader import default_name
+from compoundkin.files.reader import default_name, load_table
 from compoundkin.model.attributes import ANGLE, OF_POINTS, driver_and_rate
 from compoundkin.model.definition import CYLINDERS, DRIVES
 from compoundkin.model.elements import Drive, Expectation, Link

@@ -16,12 +16,11 @@ from compoundkin.files import exact_numbers, load, schema
 from compoundkin.files.json_schema import DIALECT, FRAGMENTS, closed_table
 from compoundkin.files.mechanism_files import written_text
 from compoundkin.files.parsed_document import heading, known_syntax
+from compoundkin.files.read_values import bad, coordinate, described, numbers, place, wrong
 from compoundkin.files.reader import read
 from compoundkin.files.recovery import Recovery
 from compoundkin.files.shipped_mechanisms import resolve
-from compoundkin.files.single_values import bad, described, numbers, wrong
 from compoundkin.files.writer import document
-from compoundkin.files.written_quantities import coordinate, place
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import OF_DRIVERS

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
-from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
-from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.files.exchange.drawing import drawing_of
+from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.posed_mechanism import posed_mechanism
 from tests import catalog
 
 # Ground 10, crank 3, coupler 8, rocker 7, coupler point P.
@@ -131,7 +131,7 @@ def test_the_catalog_as_drawings_is_the_catalog() -> None:
     """Links of letters, other drivers' zeros: what every format makes of a mechanism."""
     for name in ("six-bar", "planetary-train", "five-bar", "scotch-yoke", "oscillating-cylinder", "class-iii-six-bar"):
         mechanism = catalog.mechanism(name)
-        drawn = mechanism_of(drawing_of(shown_mechanism(mechanism)), "test").mechanism
+        drawn = mechanism_of(drawing_of(posed_mechanism(mechanism)), "test").mechanism
         found = ck.exchange.compare(mechanism, drawn)
         assert found.within(1e-9), (name, found)
         assert not found.only_one, name

@@ -66,9 +66,9 @@ class Unchecked(Mechanism):
 @settings(max_examples=200, deadline=None)
 @given(made)
 def test_a_made_profile_is_read_as_it_was_written(item: Synthesised) -> None:
+    from compoundkin.files.reader import TAGGED
+    from compoundkin.files.reader import profile as read_profile
     from compoundkin.files.recovery import Recovery
-    from compoundkin.files.tagged_tables import TAGGED
-    from compoundkin.files.tagged_tables import profile as read_profile
 
     whole = document(Unchecked(link("frame", A=0), cam("follower", on="cam", at="P", profile=item)))
     log = Recovery(TAGGED)

@@ -18,11 +18,7 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.link_wrench import DRIVER, FRICTION, PAIR, WEIGHT, LinkWrench
 from compoundkin.dynamics.reactions.link_wrench import INERTIA as OF_INERTIA
 from compoundkin.model.geometry import FRAME
-from compoundkin.view.sketch.labels import (
-    Label,
-    label_around,
-    text_half,
-)
+from compoundkin.view.sketch.labels import Label, label_around, text_half
 from compoundkin.view.sketch.painter import curved_arrow
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, arrow_shapes, unit_direction

@@ -9,10 +9,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from compoundkin.files.exchange.exchanged import Exported
-from compoundkin.files.exchange.mjcf.body_masses import units_of
+from compoundkin.files.exchange.contract import Exported
 from compoundkin.files.exchange.mjcf.mjcf_format import FORMAT
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.files.exchange.mjcf.model_plan import units_of
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism
 from compoundkin.model.units import FORCES, LENGTHS
 from compoundkin.results import Motion
 
@@ -25,7 +25,7 @@ _PLANE = np.array([1.0, 1j, 0.0])
 class MujocoModel:
     """The model of a mechanism: of how it was written, nothing but the names of bodies and points is used."""
 
-    shown: ShownMechanism
+    shown: PosedMechanism
 
     def __post_init__(self) -> None:
         self.exported: Exported = FORMAT.write(self.shown)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 
 _FILE = Path(__file__).parents[2] / "reference" / "formats.json"
 # How far a place may be from its published number, as a part of the size, where the sample does not say.
@@ -32,7 +32,7 @@ def entries(form: str) -> list[dict[str, Any]]:
     return [one for one in _all() if one["format"] == form and "text" in one]
 
 
-def letter_at(shown: ShownMechanism, place: complex, tolerance: float, name: str = "") -> str:
+def letter_at(shown: PosedMechanism, place: complex, tolerance: float, name: str = "") -> str:
     """The point that is drawn at a place: samples and readers need not agree on letters.
 
     Of several that of this name, or else the one of most moving links: guides may have a point of their own there.
@@ -43,7 +43,7 @@ def letter_at(shown: ShownMechanism, place: complex, tolerance: float, name: str
     return max(found, key=lambda k: (k == name, len({*carriers[k]} - {"frame"})))
 
 
-def driven_by(shown: ShownMechanism, change: float) -> dict[str, Any]:
+def driven_by(shown: PosedMechanism, change: float) -> dict[str, Any]:
     """Values of the only driver, from the pose as drawn to one so much on: wheels count their turns from there."""
     (name,) = shown.values
     return {name: shown.values[name] + change * np.linspace(0.0, 1.0, 13)}
@@ -56,7 +56,7 @@ def holds(mechanism: ck.Mechanism, sample: dict[str, Any]) -> None:
     assert kind is not None
     size = mechanism.geometry.size
     tolerance = sample.get("tolerance", TOLERANCE * size)
-    shown = shown_mechanism(mechanism)
+    shown = posed_mechanism(mechanism)
     rows = {float(key): row for key, row in expected[kind].items()}
     first = rows.get(0.0)
     letters = {

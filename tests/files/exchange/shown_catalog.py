@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import cache
 
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from tests.catalog import mechanism
 
 
 @cache
-def shown(name: str) -> ShownMechanism:
-    return shown_mechanism(mechanism(name))
+def shown(name: str) -> PosedMechanism:
+    return posed_mechanism(mechanism(name))

@@ -12,7 +12,7 @@ import shapely
 
 import compoundkin as ck
 from compoundkin.files import load
-from compoundkin.files.exchange.conversion import write
+from compoundkin.files.exchange.known_formats import write
 
 
 def table(mechanism: ck.Mechanism, **options: Any) -> tuple[dict[str, np.ndarray], tuple[str, ...]]:

@@ -12,8 +12,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.exchange import MODULES, READ_ONLY, WRITE_ONLY
 from compoundkin.files.exchange.content import MOST_BYTES, Content
-from compoundkin.files.exchange.known_formats import readable_formats, writable_formats
-from compoundkin.files.exchange.recognition import recognised
+from compoundkin.files.exchange.known_formats import readable_formats, recognised, writable_formats
 from tests import catalog
 from tests.files.exchange.mutations import contents, failures
 

@@ -10,10 +10,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
-from compoundkin.files.exchange.drawings.drawn_elements import Drawing, DrawnDriver, DrawnLink, DrawnMass, DrawnPoint
-from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
-from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.files.exchange.drawing import Drawing, DrawnDriver, DrawnLink, DrawnMass, DrawnPoint, drawing_of
+from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.posed_mechanism import posed_mechanism
 from compoundkin.files.mechanism_files import dumps, loads
 from tests.catalog import NAMES
 from tests.catalog import mechanism as catalog_mechanism
@@ -26,7 +25,7 @@ REFUSED = ("cams", "faces", "rollings", "drives", "roll_arounds")
 
 def same_motion(one: ck.Mechanism, other: ck.Mechanism, step: float, tolerance: float = 1e-9) -> None:
     """Compare all points of two mechanisms a step of the drivers from the same drawn pose."""
-    first, second = shown_mechanism(one), shown_mechanism(other)
+    first, second = posed_mechanism(one), posed_mechanism(other)
     places = {k: first.place(links[0], k) for k, links in one.carriers.items()}
     for k, place in places.items():
         assert abs(second.place(other.carriers[k][0], k) - place) <= tolerance * one.geometry.size
@@ -46,7 +45,7 @@ def test_random_mechanisms_come_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
     sketch = random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3))
     mechanism = sketch.mechanism()
-    back = mechanism_of(drawing_of(shown_mechanism(mechanism)), "drawing").mechanism
+    back = mechanism_of(drawing_of(posed_mechanism(mechanism)), "drawing").mechanism
     same_motion(mechanism, back, 1e-3)
     assert loads(dumps(back)) == back
 
@@ -68,7 +67,7 @@ def test_the_catalog_comes_back() -> None:
             assert back.sketch[point.key] == point.at
         # solved again is the drawn pose only where guides, wheels and arcs have come back too
         for one in (drawing.guides or drawing.arcs or drawing.gears or drawing.racks)[:1]:
-            again = shown_mechanism(back)
+            again = posed_mechanism(back)
             assert all(abs(again.place(p.links[0], p.key) - p.at) < 1e-9 * mechanism.geometry.size
                        for p in drawing.points), (name, one.key)  # fmt: skip
     assert said >= 85
@@ -96,7 +95,7 @@ FOUR_BAR = Drawing(
 
 def test_a_file_holds_one_pose() -> None:
     with pytest.raises(ck.errors.InvalidInput, match="at: it is given 2 poses"):
-        shown_mechanism(catalog_mechanism("crank-rocker"), {"crank": np.array([0.0, 1.0])})
+        posed_mechanism(catalog_mechanism("crank-rocker"), {"crank": np.array([0.0, 1.0])})
 
 
 def test_names_that_cannot_be_are_changed_and_told() -> None:

@@ -17,12 +17,11 @@ from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 import compoundkin as ck
 from compoundkin.files import load
-from compoundkin.files.exchange.conversion import write
-from compoundkin.files.exchange.dxf.contour_edges import ContourEdge
-from compoundkin.files.exchange.dxf.coupler_paths import whole_motion
 from compoundkin.files.exchange.dxf.dxf_format import FORMAT
-from compoundkin.files.exchange.dxf.outline_contours import contours
-from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.files.exchange.dxf.dxf_pen import whole_motion
+from compoundkin.files.exchange.dxf.link_contours import ContourEdge, contours
+from compoundkin.files.exchange.known_formats import write
+from compoundkin.files.exchange.posed_mechanism import posed_mechanism
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 
@@ -67,7 +66,7 @@ def polygon_of(polyline: Any) -> Any:
 
 def test_links_lie_where_the_pose_has_them_at_true_size() -> None:
     crusher, at = load("jaw-crusher"), {"eccentric": ck.deg(70)}
-    shown, document = shown_mechanism(crusher, at), read(crusher, at)
+    shown, document = posed_mechanism(crusher, at), read(crusher, at)
     assert document.header["$INSUNITS"] == 4
     assert {one.dxf.name for one in document.layers} >= {"LINKS", "JOINTS", "GROUND", "CRANKS", "CURVES", "NAMES"}
     motion = ck.solve(crusher, at)
@@ -92,7 +91,7 @@ def test_links_lie_where_the_pose_has_them_at_true_size() -> None:
 
 def test_pins_are_holes_in_every_link_that_they_join() -> None:
     crusher = load("jaw-crusher")
-    shown, document = shown_mechanism(crusher), read(crusher)
+    shown, document = posed_mechanism(crusher), read(crusher)
     for letter, links in (("B", ("pitman", "rear-toggle", "front-toggle")), ("D", ("front-toggle", "jaw"))):
         for link in links:
             own = inserted(document, link).virtual_entities()
@@ -116,7 +115,7 @@ def test_the_same_drawing_is_the_same_bytes() -> None:
 
 def test_a_link_without_outline_is_lines_between_its_points() -> None:
     leg = load("jansen-leg")
-    shown, document = shown_mechanism(leg), read(leg)
+    shown, document = posed_mechanism(leg), read(leg)
     (line,) = (one for one in inserted(document, "k").virtual_entities() if one.dxftype() == "LINE")
     ends = {place(line, "start"), place(line, "end")}
     assert all(min(abs(shown.place("k", p) - end) for end in ends) < 1e-9 for p in shown.points["k"])
@@ -168,7 +167,7 @@ def test_paths_are_within_the_stated_error_and_closed() -> None:
     document = ezdxf.read(io.StringIO(exported.text))
     (path,) = document.modelspace().query('LWPOLYLINE[layer=="CURVES"]')
     assert path.closed
-    motion = whole_motion(shown_mechanism(leg))
+    motion = whole_motion(posed_mechanism(leg))
     assert motion is not None
     exact = between(motion, 0, np.linspace(0, motion.inputs.poses - 1, 5000), order=0).points["foot"].position
     line = shapely.LinearRing([(x, y) for x, y, *_ in path.get_points()])
@@ -186,7 +185,7 @@ def test_paths_are_within_the_stated_error_and_closed() -> None:
 def test_profiles_are_splines_within_the_stated_error_on_their_cam() -> None:
     plate = load("groove-cam-plate")
     at = {"plate": 12.0}
-    shown = shown_mechanism(plate, at)
+    shown = posed_mechanism(plate, at)
     document = ezdxf.read(io.StringIO(FORMAT.write(shown, tolerance=1e-3).text))
     (spline,) = (one for one in inserted(document, "plate").virtual_entities() if one.dxftype() == "SPLINE")
     drawn = np.array([complex(p.x, p.y) for p in spline.construction_tool().approximate(500)])
@@ -195,7 +194,7 @@ def test_profiles_are_splines_within_the_stated_error_on_their_cam() -> None:
     assert np.abs(own.imag - own.real**2 / 80).max() < 1e-3
     assert (own[0], own[-1]) == (pytest.approx(-60 + 45j), pytest.approx(60 + 45j))
     cams = load("disc-cam-offset-roller")
-    seen = shown_mechanism(cams)
+    seen = posed_mechanism(cams)
     document = ezdxf.read(io.StringIO(FORMAT.write(seen).text))
     (disc,) = (one for one in inserted(document, "cam").virtual_entities() if one.dxftype() == "SPLINE")
     places = np.array([complex(p.x, p.y) for p in disc.construction_tool().approximate(300)])
@@ -266,7 +265,7 @@ def test_slots_are_cut_as_wide_as_their_pins_and_as_long_as_their_way() -> None:
         ck.mode(1, "rod"),
         unit="mm",
     )
-    shown = shown_mechanism(swing)
+    shown = posed_mechanism(swing)
     model = ezdxf.read(io.StringIO(FORMAT.write(shown, parts=True).text)).modelspace()
     outside, slot = sorted(map(polygon_of, model.query('LWPOLYLINE[layer=="lever"]')), key=lambda one: -one.area)
     assert outside.contains(slot)

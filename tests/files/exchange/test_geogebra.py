@@ -13,12 +13,11 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files.exchange.geogebra.dragged_construction import Construction
-from compoundkin.files.exchange.geogebra.geogebra_commands import FORMAT as COMMANDS
+from compoundkin.files.exchange.geogebra.dragged_construction import Construction, ObjectNames
+from compoundkin.files.exchange.geogebra.geogebra_format import COMMANDS
 from compoundkin.files.exchange.geogebra.geogebra_format import FORMAT as FILE
 from compoundkin.files.exchange.geogebra.mechanism_construction import construction_of
-from compoundkin.files.exchange.geogebra.object_names import ObjectNames
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from tests import catalog
 from tests.files.exchange.geogebra_evaluator import Shape, evaluated
 from tests.files.exchange.shown_catalog import shown
@@ -35,11 +34,11 @@ REFUSED = {
 }  # fmt: skip
 
 
-def shown_of(structure: ck.results.Structure) -> ShownMechanism:
+def shown_of(structure: ck.results.Structure) -> PosedMechanism:
     """A mechanism over its drivers' ranges; where it is shown does not matter here."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return ShownMechanism(structure, {}, {}, {}, ck.solve(structure, order=0))
+        return PosedMechanism(structure, {}, {}, {}, ck.solve(structure, order=0))
 
 
 def driven(build: Construction, motion: ck.results.Motion) -> dict[str, Any]:
@@ -151,7 +150,7 @@ OTHERS = {
 def test_what_the_catalog_has_not_is_constructed(name: str) -> None:
     mechanism = ck.Mechanism(name, *OTHERS[name])
     check(mechanism, construction_of(shown_of(ck.decompose(mechanism))))
-    ElementTree.fromstring(ZipFile(io.BytesIO(FILE.write(shown_mechanism(mechanism)).content)).read("geogebra.xml"))
+    ElementTree.fromstring(ZipFile(io.BytesIO(FILE.write(posed_mechanism(mechanism)).content)).read("geogebra.xml"))
 
 
 def test_a_number_is_changed() -> None:
@@ -169,7 +168,7 @@ def test_numbers_of_pairs_are_changed() -> None:
     offset = catalog.mechanism("slider-crank-offset")
     guide = next(pair for pair in offset.written_pairs if pair.table == "slides")
     words = {key: getattr(guide, key) for key in ("link", "on", "at", "through", "name", "turn")}
-    build = construction_of(shown_mechanism(offset.replace(ck.slide(**words, angle=ck.deg(5), offset=0.1))))
+    build = construction_of(posed_mechanism(offset.replace(ck.slide(**words, angle=ck.deg(5), offset=0.1))))
     names = {step.name[0]: step.name for step in build.steps if guide.name in step.caption}
     changed = offset.replace(ck.slide(**words, angle=ck.deg(-10), offset=-0.2))
     check(changed, build, **{names["β"]: -10.0, names["e"]: -0.2})
@@ -247,7 +246,7 @@ def _free(element: Any) -> Any:
 
 def test_the_pose_asked_for_is_shown() -> None:
     mechanism = catalog.mechanism("six-bar")
-    lines = COMMANDS.write(shown_mechanism(mechanism, {"crank": ck.deg(35)})).text.splitlines()
+    lines = COMMANDS.write(posed_mechanism(mechanism, {"crank": ck.deg(35)})).text.splitlines()
     assert lines[:2] == ["φ_{crank} = Slider(0, 360, 1)", "SetValue(φ_{crank}, 35)"]
     # the published position at 35 degrees
     assert abs(evaluated(lines, {})["G"] - (31.639333709086156 + 10.988360299582874j)) < 1e-12
@@ -255,9 +254,9 @@ def test_the_pose_asked_for_is_shown() -> None:
 
 def test_sliders_begin_at_the_drawn_pose_by_whole_turns() -> None:
     rocker = catalog.mechanism("crank-rocker")
-    at = shown_mechanism(rocker, {"crank": ck.deg(-145)})
+    at = posed_mechanism(rocker, {"crank": ck.deg(-145)})
     drawn = ck.drawn(**{letter: at.place(links[0], letter) for letter, links in rocker.carriers.items()})
-    for seen in (at, shown_mechanism(rocker.replace(drawn)), shown_mechanism(rocker, {"crank": ck.deg(215 + 360)})):
+    for seen in (at, posed_mechanism(rocker.replace(drawn)), posed_mechanism(rocker, {"crank": ck.deg(215 + 360)})):
         found = COMMANDS.write(seen)
         begun = float(found.text.splitlines()[1].removeprefix("SetValue(φ_{crank}, ").removesuffix(")"))
         assert begun == pytest.approx(215.0)
@@ -268,10 +267,10 @@ def test_sliders_begin_at_the_drawn_pose_by_whole_turns() -> None:
         "Gears", ck.link("frame", A=0, B=5), ck.link("crank", A=0), ck.link("wheel", B=0, C=1), ck.drive("crank"),
         ck.gear("crank", "wheel", teeth=(20, 30), carrier="frame"),
     )  # fmt: skip
-    (note,) = COMMANDS.write(shown_mechanism(geared, {"crank": ck.deg(420)})).notes
+    (note,) = COMMANDS.write(posed_mechanism(geared, {"crank": ck.deg(420)})).notes
     assert note.startswith("crank begins at the end of its range")
     fixed = rocker.replace(ck.drive("crank", values=[1.0]))
-    assert COMMANDS.write(shown_mechanism(fixed, {"crank": ck.deg(90)})).text.startswith("φ_{crank} = 90")
+    assert COMMANDS.write(posed_mechanism(fixed, {"crank": ck.deg(90)})).text.startswith("φ_{crank} = 90")
 
 
 def test_all_that_cannot_be_constructed_is_told_at_once() -> None:
@@ -283,6 +282,6 @@ def test_all_that_cannot_be_constructed_is_told_at_once() -> None:
     more = [ck.link("disc", Z=0), ck.link("follower", R=0), ck.drive("disc"), cam, guide]
     mechanism = class_iii.replace(frame, *more)
     with pytest.raises(InvalidInput) as told:
-        COMMANDS.write(shown_mechanism(mechanism))
+        COMMANDS.write(posed_mechanism(mechanism))
     assert len(told.value.problems) == 2
     assert all("positions" in problem.remedy for problem in told.value.problems)

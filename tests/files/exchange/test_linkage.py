@@ -8,7 +8,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.exchanged import Imported
+from compoundkin.files.exchange.contract import Imported
 from compoundkin.files.exchange.linkage.linkage_format import FORMAT
 from tests.files.exchange.references import entries, entry, holds
 

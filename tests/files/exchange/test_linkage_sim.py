@@ -13,9 +13,9 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.exchanged import Imported
-from compoundkin.files.exchange.linkage_sim.linkage_sim_format import FORMAT
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.contract import Imported
+from compoundkin.files.exchange.linkage_sim import FORMAT
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from tests.catalog import mechanism as loaded
 from tests.files.exchange.pages import prints_what_it_shows
 from tests.files.exchange.references import entry, holds
@@ -43,7 +43,7 @@ def test_the_sample_has_its_numbers() -> None:
 class Written:
     """A mechanism as linkage_sim would save it: each body in axes of its own, or all in those of the pose shown."""
 
-    def __init__(self, shown: ShownMechanism, rng: np.random.Generator | None) -> None:
+    def __init__(self, shown: PosedMechanism, rng: np.random.Generator | None) -> None:
         self.shown, links = shown, shown.mechanism.rigid_links
         self.axes = dict.fromkeys(links, (0.0, 0j))
         if rng is not None:
@@ -101,7 +101,7 @@ class Written:
         return {"schema_version": "1.1.0", "bodies": self.bodies, "joints": self.joints, "drivers": self.drivers}
 
 
-def same_motion(shown: ShownMechanism, other: ck.Mechanism, step: float = 0.05) -> None:
+def same_motion(shown: PosedMechanism, other: ck.Mechanism, step: float = 0.05) -> None:
     """Compare two mechanisms a little on from the pose shown."""
     mechanism = shown.mechanism
     places = {k: shown.place(links[0], k) for k, links in mechanism.carriers.items()}
@@ -121,20 +121,20 @@ NAMES = ("slider-crank-offset", "six-bar", "hand-pump", "peaucellier", "class-ii
 
 @pytest.mark.parametrize("name", NAMES)
 def test_bodies_in_axes_of_their_own_and_as_drawn(name: str) -> None:
-    shown = shown_mechanism(loaded(name))
+    shown = posed_mechanism(loaded(name))
     found = read(Written(shown, np.random.default_rng(3)).data)
     assert any("no pose is in the file" in note for note in found.notes)
     same_motion(shown, found.mechanism)
     drawn = read(Written(shown, None).data)
     assert any("taken as the pose drawn" in note for note in drawn.notes)
     same_motion(shown, drawn.mechanism)
-    again = shown_mechanism(drawn.mechanism)
+    again = posed_mechanism(drawn.mechanism)
     for letter, links in shown.mechanism.carriers.items():
         assert abs(again.place(links[0], letter) - shown.place(links[0], letter)) < 1e-9 * shown.mechanism.geometry.size
 
 
 def test_fixed_joints_make_one_link_and_masses_are_added() -> None:
-    shown = shown_mechanism(loaded("watt-i"))
+    shown = posed_mechanism(loaded("watt-i"))
     link = next(name for name, one in shown.mechanism.links.items() if name != "frame" and len(one.letters) == 3)
     written = Written(shown, np.random.default_rng(5))
     written.split(link, shown.mechanism.links[link].letters[2])

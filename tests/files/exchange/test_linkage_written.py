@@ -13,10 +13,10 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.exchanged import Exported
-from compoundkin.files.exchange.linkage.linkage_elements import place, plain
+from compoundkin.files.exchange.contract import Exported
 from compoundkin.files.exchange.linkage.linkage_format import FORMAT
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.linkage.linkage_records import place, plain
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.model.units import LENGTHS
 from tests.files.exchange.pages import prints_what_it_shows
 from tests.files.exchange.references import entries
@@ -40,8 +40,8 @@ SHOWN = (
 TOLERANCE = 1e-10
 
 
-def written(mechanism: ck.Mechanism) -> tuple[ShownMechanism, Exported]:
-    shown = shown_mechanism(mechanism)
+def written(mechanism: ck.Mechanism) -> tuple[PosedMechanism, Exported]:
+    shown = posed_mechanism(mechanism)
     return shown, FORMAT.write(shown)
 
 
@@ -49,11 +49,11 @@ def back(exported: Exported) -> ck.Mechanism:
     return FORMAT.read(Content(exported.content)).mechanism
 
 
-def turns(shown: ShownMechanism) -> list[bool]:
+def turns(shown: PosedMechanism) -> list[bool]:
     return [shown.structure.driven_angles[name] for name in shown.values]
 
 
-def same_motion(one: ShownMechanism, other: ShownMechanism, step: float) -> None:
+def same_motion(one: PosedMechanism, other: PosedMechanism, step: float) -> None:
     """Compare the points of both by their names, as drawn and a step of all drivers from there."""
     scale = LENGTHS.get(one.mechanism.unit, LENGTHS["mm"]) / LENGTHS[other.mechanism.unit]
     size = one.mechanism.geometry.size
@@ -77,7 +77,7 @@ def same_motion(one: ShownMechanism, other: ShownMechanism, step: float) -> None
 def test_mechanisms_of_the_catalog_come_back(name: str) -> None:
     mechanism = ck.load(name)
     shown, exported = written(mechanism)
-    found = shown_mechanism(back(exported))
+    found = posed_mechanism(back(exported))
     same_motion(shown, found, 0.02)
     kept = [link for link in mechanism.links if link in found.mechanism.links]
     assert len(kept) >= len(mechanism.links) - 4
@@ -107,7 +107,7 @@ def test_random_mechanisms_come_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mechanism = random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3)).mechanism()
     shown, exported = written(mechanism)
-    same_motion(shown, shown_mechanism(back(exported)), 1e-3)
+    same_motion(shown, posed_mechanism(back(exported)), 1e-3)
 
 
 @pytest.mark.parametrize("kept", entries("linkage2"), ids=lambda kept: str(kept["id"]))
@@ -115,7 +115,7 @@ def test_what_is_read_is_written_as_it_was(kept: dict[str, str]) -> None:
     first = FORMAT.read(Content(kept["text"].encode())).mechanism
     shown, exported = written(first)
     second = back(exported)
-    same_motion(shown, shown_mechanism(second), 0.01)
+    same_motion(shown, posed_mechanism(second), 0.01)
     assert second.outputs == first.outputs
     assert [np.ptp(np.asarray(one.values)) for one in second.drives if one.values is not None] == pytest.approx(
         [np.ptp(np.asarray(one.values)) for one in first.drives if one.values is not None], abs=1e-9
@@ -140,7 +140,7 @@ def test_wheels_belts_and_arcs_come_back() -> None:
         ck.drawn(F=(35, 70)),
     )
     shown, exported = written(train)
-    same_motion(shown, shown_mechanism(back(exported)), 0.3)
+    same_motion(shown, posed_mechanism(back(exported)), 0.3)
     assert exported.text.count('gear="true"') == 3
     assert exported.text.count('type="chain"') == 1
     assert 'slideradius="' in exported.text
@@ -159,7 +159,7 @@ def test_a_driver_between_moving_links_comes_back() -> None:
         ck.drawn(B=tuple(30 * np.array([0.5, 0.75**0.5]))),
     )
     shown, exported = written(five_bar)
-    found = shown_mechanism(back(exported))
+    found = posed_mechanism(back(exported))
     same_motion(shown, found, 0.1)
     assert [(one.link, one.on) for one in found.mechanism.drives] == [("crank", "frame"), ("rod", "crank")]
     assert found.rates == pytest.approx({"rod": 3, "crank": -1})

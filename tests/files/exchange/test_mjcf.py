@@ -14,7 +14,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.mjcf.mjcf_format import FORMAT
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.results import Motion
 from tests.dynamics.cases import SI
 from tests.dynamics.test_mujoco import heavy, some_poses
@@ -43,7 +43,7 @@ def good_poses(motion: Motion) -> np.ndarray:
     return good[(np.array([0.05, 0.3, 0.7, 0.9]) * (len(good) - 1)).astype(int)]
 
 
-def held_against_mujoco(shown: ShownMechanism) -> None:
+def held_against_mujoco(shown: PosedMechanism) -> None:
     """Compare joints, loops, places and velocities at some poses of a motion."""
     run, motion = MujocoModel(shown), shown.motion
     assert motion is not None
@@ -76,7 +76,7 @@ def same_efforts(motion: Motion) -> MujocoModel:
     """Compare efforts of drivers at all poses of a motion."""
     forces = ck.force_analysis(motion)
     at = {name: float(np.ravel(motion.drives[name].value)[0]) for name in motion.drives}
-    run = MujocoModel(shown_mechanism(motion.mechanism, at))
+    run = MujocoModel(posed_mechanism(motion.mechanism, at))
     qpos, rates, accelerations = run.qpos(motion), run.rates(motion), run.rates(motion, "second")
     for k in range(motion.shape[-1]):
         found = run.efforts(qpos[k], rates[k], accelerations[k])
@@ -125,7 +125,7 @@ def test_loads_act_the_same() -> None:
     )
     run = same_efforts(ck.solve(said, order=2))
     assert not any("left out" in note for note in run.exported.notes)
-    assert "loads that no model says are left out: pulse" in FORMAT.write(shown_mechanism(whole)).notes
+    assert "loads that no model says are left out: pulse" in FORMAT.write(posed_mechanism(whole)).notes
 
 
 @pytest.mark.parametrize("name", ["andrews-squeezer-dynamics", "scissor-lift-loaded", "planetary-train-torques"])
@@ -156,7 +156,7 @@ def test_the_four_bar_that_mujoco_computed() -> None:
     rows = sample["expected"]["rows"]
     motion = ck.solve(four_bar, {"crank": np.deg2rad([row["crank_deg"] for row in rows])})
     torques = ck.force_analysis(motion).drives["crank"].effort
-    run = MujocoModel(shown_mechanism(four_bar, {"crank": 1.0}))
+    run = MujocoModel(posed_mechanism(four_bar, {"crank": 1.0}))
     qpos, one = run.qpos(motion), [name for name, _ in run.sites].index("P")
     for k, row in enumerate(rows):
         effort = run.efforts(qpos[k], np.array([2.0]), np.array([0.0]))[0]
@@ -218,7 +218,7 @@ SPECIAL = {"plate": (wheel_led_by_a_plate, 1), "ring": (wheel_in_a_ring, 0), "ba
 @pytest.mark.parametrize("name", SPECIAL)
 def test_what_the_catalog_has_not(name: str) -> None:
     make, halves = SPECIAL[name]
-    at = shown_mechanism(make())
+    at = posed_mechanism(make())
     held_against_mujoco(at)
     assert FORMAT.write(at).text.count("<weld ") == halves
 
@@ -226,7 +226,7 @@ def test_what_the_catalog_has_not(name: str) -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_random_dyads_move_the_same(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    held_against_mujoco(shown_mechanism(random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3)).mechanism()))
+    held_against_mujoco(posed_mechanism(random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3)).mechanism()))
 
 
 @pytest.mark.parametrize("name", ["six-bar", "planetary-train", "whitworth-quick-return", "scissor-lift-loaded"])
@@ -253,9 +253,9 @@ def test_drivers_and_guides_have_their_ends() -> None:
         ck.drive("boom cylinder", values=np.linspace(60, 120, 13), speed=-5),
         unit="mm",
     )
-    run = MujocoModel(shown_mechanism(boom, {"boom cylinder": 90}))
+    run = MujocoModel(posed_mechanism(boom, {"boom cylinder": 90}))
     assert run.model.joint("boom cylinder").range == pytest.approx([-0.04, 0.04])
-    run = MujocoModel(shown_mechanism(boom))
+    run = MujocoModel(posed_mechanism(boom))
     length = run.shown.values["boom cylinder"]
     assert run.model.actuator_actrange[0] == pytest.approx([(60 - length) / 1000, (120 - length) / 1000])
     assert not MujocoModel(shown("crank-rocker")).model.actuator_actlimited.any()
@@ -266,11 +266,11 @@ def test_names_and_units_are_told() -> None:
     found = FORMAT.write(shown("andrews-squeezer-dynamics"))
     assert found.notes == ("lengths are in m, masses in kg, forces in N, torques in N m",)
     with pytest.raises(InvalidInput, match="world"):
-        FORMAT.write(shown_mechanism(crank_called("world")))
+        FORMAT.write(posed_mechanism(crank_called("world")))
     twice = loaded_slider_crank().replace(ck.force("rod", (1, 0), at="G", name="crank"))
     with pytest.raises(InvalidInput, match="crank: two of one name: actuator"):
-        FORMAT.write(shown_mechanism(twice))
-    assert mujoco.MjModel.from_xml_string(FORMAT.write(shown_mechanism(crank_called('a"<&>'))).text).nbody == 2
+        FORMAT.write(posed_mechanism(twice))
+    assert mujoco.MjModel.from_xml_string(FORMAT.write(posed_mechanism(crank_called('a"<&>'))).text).nbody == 2
 
 
 @pytest.mark.parametrize("near", [0.0, 0.1])
@@ -283,9 +283,9 @@ def test_what_nothing_drives_is_written_as_drawn(near: float) -> None:
     four_bar = ck.Mechanism("free", ck.link("frame", A=0, D=4), *links, drawing)
     if near:
         with pytest.raises(InvalidInput, match="open in the drawing"):
-            FORMAT.write(shown_mechanism(four_bar))
+            FORMAT.write(posed_mechanism(four_bar))
     else:
-        assert MujocoModel(shown_mechanism(four_bar)).gap < 1e-12
+        assert MujocoModel(posed_mechanism(four_bar)).gap < 1e-12
 
 
 def test_masses_below_those_of_mujoco_are_refused() -> None:
@@ -293,23 +293,23 @@ def test_masses_below_those_of_mujoco_are_refused() -> None:
         ck.mass("crank", 1e-3), units={"length": "um", "mass": "mg", "force": "uN"}, unit=""
     )
     with pytest.raises(InvalidInput, match=r"an inertia of .* is too small for MuJoCo"):
-        FORMAT.write(shown_mechanism(small))
+        FORMAT.write(posed_mechanism(small))
 
 
 def test_the_range_of_a_driver_is_that_of_the_drawn_pose() -> None:
     """A crank drawn at -145 degrees that is driven from 200 to 230 is drawn at 215."""
     rocker = ck.load("crank-rocker")
-    at = shown_mechanism(rocker, {"crank": ck.deg(215)})
+    at = posed_mechanism(rocker, {"crank": ck.deg(215)})
     drawing = ck.drawn(**{letter: at.place(links[0], letter) for letter, links in rocker.carriers.items()})
     swung = rocker.replace(drawing, ck.drive("crank", values=ck.deg(np.linspace(200, 230, 31))))
-    run = MujocoModel(shown_mechanism(swung))
+    run = MujocoModel(posed_mechanism(swung))
     assert run.shown.values["crank"] == pytest.approx(ck.deg(215))
     assert run.model.actuator_actrange[0] == pytest.approx(ck.deg(np.array([-15, 15])))
 
 
 def test_lengths_below_those_of_mujoco_are_refused() -> None:
     with pytest.raises(InvalidInput, match=r"a mechanism of 7e-06 m is too small for MuJoCo"):
-        FORMAT.write(shown_mechanism(ck.load("crank-rocker").replace(unit="um")))
+        FORMAT.write(posed_mechanism(ck.load("crank-rocker").replace(unit="um")))
     # what is somewhat larger keeps together
     links = {
         "frame": {"A": 0, "D": 11},
@@ -318,7 +318,7 @@ def test_lengths_below_those_of_mujoco_are_refused() -> None:
         "rocker": {"D": 0, "C": 8},
     }
     double = ck.Mechanism("d", *(ck.link(k, **own) for k, own in links.items()), ck.drive("crank"), unit="um")
-    run = MujocoModel(shown_mechanism(double))
+    run = MujocoModel(posed_mechanism(double))
     mujoco.mj_resetDataKeyframe(run.model, run.data, 0)
     mujoco.mj_step(run.model, run.data, 1000)
     assert np.abs(run.data.efc_pos[run.data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]).max() < 1e-11

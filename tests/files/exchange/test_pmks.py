@@ -9,10 +9,10 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.errors import InvalidInput
-from compoundkin.files.exchange.conversion import read, write
-from compoundkin.files.exchange.pmks.joint_record import JointRecord
-from compoundkin.files.exchange.pmks.joint_sketch import point_keys
-from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.files.exchange.known_formats import read, write
+from compoundkin.files.exchange.pmks_joints import point_keys
+from compoundkin.files.exchange.pmks_records import JointRecord
+from compoundkin.files.exchange.posed_mechanism import posed_mechanism
 from tests.files.exchange.references import driven_by, entries, entry, holds
 from tests.files.exchange.shown_catalog import shown
 
@@ -89,7 +89,7 @@ def test_racks_are_wheels_on_a_slide():
     text = "ground,pinion,R,0,0,tfft\nground,rack,P,7,-3,0\npinion,rack,G,0,-2\nrack,R,9,-2.5\npinion,R,0,2\n"
     mechanism = read(text).mechanism
     for one in (mechanism, read(write(mechanism, "pmks").text).mechanism):
-        motion = ck.solve(one, driven_by(shown_mechanism(one), 1.0), order=0)
+        motion = ck.solve(one, driven_by(posed_mechanism(one), 1.0), order=0)
         tip = next(k for k, links in one.carriers.items() if abs(one.sketch[k] - (9 - 2.5j)) < 1e-9)
         assert np.ravel(motion.points[tip].position)[-1] == pytest.approx(9 + 2.0 - 2.5j)
 
@@ -111,7 +111,7 @@ def test_a_driven_slide_goes_the_way_its_speed_tells():
     for one in (mechanism, read(write(mechanism, "pmks").text).mechanism):
         (drive,) = one.drives
         assert (drive.link, drive.on, drive.speed) == ("ram", "frame", 2.0)
-        motion = ck.solve(one, driven_by(shown_mechanism(one), 0.5), order=0)
+        motion = ck.solve(one, driven_by(posed_mechanism(one), 0.5), order=0)
         moved = np.diff(np.ravel(motion.points["A"].position)[[0, -1]])[0]
         assert moved == pytest.approx(0.5 * np.exp(1j * np.deg2rad(20)))
     turned = read(text.replace(",20,", ",200,")).mechanism
@@ -262,7 +262,7 @@ def test_mechanisms_of_the_catalog_come_back(name):
     for form in ("pmks", "joints"):
         back = read(write(one, form).text).mechanism
         places = {k: shown(name).place(links[0], k) for k, links in one.carriers.items()}
-        first, second = (driven_by(shown_mechanism(mechanism), 0.05) for mechanism in (one, back))
+        first, second = (driven_by(posed_mechanism(mechanism), 0.05) for mechanism in (one, back))
         a, b = ck.solve(one, first, order=0, hint=places), ck.solve(back, second, order=0)
         rows = {k: b.points[k].position.ravel()[[0, -1]] for k in back.carriers}
         for k, place in places.items():

@@ -12,9 +12,10 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
-from compoundkin.files.exchange.exchanged import Exported, Imported
-from compoundkin.files.exchange.pmks_plus.packed_numbers import (
+from compoundkin.files.exchange.contract import Exported, Imported
+from compoundkin.files.exchange.drawing import drawing_of
+from compoundkin.files.exchange.pmks_plus_format import FORMAT
+from compoundkin.files.exchange.pmks_plus_text import (
     check_character,
     hash_of,
     packed_decimal,
@@ -23,9 +24,8 @@ from compoundkin.files.exchange.pmks_plus.packed_numbers import (
     unpacked_flags,
     unpacked_integer,
 )
-from compoundkin.files.exchange.pmks_plus.pmks_plus_format import FORMAT
-from compoundkin.files.exchange.pmks_plus.share_scale import share_scale
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.pmks_plus_writer import share_scale
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.model.loads.force import Force
 from tests.files.exchange.pmks_plus_links import check_link
 from tests.files.exchange.references import entries, entry, holds
@@ -211,7 +211,7 @@ def test_masses_and_forces_are_in_the_units_of_the_program() -> None:
     # 2 g, 3 kg cm^2 = 3000 g cm^2, at (6, 2) as drawn
     assert (float(rocker.mass), float(rocker.inertia)) == (2.0, 3000.0)
     centre = complex(mechanism.mass_centre(rocker))
-    assert shown_mechanism(mechanism).place("CD", centre) == pytest.approx(6.0 + 2.0j)
+    assert posed_mechanism(mechanism).place("CD", centre) == pytest.approx(6.0 + 2.0j)
     assert complex(mechanism.gravity) == pytest.approx(-9.81j)
     push, pull = mechanism.loads["push"], mechanism.loads["pull"]
     assert isinstance(push, Force)
@@ -243,7 +243,7 @@ def test_joints_of_one_link_at_one_place_are_one_pin() -> None:
 
 
 def write(mechanism: ck.Mechanism, **options: object) -> Exported:
-    return FORMAT.write(shown_mechanism(mechanism), **options)
+    return FORMAT.write(posed_mechanism(mechanism), **options)
 
 
 @pytest.mark.parametrize("published", entries("pmks+"), ids=lambda published: published["id"])
@@ -259,7 +259,7 @@ def test_what_was_read_is_written_digit_by_digit(published: dict[str, object]) -
     assert write(again).text == written.text
 
 
-def as_drawn(first: ShownMechanism, back: ck.Mechanism) -> float:
+def as_drawn(first: PosedMechanism, back: ck.Mechanism) -> float:
     """Return by how much the pins of a mechanism and of what was written are apart as drawn, as a part of the size."""
     scale = share_scale(drawing_of(first), None)
     return (
@@ -267,7 +267,7 @@ def as_drawn(first: ShownMechanism, back: ck.Mechanism) -> float:
     )
 
 
-def moved(first: ShownMechanism, second: ShownMechanism, step: float) -> float:
+def moved(first: PosedMechanism, second: PosedMechanism, step: float) -> float:
     """Return by how much they are apart when their drivers have made a step."""
     scale = share_scale(drawing_of(first), None)
     motions = []
@@ -285,11 +285,11 @@ def moved(first: ShownMechanism, second: ShownMechanism, step: float) -> float:
     return off
 
 
-def pins(first: ShownMechanism, back: ck.Mechanism) -> list[str]:
+def pins(first: PosedMechanism, back: ck.Mechanism) -> list[str]:
     return [k for k, links in first.mechanism.carriers.items() if len(links) > 1 and k in back.sketch]
 
 
-def _place(one: ShownMechanism, letter: str) -> complex:
+def _place(one: PosedMechanism, letter: str) -> complex:
     return one.place(one.mechanism.carriers[letter][0], letter)
 
 
@@ -338,16 +338,16 @@ MOVED = ("3-rrr", "class-iii-six-bar", "dixon-mechanism", "elliptic-trammel", "h
 @pytest.mark.parametrize("name", MOVED)
 def test_what_was_written_moves_as_ours(name: str) -> None:
     back = read(FORMAT.write(shown(name)).text).mechanism
-    assert moved(shown(name), shown_mechanism(back), 1e-2) <= 1e-5
+    assert moved(shown(name), posed_mechanism(back), 1e-2) <= 1e-5
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_random_mechanisms_come_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    first = shown_mechanism(random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3)).mechanism())
+    first = posed_mechanism(random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3)).mechanism())
     link = FORMAT.write(first, on_rails=True)
     assert check_link(link.text) == 1
-    second = shown_mechanism(read(link.text).mechanism)
+    second = posed_mechanism(read(link.text).mechanism)
     assert as_drawn(first, second.mechanism) <= 1e-5
     # dyads near their limits move a hundred times as far as places are rounded
     assert moved(first, second, 1e-3) <= 1e-4
@@ -369,7 +369,7 @@ def test_guides_of_the_frame_are_rounded_and_said_or_laid_on_rails() -> None:
     assert not any("the guide of" in note for note in exact.notes)
     back = read(exact.text)
     assert any("pinned to the frame twice, and so part of it" in note for note in back.notes)
-    assert moved(engine, shown_mechanism(back.mechanism), 0.5) <= 5e-6
+    assert moved(engine, posed_mechanism(back.mechanism), 0.5) <= 5e-6
     # a quarter turn is nearest to three decimals a turn further: 7.854 rad
     upright = read(SLIDER.replace("5T", "OZ"))
     assert any("may have meant 90 degrees" in note for note in upright.notes)
@@ -395,7 +395,7 @@ def test_loads_are_written_in_the_units_of_the_program() -> None:
     loaded = ck.load("jaw-crusher-loaded")
     back = read(write(loaded).text).mechanism
     assert back.units is not None
-    one, two = shown_mechanism(loaded), shown_mechanism(back)
+    one, two = posed_mechanism(loaded), posed_mechanism(back)
     kilograms = {"kg": 1.0, "g": 1e-3}
     assert loaded.units is not None
     for name, item in loaded.masses.items():

@@ -15,12 +15,11 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
-from compoundkin.files.exchange.drawings.drawing_of_mechanism import drawing_of
-from compoundkin.files.exchange.exchanged import Imported
-from compoundkin.files.exchange.foreign_names import legal
-from compoundkin.files.exchange.pylinkage.pylinkage_format import FORMAT
-from compoundkin.files.exchange.pylinkage.pylinkage_objects import from_pylinkage
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism, shown_mechanism
+from compoundkin.files.exchange.contract import Imported
+from compoundkin.files.exchange.drawing import drawing_of
+from compoundkin.files.exchange.foreign_texts import legal
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
+from compoundkin.files.exchange.pylinkage_format import FORMAT, from_pylinkage
 from tests.catalog import mechanism as loaded
 from tests.files.exchange.pages import prints_what_it_shows
 from tests.files.exchange.references import entries, entry, letter_at
@@ -43,7 +42,7 @@ def read(text: str) -> Imported:
     return FORMAT.read(content)
 
 
-def ours(shown: ShownMechanism, count: int) -> ck.Motion:
+def ours(shown: PosedMechanism, count: int) -> ck.Motion:
     """The motion over so many steps from the pose drawn, a step being a second."""
     steps = np.arange(1, count + 1)
     values = {name: value + shown.rates[name] * steps for name, value in shown.values.items()}
@@ -54,7 +53,7 @@ def ours(shown: ShownMechanism, count: int) -> ck.Motion:
 
 def held(mechanism: ck.Mechanism, theirs: Any, count: int, tolerance: float = 1e-12) -> None:
     """Compare all joints of a mechanism with what pylinkage steps to."""
-    shown = shown_mechanism(mechanism)
+    shown = posed_mechanism(mechanism)
     motion, rows = ours(shown, count), list(theirs.step(count))
     assert np.all(motion.assembled)
     for k, joint in enumerate(theirs.joints):
@@ -66,7 +65,7 @@ def held(mechanism: ck.Mechanism, theirs: Any, count: int, tolerance: float = 1e
 @pytest.mark.parametrize("case", entries("pylinkage-json"), ids=lambda case: case["id"])
 def test_samples_have_their_positions(case: dict[str, Any]) -> None:
     mechanism = read(case["text"]).mechanism
-    expected, shown = case["expected"], shown_mechanism(mechanism)
+    expected, shown = case["expected"], posed_mechanism(mechanism)
     drawn = {one["id"]: complex(*one["position"]) for one in json.loads(case["text"])["joints"]}
     letters = {name: letter_at(shown, place, 1e-9) for name, place in drawn.items()}
     motion = ours(shown, len(expected["rows"]))
@@ -93,10 +92,10 @@ STEPPED = ("five-bar-pendulum", "hart-inversor", "sewing-machine-needle-drive",
 @pytest.mark.parametrize("name", STEPPED)
 def test_what_is_written_pylinkage_steps(name: str) -> None:
     mechanism = loaded(name)
-    shown = shown_mechanism(mechanism)
+    shown = posed_mechanism(mechanism)
     written = FORMAT.write(shown)
     back = read(written.text).mechanism
-    places = shown_mechanism(back)
+    places = posed_mechanism(back)
     for point in drawing_of(shown).points:
         assert (
             abs(places.place(back.carriers[point.key][0], point.key) - point.at) < 1e-12 * shown.mechanism.geometry.size
@@ -118,7 +117,7 @@ def test_the_catalog_comes_back_digit_by_digit() -> None:
             poses = {k: pose.entry((0, 0)) for k, pose in mechanism.drawn_poses.items()}
             rates = {drive.name: 1.0 for drive in mechanism.drives}
             whole: Any = SimpleNamespace(mechanism=mechanism)  # of the structure nothing else is asked
-            shown = ShownMechanism(whole, poses, rates, rates)
+            shown = PosedMechanism(whole, poses, rates, rates)
             back = read(FORMAT.write(shown).text).mechanism
         except InvalidInput:
             continue
@@ -165,7 +164,7 @@ def test_random_mechanisms_both_ways(seed: int) -> None:
     made = random_mechanism(np.random.default_rng(seed))
     found = from_pylinkage(made)
     assert found.mechanism == read(json.dumps(pl.mechanism_to_dict(made))).mechanism
-    written = FORMAT.write(shown_mechanism(found.mechanism), steps=6283)
+    written = FORMAT.write(posed_mechanism(found.mechanism), steps=6283)
     back = read(written.text).mechanism
     theirs = pl.mechanism_from_dict(json.loads(written.text))
     held(back, theirs, 4, 1e-10)
@@ -173,7 +172,7 @@ def test_random_mechanisms_both_ways(seed: int) -> None:
 
 
 def test_class_iii_groups_are_written_and_said_to_stop_pylinkage() -> None:
-    written = FORMAT.write(shown_mechanism(loaded("class-iii-six-bar")))
+    written = FORMAT.write(posed_mechanism(loaded("class-iii-six-bar")))
     assert any("B1, B2, B3 one after another (a group of class III)" in note for note in written.notes)
     theirs = pl.mechanism_from_dict(json.loads(written.text))
     back = from_pylinkage(theirs).mechanism
@@ -181,11 +180,11 @@ def test_class_iii_groups_are_written_and_said_to_stop_pylinkage() -> None:
     # it depends on the order of a set whether it says so or leaves the joints where they are
     with pytest.raises((ValueError, AssertionError), match=r"Triad|Mismatched"):
         held(back, theirs, 5, 1e-3)
-    assert np.all(ours(shown_mechanism(back), 5).assembled)
+    assert np.all(ours(posed_mechanism(back), 5).assembled)
 
 
 def test_bodies_of_several_links_are_one() -> None:
-    written = FORMAT.write(shown_mechanism(loaded("sewing-machine-needle-drive")))
+    written = FORMAT.write(posed_mechanism(loaded("sewing-machine-needle-drive")))
     assert [link["id"] for link in json.loads(written.text)["links"] if "crank" in link["id"]] == [
         "crank", "crank 2", "crank 3"]  # fmt: skip
     found = read(written.text)
@@ -212,7 +211,7 @@ def test_a_link_with_two_parallel_slots_slides() -> None:
     found = read(json.dumps(data)).mechanism
     assert [(pair.table, pair.members) for pair in found.written_pairs] == [("slides", ("frame", "block"))]
     held(found, pl.mechanism_from_dict(slider_crank()), 3)
-    written = FORMAT.write(shown_mechanism(found))
+    written = FORMAT.write(posed_mechanism(found))
     (pair,) = read(written.text).mechanism.written_pairs
     assert pair.table == "slides"
     held(read(written.text).mechanism, pl.mechanism_from_dict(json.loads(written.text)), 3)
@@ -318,18 +317,18 @@ def test_changed_lengths_are_told() -> None:
 def test_speeds_that_are_none_are_written_as_numbers(speed: float) -> None:
     bar = loaded("crank-rocker")
     made = bar.replace(ck.drive("crank", speed=speed))
-    links = json.loads(FORMAT.write(shown_mechanism(made)).text)["links"]
+    links = json.loads(FORMAT.write(posed_mechanism(made)).text)["links"]
     (rate,) = (link["angular_velocity"] for link in links if link["id"] == "crank")
     assert math.isfinite(rate)
 
 
 def test_what_pylinkage_cannot_say_is_refused_at_once() -> None:
     with pytest.raises(InvalidInput) as error:
-        FORMAT.write(shown_mechanism(loaded("geared-press")))
+        FORMAT.write(posed_mechanism(loaded("geared-press")))
     assert len(error.value.problems) > 1
     assert "mesh: a gear or belt" in str(error.value)
     with pytest.raises(InvalidInput, match="0 is no count"):
-        FORMAT.write(shown_mechanism(loaded("triple-rocker")), steps=0)
+        FORMAT.write(posed_mechanism(loaded("triple-rocker")), steps=0)
 
 
 @pytest.mark.parametrize(

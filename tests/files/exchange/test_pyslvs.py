@@ -7,8 +7,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.errors import InvalidInput
-from compoundkin.files.exchange.conversion import read, write
-from compoundkin.files.exchange.shown_mechanism import shown_mechanism
+from compoundkin.files.exchange.known_formats import read, write
+from compoundkin.files.exchange.posed_mechanism import posed_mechanism
 from tests.files.exchange.references import driven_by, entries, entry, holds
 
 EXPRESSION = entry("pyslvs_four_bar")["text"]
@@ -40,7 +40,7 @@ def test_an_input_is_the_direction_from_base_to_driven_joint(inputs):
     expected = entry("pyslvs_four_bar")["expected"]
     got = read(f"{EXPRESSION}\n{inputs}\n")
     assert any("'crank' is driven" in note for note in got.notes) == (not inputs)
-    (value,) = shown_mechanism(got.mechanism).values.values()
+    (value,) = posed_mechanism(got.mechanism).values.values()
     assert np.rad2deg(value) == pytest.approx(expected["drawn_input_deg"], abs=1e-12)
     motion = ck.solve(got.mechanism, {expected["driver"]: [value, 0.0]}, order=0)
     for name, letter in (("B", "B"), ("C", "C"), ("P", "E")):
@@ -50,7 +50,7 @@ def test_an_input_is_the_direction_from_base_to_driven_joint(inputs):
 
 def test_the_base_may_be_a_later_joint_of_its_link():
     got = read(f"{EXPRESSION}\n[(3, 2)]").mechanism
-    (value,) = shown_mechanism(got).values.values()
+    (value,) = posed_mechanism(got).values.values()
     assert got.drives[0].link == "rocker"
     assert value == pytest.approx(np.angle(10 + 40j))
     assert "# inputs: [(3, 2)]" in write(got, "pyslvs").text
@@ -64,8 +64,8 @@ def test_a_slide_is_driven_by_the_distance_of_its_point_from_where_it_is_drawn(j
     text = f"M[{joint}, J[R, P[3, 0], L[ram, rod]], J[R, P[6, 5], L[rod, arm]], J[R, P[0, 6], L[arm, ground]]]"
     got = read(f"{text}\n[(0, 0)]").mechanism
     for one in (got, read(write(got, "pyslvs-project").text).mechanism):
-        assert shown_mechanism(one).values == {"ram": 0.0}
-        motion = ck.solve(one, driven_by(shown_mechanism(one), 0.5), order=0)
+        assert posed_mechanism(one).values == {"ram": 0.0}
+        motion = ck.solve(one, driven_by(posed_mechanism(one), 0.5), order=0)
         moved = motion.points["A"].position.ravel()[-1] - 3
         assert moved == pytest.approx(way * np.exp(1j * np.deg2rad(20)))
 
@@ -74,7 +74,7 @@ def test_a_pin_in_a_slot_is_driven_along_it():
     text = "M[J[R, P[0, 0], L[ground, a]], J[R, P[3, 4], L[a, b]], J[RP, A[0], P[10, 0], L[ground, b]]]\n[(2, 2)]"
     got = read(text).mechanism
     for one in (got, read(write(got, "pyslvs").text).mechanism):
-        motion = ck.solve(one, driven_by(shown_mechanism(one), -1.0), order=0)
+        motion = ck.solve(one, driven_by(posed_mechanism(one), -1.0), order=0)
         assert motion.points["C"].position.ravel()[-1] == pytest.approx(9)
         off = motion.points["B"].position.ravel()[-1]
         assert (abs(off), abs(off - 9)) == (pytest.approx(5), pytest.approx(np.sqrt(65)))

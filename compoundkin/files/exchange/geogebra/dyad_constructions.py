@@ -1,12 +1,21 @@
-"""The constructions of the five dyads: each says by a sign which of its two ways it stands, and needs no order."""
+"""Dyads as constructions of circles and lines."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
-from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
-from compoundkin.files.exchange.geogebra.pair_sides import length_of, seen_from
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, along, at, named
+from compoundkin.files.exchange.geogebra.dragged_construction import Angle, Construction, PolarSum, along, at, named
+from compoundkin.files.exchange.geogebra.pair_sides import (
+    ConstructedBody,
+    NamedEnd,
+    PairSides,
+    PlacedBodies,
+    length_of,
+    seen_from,
+)
+from compoundkin.kinematics.groups.dyad import DyadSolver
+from compoundkin.kinematics.groups.pair_sides import Side
 
 # How far beyond its range rounding takes the cosine of an angle that is flat.
 _FLAT = "1E-9"
@@ -105,12 +114,6 @@ def rpp(dyad: DyadParts) -> None:
         dyad.hold(1, met, dyad.inner[1].way, block)
 
 
-# By the dyads' names.
-CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {
-    one.__name__.upper(): one for one in (rrr, rrp, rpr, prp, rpp)
-}
-
-
 def rounded(cosine: str) -> str:
     """Return a cosine without what rounding adds to that of a flat angle."""
     return f"If(1 < abs({cosine}) ∧ abs({cosine}) < 1 + {_FLAT}, sgn({cosine}), {cosine})"
@@ -130,3 +133,86 @@ def _line(dyad: DyadParts, start: str, angle: Angle, index: str) -> str:
     """Add the line of a guide, or one beside it; return its name."""
     ahead = at(start).plus(along("1", angle)).text
     return dyad.build.shape("line", ("g", f"{dyad.index}{index}"), "guide", "Line", (start, ahead))
+
+
+class DyadParts:
+    """A dyad to be constructed. `index` is that of its helpers, `mode` the number that says which of two ways."""
+
+    def __init__(self, placed: PlacedBodies, sides: PairSides, solver: DyadSolver, index: str, mode: str) -> None:
+        self.build: Construction = placed.build
+        self.placed, self.solver, self.index, self.mode = placed, solver, index, mode
+        self._sides = sides
+        self.outer = tuple(self._own(side) for side in solver.outer)
+        self.inner = tuple(self._own(side) for side in solver.inner)
+
+    def _own(self, side: Side) -> NamedEnd:
+        """Return a side in the axes of its body."""
+        end = self._sides.of(side.pair, side.own)
+        way, angle = self.placed.in_body(side.link, end.way), self.placed.angle_in_body(side.link, end.angle)
+        return end._replace(way=way, angle=angle)
+
+    def known(self, k: int) -> KnownSide:
+        """Return the outside of an outer pair."""
+        side = self.solver.outer[k]
+        end = self._sides.of(side.pair, 1 - side.own)
+        spot = self.placed.spot(side.other, end, side.pair.name)
+        return KnownSide(spot, self.placed.angle(side.other).plus(end.angle))
+
+    def pin(self, expression: str) -> str:
+        """Add the inner pin by an expression; return its name."""
+        if not self.letter:
+            return self.build.helping_point("Q", self.index, expression)
+        return self._noted(self.letter, self.build.point(self.letter, expression))
+
+    def pin_met(self, lines: tuple[str, str]) -> str:
+        """Add the inner pin where two lines meet; return its name."""
+        return self._met(self.letter, lines)
+
+    def runner_met(self, lines: tuple[str, str]) -> str:
+        """Add the second body's point where two lines meet; return its name."""
+        return self._met(self.inner[1].letter, lines)
+
+    def _met(self, letter: str, lines: tuple[str, str]) -> str:
+        if not letter or letter in self.placed.points:
+            return self.build.shape("point", ("Q", self.index), "helper", "Intersect", lines)
+        return self._noted(letter, self.build.met(letter, "Intersect", lines))
+
+    def _noted(self, letter: str, name: str) -> str:
+        self.placed.points[letter] = name
+        return name
+
+    @property
+    def letter(self) -> str:
+        """The letter of the inner pin."""
+        return self.inner[0].letter or self.inner[1].letter
+
+    def angle(self, k: int, text: str) -> Angle:
+        """Add the angle of a body; return it. Nothing is added for a body that only stands for a pair."""
+        return named(self.build.helper("θ", self.solver.bodies[k].links[0], text))
+
+    def hold(self, k: int, point: str, own: PolarSum, angle: Angle) -> None:
+        """Note where a body is, and add its points."""
+        self.placed.hold(self.solver.bodies[k], ConstructedBody(point, own, angle))
+
+    def is_real(self, k: int) -> bool:
+        """Return whether a body is one of the mechanism, not for a pair."""
+        return self.solver.bodies[k] in self.solver.group.bodies
+
+    def beside(self, point: str, way: PolarSum, angle: Angle, stem: str) -> str:
+        """Return the point a way off another one, that itself where there is none."""
+        if not way.terms:
+            return point
+        return self.build.helping_point(stem, self.index, at(point).plus(way.turned(angle)).text)
+
+
+# By the dyads' names.
+CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {
+    one.__name__.upper(): one for one in (rrr, rrp, rpr, prp, rpp)
+}
+
+
+class KnownSide(NamedTuple):
+    """The outside of an outer pair: its point, and its direction in the plane."""
+
+    point: str
+    angle: Angle

@@ -1,17 +1,31 @@
-"""One wheel, carrier or rack that a gear pair, a belt or a rack moves in proportion."""
+"""Driven links, gears and trains as constructions by angles."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
-from compoundkin.files.exchange.geogebra.dragged_construction import Construction
-from compoundkin.files.exchange.geogebra.pair_sides import NamedEnd, PairSides
-from compoundkin.files.exchange.geogebra.placed_bodies import Held, PlacedBodies
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, along, at, in_degrees, named
+from compoundkin.files.exchange.geogebra.dragged_construction import (
+    Angle,
+    Construction,
+    PolarSum,
+    along,
+    at,
+    in_degrees,
+    named,
+)
+from compoundkin.files.exchange.geogebra.pair_sides import (
+    ConstructedBody,
+    InsideBody,
+    NamedEnd,
+    PairSides,
+    PlacedBodies,
+)
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.pair_sides import Side
 from compoundkin.model.pairs import Pair
+from compoundkin.structure.mobility_count import Body, DrivenPair
 
 # The angle of a link with full turns counted, as an expression.
 Counted = Callable[[str], Angle]
@@ -66,11 +80,11 @@ def add_mounted(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, cou
     placed.hold(solver.group.bodies[0], held)
 
 
-def _turned(of: Mounted) -> Held:
+def _turned(of: Mounted) -> ConstructedBody:
     """Return a body on a pin: a wheel, a carrier, or the pinion of a rack."""
     text = _pinion(of) if of.higher.table == "racks" else _willis(of)
     angle = named(of.build.helper("θ", of.mount.link, text))
-    return Held(of.spot(), of.own.way, angle)
+    return ConstructedBody(of.spot(), of.own.way, angle)
 
 
 def gear_numbers(build: Construction, sides: PairSides, gear: Pair) -> tuple[list[str], str]:
@@ -112,7 +126,7 @@ def _pinion(of: Mounted) -> str:
     return f"{of.counted(rack).text} + ({phase} - ({gone})) / {radius} / °"
 
 
-def _shifted(of: Mounted) -> Held:
+def _shifted(of: Mounted) -> ConstructedBody:
     """Return a rack on a slide, moved by its pinion."""
     line, wheel = of.sides.of(of.higher, 0), of.sides.of(of.higher, 1)
     pinion = of.higher.members[1]
@@ -132,7 +146,7 @@ def _shifted(of: Mounted) -> Held:
         moved = of.build.helping_point("Q", of.mount.link, place)
     else:
         moved = of.placed.points[of.own.letter] = of.build.point(of.own.letter, place)
-    return Held(moved, of.own.way, angle)
+    return ConstructedBody(moved, of.own.way, angle)
 
 
 def _component(vector: str, angle: Angle) -> str:
@@ -146,3 +160,170 @@ def _rack_numbers(of: Mounted, line: NamedEnd, wheel: NamedEnd) -> tuple[str, st
     radius = of.build.dimension("r", of.higher.name, wheel.measure, "pitch radius, negative to the right of the rack")
     of.build.sizes[of.higher.name] = (radius,)
     return radius, of.build.dimension("p", of.higher.name, line.measure, "displacement where the pinion is at zero")
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A number as it is written, and its value, to choose divisors by."""
+
+    text: str
+    value: float
+
+
+@dataclass(frozen=True)
+class WheelEquation:
+    """A sum of angles with factors, and of what is known; it is zero."""
+
+    factors: Mapping[str, Factor]
+    known: str
+
+
+def is_train(solver: GroupSolver) -> bool:
+    """Return whether a group is wheels and carriers on as many pins and gears."""
+    pins, gears = _pins_and_gears(solver)
+    count = len(solver.group.bodies)
+    simple = all(pin.is_simple and pin.free_is_angle for pin in pins) and all(g.table in _GEARED for g in gears)
+    return simple and len(pins) == len(gears) == len(solver.group.links) == count
+
+
+def add_train(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, counted: Counted) -> None:
+    """Add the bodies of a train, one pin after another."""
+    pins, gears = _pins_and_gears(solver)
+    links = solver.group.links
+    equations = [_equation(placed.build, sides, gear, links, counted) for gear in gears]
+    angles = _solved(placed.build, equations, links)
+    bodies, waiting = {body.links[0]: body for body in solver.group.bodies}, list(links)
+    while waiting:
+        link, pin, own = next(found for name in waiting for found in _hung(name, pins, waiting))
+        other = pin.members[1 - own]
+        spot = placed.spot(other, sides.of(pin, 1 - own), pin.name)
+        placed.hold(bodies[link], ConstructedBody(spot, sides.of(pin, own).way, named(angles[link])))
+        waiting.remove(link)
+
+
+_GEARED = ("gears", "belts")
+
+
+def _pins_and_gears(solver: GroupSolver) -> tuple[list[Pair], list[Pair]]:
+    pairs = (*solver.group.inner, *solver.group.outer)
+    return [pair for pair in pairs if pair.held == 2], [pair for pair in pairs if pair.held != 2]
+
+
+def _hung(link: str, pins: Sequence[Pair], waiting: Sequence[str]) -> list[tuple[str, Pair, int]]:
+    """Return the pin by which a link hangs on one that is there, and its side of it."""
+    found = [(pin, pin.members.index(link)) for pin in pins if link in pin.members]
+    return [(link, pin, own) for pin, own in found if pin.members[1 - own] not in waiting][:1]
+
+
+def _equation(
+    build: Construction, sides: PairSides, gear: Pair, links: Sequence[str], counted: Counted
+) -> WheelEquation:
+    """Return Willis's equation of a gear pair: second - carrier + ratio (first - carrier) - phase."""
+    sizes, phase = gear_numbers(build, sides, gear)
+    ends = [sides.of(gear, k).measure for k in range(2)]
+    sign, value = ("-" if ends[0] * ends[1] < 0 else ""), ends[0] / ends[1]
+    ratio = build.helper("i", gear.name, f"{sign}{sizes[0]} / {sizes[1]}")
+    first, second, carrier = gear.members
+    all_of = {first: Factor(ratio, value), second: Factor("1", 1.0), carrier: Factor(f"(-1 - {ratio})", -1.0 - value)}
+    known = "".join(f" + {f.text} * ({counted(name).text})" for name, f in all_of.items() if name not in links)
+    return WheelEquation({name: f for name, f in all_of.items() if name in links}, f"-{phase}{known}")
+
+
+def _solved(build: Construction, equations: Sequence[WheelEquation], links: Sequence[str]) -> dict[str, str]:
+    """Return the angles by their names: each in turn is taken out of the equations that are left."""
+    left, taken = list(equations), list[tuple[str, WheelEquation]]()
+    for link in links:
+        best = max(left, key=lambda equation: abs(equation.factors[link].value) if link in equation.factors else 0.0)
+        left = [_without(build, one, best, link) for one in left if one is not best]
+        taken.append((link, best))
+    angles: dict[str, str] = {}
+    for link, equation in reversed(taken):
+        others = "".join(f" + {f.text} * {angles[name]}" for name, f in equation.factors.items() if name != link)
+        angles[link] = build.helper("θ", link, f"-({equation.known}{others}) / {equation.factors[link].text}")
+    return angles
+
+
+def _without(build: Construction, one: WheelEquation, best: WheelEquation, link: str) -> WheelEquation:
+    """Return an equation without one of its angles, by means of another."""
+    if link not in one.factors:
+        return one
+    by, own = best.factors[link], one.factors[link]
+    times = Factor(build.helper("k", link, f"{own.text} / {by.text}"), own.value / by.value)
+    zero = Factor("0", 0.0)
+    factors = {}
+    for name in dict.fromkeys([*one.factors, *best.factors]):
+        here, there = one.factors.get(name, zero), best.factors.get(name, zero)
+        if name != link:
+            text = build.helper("k", name, f"{here.text} - {times.text} * {there.text}")
+            factors[name] = Factor(text, here.value - times.value * there.value)
+    return WheelEquation(factors, build.helper("k", "", f"{one.known} - {times.text} * ({best.known})"))
+
+
+# From one side of a pair to the other by a value: offset and angle of the second link in the axes of the first.
+Step = Callable[[Construction, NamedEnd, NamedEnd, str, int, str], InsideBody]
+
+
+def turned(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
+    """Return a link turned about a pin."""
+    angle = Angle(((sign, value),)) if value else Angle()
+    return InsideBody(own.way.minus(other.way.turned(angle)), angle)
+
+
+def shifted(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
+    """Return a block moved along its guide, or a guide along its block."""
+    angle = own.angle.minus(other.angle)
+    step = along(value, own.angle)
+    moved = own.way.plus(step, sign)
+    return InsideBody(moved.minus(other.way.turned(angle)), angle)
+
+
+def rolled(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
+    """Return a wheel rolled along a line."""
+    radius = build.dimension("r", pair, other.measure, "radius of the wheel, negative to the right of its line")
+    build.sizes[pair] = (radius,)
+    phase = f" - {build.dimension('p', pair, own.measure, 'where the angle is zero')}" if own.measure else ""
+    angle = named(build.helper("θ", pair, f"-({value}{phase}) / {radius} / °"))
+    middle = own.way.plus(along(value, own.angle)).plus(along(radius, own.angle.plus(Angle(rest=90.0))))
+    return InsideBody(middle.minus(other.way.turned(angle)), angle)
+
+
+def rolled_around(build: Construction, own: NamedEnd, other: NamedEnd, value: str, sign: int, pair: str) -> InsideBody:
+    """Return a wheel rolled around a circle, by the direction between their middles."""
+    slow, inside = other.measure, other.measure < 0
+    radius = build.dimension("r", pair, abs(own.reach / slow), "radius of the wheel")
+    circle = build.dimension("R", pair, own.reach + (-1 if not inside else 1) * abs(own.reach / slow), "of the circle")
+    phase = build.dimension("p", pair, in_degrees(own.measure), "angle of the wheel at direction zero, degrees")
+    sign_of = "-" if inside else "+"
+    distance = build.helper("d", pair, f"{circle} {sign_of} {radius}")
+    angle = named(build.helper("θ", pair, f"(1 {sign_of} {circle} / {radius}) * {value} + {phase}"))
+    build.sizes[pair] = (radius,)
+    middle = own.way.plus(along(distance, named(value)))
+    return InsideBody(middle.minus(other.way.turned(angle)), angle)
+
+
+# By the kind's table in a mechanism file; pins are in none.
+STEPS: Mapping[str, Step] = {"": turned, "slides": shifted, "rollings": rolled, "circular_rollings": rolled_around}
+
+
+def is_driven_constructed(driven: DrivenPair) -> bool:
+    """Return whether a driven pair can be constructed."""
+    if driven.pair.table in ("rollings", "circular_rollings"):
+        return driven.link == driven.pair.members[1] and driven.pair.driven_by(driven.drive.link) > 0
+    return driven.pair.table in STEPS and len(driven.pair.members) == 2
+
+
+def inside_body(
+    build: Construction, body: Body, sides: PairSides, sliders: Mapping[str, str]
+) -> Mapping[str, InsideBody]:
+    """Return the links of a body in the axes of its base."""
+    found = {body.links[0]: InsideBody(PolarSum(), Angle())}
+    for driven in body.driven:
+        pair, second = driven.pair, int(driven.link == driven.pair.members[1])
+        value = "" if driven.is_passive else sliders[driven.drive.name]
+        sign = pair.driven_by(driven.drive.link) * (1 if second else -1)
+        own, other = sides.of(pair, 1 - second), sides.of(pair, second)
+        step = STEPS[pair.table](build, own, other, value, sign, pair.name)
+        parent = found[driven.parent]
+        offset = parent.offset.plus(step.offset.turned(parent.angle))
+        found[driven.link] = InsideBody(offset, parent.angle.plus(step.angle))
+    return found

@@ -1,4 +1,4 @@
-"""From a mechanism to a construction: dimensions, sliders, then group by group in solving order."""
+"""The construction of a mechanism: sliders for its drivers, then group by group."""
 
 from __future__ import annotations
 
@@ -7,27 +7,36 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
-from compoundkin.files.exchange.geogebra import driven_links, geared_constructions
-from compoundkin.files.exchange.geogebra.chosen_sides import ChosenSides, steps_of
-from compoundkin.files.exchange.geogebra.dragged_construction import Construction, SliderRange
-from compoundkin.files.exchange.geogebra.drawn_shapes import add_shapes
-from compoundkin.files.exchange.geogebra.dyad_constructions import CONSTRUCTIONS
-from compoundkin.files.exchange.geogebra.dyad_parts import DyadParts
-from compoundkin.files.exchange.geogebra.geared_trains import add_train, is_train
-from compoundkin.files.exchange.geogebra.pair_sides import PairSides
-from compoundkin.files.exchange.geogebra.placed_bodies import InsideBody, PlacedBodies
-from compoundkin.files.exchange.geogebra.point_dimensions import link_points
-from compoundkin.files.exchange.geogebra.polar_sums import Angle, Way, in_degrees
-from compoundkin.files.exchange.geogebra.slider_values import slider_values
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.files.exchange.geogebra import geared_constructions
+from compoundkin.files.exchange.geogebra import geared_constructions as driven_links
+from compoundkin.files.exchange.geogebra.dragged_construction import (
+    Angle,
+    Construction,
+    PolarSum,
+    SliderRange,
+    in_degrees,
+)
+from compoundkin.files.exchange.geogebra.dyad_constructions import CONSTRUCTIONS, DyadParts
+from compoundkin.files.exchange.geogebra.geared_constructions import add_train, is_train
+from compoundkin.files.exchange.geogebra.geogebra_xml import add_shapes
+from compoundkin.files.exchange.geogebra.pair_sides import (
+    ChosenSides,
+    InsideBody,
+    PairSides,
+    PlacedBodies,
+    link_points,
+    steps_of,
+)
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.groups import GroupSolver, as_dyad
+from compoundkin.kinematics.nearest_pose import turned_within
 from compoundkin.kinematics.solution import quietly_solved
 
 _TABLE = "write a table of its positions instead: `compoundkin solve NAME -o positions.csv`"
 
 
-def construction_of(shown: ShownMechanism) -> Construction:
+def construction_of(shown: PosedMechanism) -> Construction:
     """Return the construction. Raises InvalidInput listing all that cannot be constructed."""
     motion = ranged_motion(shown)
     build = Construction()
@@ -44,7 +53,7 @@ def construction_of(shown: ShownMechanism) -> Construction:
     return build
 
 
-def ranged_motion(shown: ShownMechanism) -> Motion:
+def ranged_motion(shown: PosedMechanism) -> Motion:
     """Return the motion over the drivers' own ranges."""
     motion = shown.motion
     if motion is not None and motion.inputs.poses > 1:
@@ -74,7 +83,7 @@ def _problems(motion: Motion, chosen: ChosenSides) -> Iterator[Problem]:
     """Yield all that no construction of circles, lines and ratios says."""
     for body in motion.structure.bodies:
         for driven in body.driven:
-            if not driven_links.is_constructed(driven):
+            if not driven_links.is_driven_constructed(driven):
                 yield Problem(driven.pair.name, f"a driven {driven.pair.title} has no construction", _TABLE)
     free: set[str] = set()  # links whose turns no driver tells
     for solver in motion.solving_order.solvers:
@@ -106,7 +115,7 @@ def _why_not(solver: GroupSolver) -> str:
 
 
 def _constructed(
-    build: Construction, motion: Motion, shown: ShownMechanism, sliders: Mapping[str, str], chosen: ChosenSides
+    build: Construction, motion: Motion, shown: PosedMechanism, sliders: Mapping[str, str], chosen: ChosenSides
 ) -> PlacedBodies:
     """Add all links, the driven ones of the frame first."""
     order, size = motion.solving_order, motion.size
@@ -132,7 +141,48 @@ def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chos
         return
     for body in dyad.bodies:
         if body not in solver.group.bodies:
-            placed.join(body, {body.links[0]: InsideBody(Way(), Angle())})
+            placed.join(body, {body.links[0]: InsideBody(PolarSum(), Angle())})
     index = dyad.letters[1]
     mode = chosen.mode(solver.index, index) if dyad.modes == 2 else ""
     CONSTRUCTIONS[dyad.name](DyadParts(placed, sides, dyad, index, mode))
+
+
+# What rounding leaves of values, as a part of their range: one at its end seems beyond it by so much.
+_ROUNDING = 1e-9
+
+
+# Points nearer to each other than this part of the size are one.
+_SAME = 1e-9
+
+
+def slider_values(shown: PosedMechanism, motion: Motion) -> tuple[Mapping[str, float], tuple[str, ...]]:
+    """Return where sliders begin, and the drivers whose ranges end before that.
+
+    Values are by driver, radians or lengths. An angle beyond its range is told by another one that differs by whole
+    turns and is the same pose, which it is not where wheels turn with it. Any other value beyond becomes that end of
+    the range which is nearest.
+    """
+    rows = {name: np.ravel(drive.value) for name, drive in motion.drives.items()}
+    wanted = {name: shown.values.get(name, float(row[0])) for name, row in rows.items()}
+    lifted = {name: turned_within(value, rows[name]) if motion.structure.driven_angles[name] else value
+              for name, value in wanted.items()}  # fmt: skip
+    if lifted != wanted and not _is_visible(shown, lifted):
+        lifted = wanted
+    found = {name: float(np.clip(value, rows[name].min(), rows[name].max())) for name, value in lifted.items()}
+    return found, tuple(
+        name for name, value in found.items() if abs(value - lifted[name]) > _ROUNDING * np.ptp(rows[name])
+    )
+
+
+def _is_visible(shown: PosedMechanism, values: Mapping[str, float]) -> bool:
+    """Return whether the pose at values is the one that is shown."""
+    try:
+        other = posed_mechanism(shown.mechanism, values)
+    except (InvalidInput, NotAssembled):
+        return False
+    size = shown.mechanism.geometry.size
+    return all(
+        abs(shown.place(link, letter) - other.place(link, letter)) <= _SAME * size
+        for link, own in shown.points.items()
+        for letter in own
+    )

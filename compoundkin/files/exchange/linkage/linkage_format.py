@@ -7,12 +7,11 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from compoundkin.files.exchange.content import MOST_BYTES, Content
-from compoundkin.files.exchange.contract import Readable, Writable
-from compoundkin.files.exchange.drawings.drawn_mechanism import mechanism_of
-from compoundkin.files.exchange.exchanged import Exported, Imported
+from compoundkin.files.exchange.contract import Exported, Imported, Readable, Writable
+from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.linkage.linkage_reader import drawing_in
 from compoundkin.files.exchange.linkage.linkage_writer import linkage_text
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.structure.assur_groups import roman
 
@@ -41,7 +40,7 @@ class LinkageFormat(Readable, Writable):
         found = mechanism_of(drawing, self.name, content.where)
         return replace(found, notes=(*found.notes, *_of_structure(found, hints)))
 
-    def write(self, shown: ShownMechanism, **options: Any) -> Exported:
+    def write(self, shown: PosedMechanism, **options: Any) -> Exported:
         """Return the file. Raises InvalidInput listing all that it cannot say."""
         text, notes = linkage_text(shown)
         return Exported(text.encode(), self.name, (*notes, *_beyond_dyads(shown.structure)))

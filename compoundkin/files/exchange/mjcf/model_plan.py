@@ -1,35 +1,47 @@
-"""What is written of a mechanism as a model: its tree, what closes its loops, and which joints are tied."""
+"""The plan of a MuJoCo model: bodies with masses, joints, constraints, and what the model cannot hold."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.files.exchange.mjcf.body_masses import BodyMass, ModelUnits, masses_of, units_of
-from compoundkin.files.exchange.mjcf.elementary_joints import GEARED, RACK, ElementaryJoint, JointChain, chain_of
 from compoundkin.files.exchange.mjcf.joint_tree import (
+    GEARED,
+    RACK,
     CarriedLink,
+    ElementaryJoint,
+    JointChain,
     JointTree,
+    chain_of,
     geared_tie,
     still_tie,
     straight_tie,
     tree_of,
 )
-from compoundkin.files.exchange.shown_mechanism import ShownMechanism
+from compoundkin.files.exchange.posed_mechanism import PosedMechanism
 from compoundkin.model.definition import pair_by_name
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.mass import Mass
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import constraint_scales
+from compoundkin.model.units import FORCES, LENGTHS, MASSES
 
 # Bodies that stand on each other deeper are refused: they are written and read one in another.
 _DEEPEST = 200
+
+
 # A pair is closed but for this part of the size, or this sine: what rounding of drawn points leaves.
 _CLOSED = 1e-9
+
+
 # MuJoCo's least mass and inertia (mjMINVAL).
 _LEAST = 1e-15
+
+
 # Mechanisms smaller than this (metres) are not held together: at 1.2e-6 m MuJoCo lets go of a four-bar's closing pin,
 # whatever its masses; a tenth of what is left is for links that are short beside others.
 _SMALLEST = 1e-5
@@ -56,7 +68,7 @@ class ModelPlan:
     the links that they belong to; `ties` are numbers by joints, whose sum with the joints' coordinates stays zero.
     """
 
-    shown: ShownMechanism
+    shown: PosedMechanism
     tree: JointTree
     units: ModelUnits
     masses: Mapping[str, BodyMass]
@@ -119,9 +131,9 @@ class ModelPlan:
         return self.masses[link].shared(count)
 
 
-def plan_of(shown: ShownMechanism) -> ModelPlan:
+def plan_of(shown: PosedMechanism) -> ModelPlan:
     """Return what is to be written of a mechanism. Raises InvalidInput listing all that no model can say."""
-    chains, problems = [], [*_led(shown)]
+    chains, problems = [], [*_prescribed(shown)]
     for pair in shown.structure.pairs:
         chain = None if pair.table in GEARED else chain_of(shown, pair)
         if chain is not None:
@@ -137,12 +149,12 @@ def plan_of(shown: ShownMechanism) -> ModelPlan:
     return _plan(shown, tree, driven)
 
 
-def _led(shown: ShownMechanism) -> Iterator[Problem]:
+def _prescribed(shown: PosedMechanism) -> Iterator[Problem]:
     for lead in shown.mechanism.prescribed_motions.values():
         yield Problem(lead.name, "it is led along a path: no actuator does that", "drive a pin or a slide")
 
 
-def _hold_bounds(shown: ShownMechanism, tree: JointTree) -> None:
+def _hold_bounds(shown: PosedMechanism, tree: JointTree) -> None:
     """Raise InvalidInput where links float, or stand too deep on each other."""
     floating = [name for name in shown.mechanism.links if name != FRAME and name not in tree.carried]
     problems = [Problem(name, "nothing joins it to the frame", "pin it, or lead it by a slide") for name in floating]
@@ -153,7 +165,7 @@ def _hold_bounds(shown: ShownMechanism, tree: JointTree) -> None:
         raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
 
 
-def _open(shown: ShownMechanism) -> Iterator[Problem]:
+def _open(shown: PosedMechanism) -> Iterator[Problem]:
     """Find pairs that are open in a drawing that could not be solved, so that no joint could be zero there."""
     size = shown.mechanism.geometry.size
     for pair in shown.structure.pairs if shown.motion is None else ():
@@ -165,7 +177,7 @@ def _open(shown: ShownMechanism) -> Iterator[Problem]:
             yield Problem(pair.name, what, "name a driver, or draw it exactly")
 
 
-def _small(shown: ShownMechanism, units: ModelUnits, masses: Mapping[str, BodyMass]) -> Iterator[Problem]:
+def _small(shown: PosedMechanism, units: ModelUnits, masses: Mapping[str, BodyMass]) -> Iterator[Problem]:
     """Find lengths and masses too small for MuJoCo."""
     size = shown.mechanism.geometry.size * units.length
     if size < _SMALLEST:
@@ -177,7 +189,7 @@ def _small(shown: ShownMechanism, units: ModelUnits, masses: Mapping[str, BodyMa
             yield Problem(name, what, f"both are to be above {_LEAST:g}: take larger units")
 
 
-def _plan(shown: ShownMechanism, tree: JointTree, driven: set[str]) -> ModelPlan:
+def _plan(shown: PosedMechanism, tree: JointTree, driven: set[str]) -> ModelPlan:
     units = units_of(shown.mechanism)
     masses, told = masses_of(shown, units)
     problems = [*_open(shown), *_small(shown, units, masses)]
@@ -206,3 +218,105 @@ def _plan(shown: ShownMechanism, tree: JointTree, driven: set[str]) -> ModelPlan
 
 def _carrying(tree: JointTree) -> Iterator[JointChain]:
     return (branch.chain for branch in tree.carried.values())
+
+
+# What a link weighs where nothing has a mass; a round number, so that it is seen to be made up.
+_MADE_UP = 1.0
+
+
+# What links without mass weigh beside others, as a part of all: MuJoCo moves nothing without mass, and steps badly
+# where one link is lighter than this.
+_SLIGHT = 1e-3
+
+
+# The inertia of links that have none, by their mass and the mechanism's size squared: where the mass is made up, it is
+# what makes them turn slowly enough for its steps; where it is given, it is next to nothing.
+_MADE_UP_TURN, _OF_POINT = 1e-2, 1e-6
+
+
+@dataclass(frozen=True)
+class ModelUnits:
+    """How many metres, kilograms and newtons a mechanism's units are, and words for it."""
+
+    length: float
+    mass: float
+    force: float
+    told: str
+
+    @property
+    def inertia(self) -> float:
+        """The factor of inertias."""
+        return self.mass * self.length**2
+
+
+def units_of(mechanism: Mechanism) -> ModelUnits:
+    """Return the units of a mechanism's model.
+
+    MuJoCo has none, but its defaults suit metres and kilograms; lengths of an unknown unit stay as they are.
+
+    >>> from compoundkin.files import load
+    >>> units_of(load("six-bar")).told
+    'lengths are in m (1 mm is 0.001 m), masses in kg, forces in N, torques in N m'
+    """
+    length = LENGTHS.get(mechanism.unit)
+    units = mechanism.units
+    mass, force = (1.0, 1.0) if units is None else (MASSES[units.mass], FORCES[units.force])
+    forces = "masses in kg, forces in N, torques in N m"
+    if length is None:
+        unit = f"in {mechanism.unit}, which is unknown, and" if mechanism.unit else "without a unit and"
+        return ModelUnits(1.0, mass, force, f"lengths are {unit} kept as they are; taken as m, {forces}")
+    kept = "" if length == 1.0 else f" (1 {mechanism.unit} is {length:.12g} m)"
+    return ModelUnits(length, mass, force, f"lengths are in m{kept}, {forces}")
+
+
+@dataclass(frozen=True)
+class BodyMass:
+    """A body's mass, mass centre and inertia about that, in kilograms and metres.
+
+    The centre is in the link's frame.
+    """
+
+    mass: float
+    centre: complex
+    inertia: float
+
+    def shared(self, parts: int) -> BodyMass:
+        """Return one of several equal parts at one place."""
+        return replace(self, mass=self.mass / parts, inertia=self.inertia / parts)
+
+
+def masses_of(shown: PosedMechanism, units: ModelUnits) -> tuple[Mapping[str, BodyMass], tuple[str, ...]]:
+    """Return the masses of all moving links, and in sentences what is made up."""
+    given = shown.mechanism.masses
+    moving = [name for name in shown.mechanism.links if name != FRAME]
+    without = [name for name in moving if name not in given]
+    whole = sum(float(first_entry(one.mass)) for one in given.values()) * units.mass
+    stand_in = (whole * _SLIGHT if given else _MADE_UP) / units.mass
+    masses = {name: _mass(shown, given.get(name) or Mass(name, stand_in), units) for name in moving}
+    points = [name for name, one in given.items() if not first_entry(one.inertia) and name in masses]
+    return masses, (*_stated(without, bool(given), stand_in * units.mass), *_mass_points(points))
+
+
+def _mass(shown: PosedMechanism, given: Mass, units: ModelUnits) -> BodyMass:
+    points = shown.points[given.link]
+    own = given.completed(points or {"": 0j})
+    mass = float(first_entry(own.mass))
+    centre = points[own.at] if isinstance(own.at, str) else complex(first_entry(own.at))
+    inertia, scale = float(first_entry(own.inertia)), mass * shown.mechanism.geometry.size**2
+    is_beside = bool(shown.mechanism.masses) and not given.is_complete
+    if is_beside or not inertia:
+        inertia = max(inertia, (_OF_POINT if given.is_complete else _MADE_UP_TURN) * scale)
+    return BodyMass(mass * units.mass, centre * units.length, inertia * units.inertia)
+
+
+def _stated(without: list[str], some: bool, mass: float) -> Iterator[str]:
+    if without and not some:
+        yield f"no masses are given: every link is a uniform bar or plate of {mass:g} kg"
+    elif without:
+        names = ", ".join(without)
+        yield f"no masses are given for {names}: {mass:.3g} kg each, a thousandth of all others, which shows in forces"
+
+
+def _mass_points(names: list[str]) -> Iterator[str]:
+    if names:
+        yield f"without inertia: {', '.join(names)}, given a millionth of mass times the mechanism's size squared"

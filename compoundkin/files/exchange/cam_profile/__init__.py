@@ -1,1 +1,0 @@
-"""Profiles of cams and curved slots as tables of points for machining."""

@@ -1,1 +1,0 @@
-"""linkage_sim: its JSON of bodies with coordinates of their own, read."""

@@ -1,1 +1,0 @@
-"""pylinkage: its JSON in and out, and its objects as they are."""

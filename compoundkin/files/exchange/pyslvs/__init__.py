@@ -1,1 +1,0 @@
-"""pyslvs and Pyslvs-UI: expressions of mechanisms and project files."""
