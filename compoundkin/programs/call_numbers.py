@@ -5,7 +5,7 @@ A `ReadyProgram` computes the results of such numbers: complex arrays of two nod
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import prod
@@ -18,7 +18,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.buffers import empty_arrays
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
-from compoundkin.kinematics.driver_values import RATES, Inputs, by_name, fit, inputs, times_of
+from compoundkin.kinematics.driver_values import Inputs, by_name, fit, inputs, times_of
 from compoundkin.kinematics.solution import warn_of_degrees
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive
@@ -30,11 +30,40 @@ from compoundkin.programs.graph.operation_graph import DRIVE, SEED, STEP, InputN
 from compoundkin.programs.graph.operations import INPUT
 
 
+class Call(NamedTuple):
+    """The arguments of a call of a compiled path, as its caller gives them; None is what the mechanism has itself."""
+
+    values: Any = None
+    dimensions: Mapping[str, Any] | None = None
+    speed: Any = None
+    acceleration: Any = None
+    jerk: Any = None
+    time: Any = None
+
+    def times(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Number | None:
+        """Return the times of the motion; None where values are given."""
+        mechanism = order.structure.mechanism
+        return times_of(mechanism, by_name(mechanism, self.values), self.time, drives)
+
+    def inputs(self, order: SolvingOrder, highest: int, drives: Sequence[Drive] | None = None) -> Inputs:
+        """Return values and rates of the drivers as `solve` takes them; raises InvalidInput for what does not fit.
+
+        Laws that jump report their corners up to the `highest` derivative only. `drives` may replace the mechanism's.
+        """
+        values = by_name(order.structure.mechanism, self.values)
+        times = self.times(order, drives)
+        driven = inputs(order, values, self.speed, self.acceleration, self.jerk, times, highest, drives)
+        if times is None:
+            warn_of_degrees(order.structure, driven)
+        return driven
+
+
 @dataclass(frozen=True)
 class CallNumbers:
-    """The inputs of a call by what they are.
+    """The inputs of a call.
 
-    Each is a float array (1 or designs, 1 or poses); `shape` is that of the call's arrays.
+    Each is a float array (1 or designs, 1 or poses); `shape` is that of the call's arrays, `still` are the
+    drivers' rates, (driver, order), that are zero.
     """
 
     given: Mapping[InputNumber, Number]
@@ -53,12 +82,12 @@ class CallNumbers:
 
     @property
     def marches(self) -> bool:
-        """Whether states are carried along the motion: the drivers' steps are told."""
+        """Whether states are carried along the motion: the drivers' steps are inputs."""
         return any(one.part == STEP for one in self.given)
 
     @property
     def is_seeded(self) -> bool:
-        """Whether something of it was found by solving."""
+        """Whether some of them are results of solving."""
         return any(one.kind == SEED for one in self.given)
 
     @property
@@ -67,10 +96,10 @@ class CallNumbers:
         return {one.name: value for one, value in self.given.items() if (one.kind, one.part) == (DRIVE, "0")}
 
     def strata(self, graph: OperationGraph) -> dict[InputNumber, int]:
-        """Return how each input varies; what is found outside varies by both."""
+        """Return how each input varies; inputs from outside the call vary by both."""
         known = {given: _stratum(array) for given, array in self.given.items()}
-        every = (node.given for node in graph.nodes if node.operation == INPUT and node.given)
-        return {given: known.get(given, BY_DESIGN | BY_POSE) for given in every}
+        inputs = (node.given for node in graph.nodes if node.operation == INPUT and node.given)
+        return {given: known.get(given, BY_DESIGN | BY_POSE) for given in inputs}
 
     def reshaped(self, shape: tuple[int, ...]) -> CallNumbers:
         """Return the same numbers in a shape with which theirs broadcasts."""
@@ -86,51 +115,25 @@ class CallNumbers:
 
     def arrays(self, flat: FlatProgram) -> list[Any]:
         """Return the arrays that a program reads."""
-        begun = {one.given for one in flat.carried}
-        return [None if k in begun else self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
+        carried = {one.given for one in flat.carried}
+        return [None if k in carried else self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
 
 
 def _stratum(array: Number) -> int:
     return (BY_DESIGN if array.shape[0] > 1 else 0) | (BY_POSE if array.shape[1] > 1 else 0)
 
 
-class DriverNumbers(NamedTuple):
-    """What a call says of the drivers; the highest rate asked for."""
-
-    values: Any
-    speed: Any = None
-    acceleration: Any = None
-    jerk: Any = None
-    time: Any = None
-    order: int = RATES - 1
-
-    def times(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Number | None:
-        """Return the times of the motion; None where values are given."""
-        mechanism = order.structure.mechanism
-        return times_of(mechanism, by_name(mechanism, self.values), self.time, drives)
-
-    def inputs(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Inputs:
-        """Return them as `solve` does; raises InvalidInput for what does not fit.
-
-        `drives` are others in the place of the mechanism's own.
-        """
-        values = by_name(order.structure.mechanism, self.values)
-        times = self.times(order, drives)
-        # laws that jump tell their corners at rates that are asked for only
-        found = inputs(order, values, self.speed, self.acceleration, self.jerk, times, self.order, drives)
-        if times is None:
-            warn_of_degrees(order.structure, found)
-        return found
-
-
-def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping[FreeDimension, Number]) -> CallNumbers:
-    """Return the numbers of a call; raises InvalidInput for what does not fit."""
+def call_numbers(
+    order: SolvingOrder, call: Call, dimensions: Mapping[FreeDimension, Number], highest: int
+) -> CallNumbers:
+    """Return the numbers of a call with these values of dimensions; raises InvalidInput for what does not fit."""
     moving = {one.owner for one in dimensions if one.is_of_law}
-    driven = motion.inputs(order, drives_of_call(order.structure.mechanism.drives, dimensions) if moving else None)
+    drives = drives_of_call(order.structure.mechanism.drives, dimensions) if moving else None
+    driven = call.inputs(order, highest, drives)
     shape = driven.shape
     for one, value in dimensions.items():
-        shape = _broadcast_shape(shape, np.shape(value), f"dimensions.{one.name}")
-    # a rate that a law's number may change is none that is zero
+        shape = broadcast_shape(shape, np.shape(value), f"dimensions.{one.name}")
+    # a rate that a free number of a law changes is not always zero
     steady = {name: vs for name, vs in driven.drives.items() if name not in moving}
     still = frozenset((name, k) for name, vs in steady.items() for k, v in enumerate(vs) if k and np.all(v == 0))
     fitted = fit(shape)
@@ -139,17 +142,14 @@ def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping
         given.update((each, np.array(part, float)) for each, part in one.parts_of(np.atleast_2d(fitted(place))))
     for name, numbers in driven.drives.items():
         for k, value in enumerate(numbers):
-            whole = fitted(_unfolded(value, driven.shape))
-            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.array(whole, float))
+            if np.ndim(value) > 1 and value.shape[0] > 1:  # (designs, 1 or poses), in the shape of the call
+                value = value.reshape(*driven.shape[:-1], value.shape[1])
+            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.array(fitted(value), float))
     return CallNumbers(given, shape, still)
 
 
-def _unfolded(value: Number, shape: tuple[int, ...]) -> Number:
-    """Return a driver's numbers (1 or designs, 1 or poses) in the shape that was given."""
-    return value.reshape(*shape[:-1], value.shape[1]) if np.ndim(value) > 1 and value.shape[0] > 1 else value
-
-
-def _broadcast_shape(shape: tuple[int, ...], other: tuple[int, ...], where: str) -> tuple[int, ...]:
+def broadcast_shape(shape: tuple[int, ...], other: tuple[int, ...], where: str) -> tuple[int, ...]:
+    """Return the shape to which two broadcast; raises InvalidInput, naming `where`."""
     try:
         return np.broadcast_shapes(shape, other)
     except ValueError:
@@ -164,32 +164,29 @@ def numbers_of_designs(numbers: CallNumbers, designs: Number) -> CallNumbers:
 
 
 def check_threads(threads: Any) -> None:
-    """Raise InvalidInput for what is no number of threads."""
+    """Raise InvalidInput unless `threads` is a whole number above zero."""
     if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
-        raise InvalidInput(Problem("threads", f"{short_repr(threads)} is no number of threads", "write 1, 2, ..."))
+        raise InvalidInput(Problem("threads", f"{short_repr(threads)} is not a number of threads", "write 1, 2, ..."))
 
 
 def output_arrays(out: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> dict[str, Number]:
-    """Return arrays that are to be written, as designs x poses.
+    """Return the caller's arrays for results as (designs, poses); raises InvalidInput for those that cannot hold them.
 
-    `outputs` tells which are vectors. Raises InvalidInput for those that cannot hold the results.
+    `outputs` tells which outputs are vectors.
     """
     if out is None:
         return {}
     if not isinstance(out, Mapping):
         raise InvalidInput(Problem("out", f"{short_repr(out)} is no table by name", 'write {"G.position": array}'))
     problems = [problem for name, array in out.items() if (problem := _array_problem(name, array, outputs, shape))]
-    problems = problems or list(_overlaps(out))
+    problems = problems or [
+        Problem(f"out.{other}", f"it is in the memory of out.{name}", "give an array to each output")
+        for (name, array), (other, known) in combinations(out.items(), 2)
+        if np.may_share_memory(array, known)
+    ]
     if problems:
         raise InvalidInput(problems)
     return {name: array.reshape(prod(shape[:-1]), *(shape[-1:] or (1,))) for name, array in out.items()}
-
-
-def _overlaps(out: Mapping[str, Number]) -> Iterator[Problem]:
-    """Yield arrays that would be written twice."""
-    for (name, array), (other, known) in combinations(out.items(), 2):
-        if np.may_share_memory(array, known):
-            yield Problem(f"out.{other}", f"it is in the memory of out.{name}", "give an array to each output")
 
 
 def _array_problem(name: Any, array: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> Problem | None:
@@ -200,7 +197,7 @@ def _array_problem(name: Any, array: Any, outputs: Mapping[str, bool], shape: tu
     remedy = f"give numpy.empty({shape}, {kind})"
     if not isinstance(array, np.ndarray) or array.dtype != kind:
         what = f"an array of {array.dtype}" if isinstance(array, np.ndarray) else short_repr(array)
-        return Problem(where, f"{what} is no array of {kind}", remedy)
+        return Problem(where, f"{what} is not an array of {kind}", remedy)
     if array.shape != shape:
         return Problem(where, f"its shape is {array.shape}, that of the call {shape}", remedy)
     if not (array.flags.writeable and array.flags.c_contiguous):
@@ -213,10 +210,7 @@ Name = TypeVar("Name")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReadyProgram(ShortRepr, Generic[Name]):
-    """A flat program made ready, and the nodes of what it finds by name.
-
-    Two nodes are the parts of a planar vector.
-    """
+    """A flat program with its runner, and the nodes of its results by name: one, or two of a planar vector."""
 
     flat: FlatProgram
     runner: Runner
@@ -231,7 +225,7 @@ class ReadyProgram(ShortRepr, Generic[Name]):
         backend: str | None,
         carried: Sequence[Carried] = (),
     ) -> ReadyProgram[Name]:
-        """Make the program of some nodes for numbers of some form."""
+        """Make the program that computes some nodes of numbers of this form."""
         wanted = [k for parts in nodes.values() for k in parts]
         flat = flat_program(graph, wanted, numbers.strata(graph), carried)
         return cls(flat, runner_of(flat, backend), nodes)
@@ -239,18 +233,15 @@ class ReadyProgram(ShortRepr, Generic[Name]):
     def run(
         self, numbers: CallNumbers, threads: int = 1, given: Mapping[Name, Number] = MappingProxyType({})
     ) -> dict[Name, Number]:
-        """Compute everything, (1 or designs, 1 or poses) each.
-
-        Arrays that are `given`, designs x poses, are written.
-        """
+        """Compute all results, (1 or designs, 1 or poses) each; arrays `given`, designs x poses, are written."""
         rows: list[Number] = []
         narrow: list[tuple[Number, Number]] = []
         shapes = {name: [self.flat.shape(k, *numbers.extent) for k in parts] for name, parts in self.nodes.items()}
         wanted = [name for name in self.nodes if name not in given]
         kinds = [np.dtype(complex if len(self.nodes[name]) > 1 else float) for name in wanted]
         made = empty_arrays([(np.broadcast_shapes(*shapes[n]), kind) for n, kind in zip(wanted, kinds, strict=True)])
-        found = {**dict.fromkeys(self.nodes), **dict(zip(wanted, made, strict=True)), **given}
-        for name, whole in found.items():
+        results = {**dict.fromkeys(self.nodes), **dict(zip(wanted, made, strict=True)), **given}
+        for name, whole in results.items():
             for shape, part in zip(shapes[name], (whole.real, whole.imag), strict=False):
                 rows.append(part if shape == whole.shape else np.empty(shape))
                 if shape != whole.shape:
@@ -258,4 +249,4 @@ class ReadyProgram(ShortRepr, Generic[Name]):
         self.runner(numbers.arrays(self.flat), rows, numbers.extent, threads)
         for part, row in narrow:
             part[...] = row
-        return found
+        return results

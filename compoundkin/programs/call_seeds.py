@@ -26,24 +26,22 @@ from compoundkin.programs.solved_designs import DesignSolver, seed_values, solve
 
 # Without compiled code a march of fewer designs than these takes longer than solving them.
 FEW_DESIGNS = 32
-
-
-# So many motions are remembered by how they begin.
+# The starts of so many motions are remembered.
 STARTS_KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
 class CallSeeds:
-    """What finds the seeds of a path's calls.
+    """The seeds of a path's calls.
 
-    `by` solves designs; `own` are the inputs that are the path's own dimensions. What is found of these is kept.
+    `by` solves designs; `own` are the inputs for the path's own dimensions, whose starts are remembered.
     """
 
     by: DesignSolver
     own: Mapping[InputNumber, Number]
     backend: str | None
-    _begun: dict[Any, MarchStart] = field(default_factory=dict)
-    _ways: dict[Any, DesignContinuation] = field(default_factory=dict)
+    _known_starts: dict[Any, MarchStart] = field(default_factory=dict)
+    _continuations: dict[Any, DesignContinuation] = field(default_factory=dict)
 
     def added(self, path: RecordedPath, numbers: CallNumbers) -> CallNumbers:
         """Return the numbers of a call with the seeds that its program needs."""
@@ -53,61 +51,64 @@ class CallSeeds:
         is_quick = designs >= FEW_DESIGNS or chosen_back_end(self.backend) != "numpy"
         if not (path.can_march and poses > 1 and is_quick):
             sides = {side_of(solver): np.zeros((1, 1)) for solver in (path.march.solvers if path.march else ())}
-            found = _solved_seeds(path.seeds, numbers, self.by, path.mechanism.recording.signs)
-            return replace(numbers, given={**numbers.given, **found, **sides})
-        starts = {start_of(one) if one != HOLDS else one: value for one, value in self._starts(path, numbers).items()}
-        return replace(numbers, given={**numbers.given, **starts, **_steps(numbers)})
+            seeds = _solved_seeds(path.seeds, numbers, self.by, path.mechanism.recording.signs)
+            return replace(numbers, given={**numbers.given, **seeds, **sides})
+        given = dict(numbers.given)
+        for one, value in self._starts(path, numbers).items():
+            given[start_of(one) if one != HOLDS else one] = value
+        for name, value in numbers.driver_values.items():
+            given[InputNumber(DRIVE, name, STEP)] = np.diff(value, axis=1, append=value[:, -1:])
+        return replace(numbers, given=given)
 
     def _starts(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
-        """Return the seeds at first poses: carried from the path's own dimensions, or solved of designs far off."""
-        signs, first = path.mechanism.recording.signs, _first_poses(numbers)
+        """Return the seeds at first poses: continued from the path's own dimensions, or solved for designs too far."""
+        signs, designs = path.mechanism.recording.signs, numbers.extent[0]
+        first = replace(numbers, given={k: value[:, :1] for k, value in numbers.given.items()}, shape=(designs, 1))
         drives = {one: value for one, value in numbers.given.items() if one.kind == DRIVE}
         if any(value.shape[0] > 1 for value in drives.values()) or any(map(np.ndim, self.own.values())):
             return _solved_seeds(path.seeds, first, self.by, signs)
         key = path.seeds, *(value.tobytes() for value in numbers.driver_values.values())
-        begun = self._begun.get(key)
-        if begun is None:
-            if len(self._begun) >= STARTS_KEPT:
-                self._begun.clear()
-            begun = self._begun[key] = self._begin(path, numbers)
-        found = {one: np.full(first.extent, np.nan) for one in path.seeds} | {HOLDS: np.zeros((first.extent[0], 1))}
-        far = np.ones(first.extent[0], dtype=bool)
-        if begun.holds:
-            ends, near = self._way(path, continuation_numbers(numbers, self.own, begun.states))
-            found |= {**{one: ends[one].copy() for one in path.seeds}, HOLDS: near[:, None].astype(float)}
+        start = self._known_starts.get(key)
+        if start is None:
+            if len(self._known_starts) >= STARTS_KEPT:
+                self._known_starts.clear()
+            start = self._known_starts[key] = self._own_start(path, numbers)
+        seeds = {one: np.full(first.extent, np.nan) for one in path.seeds} | {HOLDS: np.zeros((designs, 1))}
+        far = np.ones(designs, dtype=bool)
+        if start.holds:
+            steps = continuation_numbers(numbers, self.own, start.states)
+            # the form tells for which zero rates the path is recorded
+            if steps.form not in self._continuations:
+                self._continuations[steps.form] = DesignContinuation.of(path, steps, self.backend)
+            ends, near = self._continuations[steps.form].ends(steps)
+            seeds |= {**{one: ends[one].copy() for one in path.seeds}, HOLDS: near[:, None].astype(float)}
             far = ~near
-        if begun.is_first and far.any():
-            own = _solved_seeds(path.seeds, numbers_of_designs(first, np.flatnonzero(far)), self.by, signs)
-            for one, value in own.items():
-                found[one][far] = value
-        return found
+        if start.is_first and far.any():
+            solved = _solved_seeds(path.seeds, numbers_of_designs(first, np.flatnonzero(far)), self.by, signs)
+            for one, value in solved.items():
+                seeds[one][far] = value
+        return seeds
 
-    def _begin(self, path: RecordedPath, numbers: CallNumbers) -> MarchStart:
+    def _own_start(self, path: RecordedPath, numbers: CallNumbers) -> MarchStart:
         """Solve the motion of the path's own dimensions."""
         own = {one: np.full((1, 1), value) for one, value in self.own.items()}
         whole = replace(numbers, given={**numbers.given, **own}, shape=(1, numbers.extent[1]))
-        for _, told in solve_in_parts(self.by, whole, np.arange(1)):
-            if told is not None:
-                states = {one: value[:, :1] for one, value in seed_values(path.seeds, told.motion).items()}
-                holds = _in_configuration(told.motion, path.mechanism.recording.signs, slice(0, 1))
-                tracker = told.motion.tracker
-                # a design that cannot be assembled where it is drawn is not solved, whatever it could do at its motion
+        for _, solved in solve_in_parts(self.by, whole, np.arange(1)):
+            if solved is not None:
+                states = {one: value[:, :1] for one, value in seed_values(path.seeds, solved.motion).items()}
+                holds = _in_configuration(solved.motion, path.mechanism.recording.signs, slice(0, 1))
+                tracker = solved.motion.tracker
+                # `solve` gives up a design that cannot be assembled as drawn, even if it could along its motion
                 is_drawn = tracker.approach_path.poses == 1
                 return MarchStart(states, bool(holds[0]) and is_drawn, tracker.at == 0.0)
         return MarchStart({}, False, False)
 
-    def _way(self, path: RecordedPath, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
-        # one path is recorded for the rates that are zero, which the form tells
-        if numbers.form not in self._ways:
-            self._ways[numbers.form] = DesignContinuation.of(path, numbers, self.backend)
-        return self._ways[numbers.form].ends(numbers)
-
 
 class MarchStart(NamedTuple):
-    """How the path's own dimensions begin their motion.
+    """The start of the motion with the path's own dimensions.
 
-    Their states at its first pose; whether they are in the program's configuration there; whether it is the pose to
-    which solving comes first.
+    `states` are those at its first pose, which `holds` where they have the program's configuration, and `is_first`
+    where solving reaches it before the other poses.
     """
 
     states: Mapping[InputNumber, Number]
@@ -118,15 +119,14 @@ class MarchStart(NamedTuple):
 def _solved_seeds(
     seeds: tuple[InputNumber, ...], numbers: CallNumbers, by: DesignSolver, signs: Mapping[int, int]
 ) -> dict[InputNumber, Number]:
-    """Return seeds and whether they hold, read off the motions of all designs."""
-    found = {one: np.full(numbers.extent, np.nan) for one in seeds}
-    holds = np.zeros((numbers.extent[0], 1))
-    for designs, told in solve_in_parts(by, numbers, np.arange(numbers.extent[0])):
-        if told:
-            holds[designs, 0] = _in_configuration(told.motion, signs)
-            for one, value in seed_values(seeds, told.motion).items():
-                found[one][designs] = value
-    return {**found, HOLDS: holds}
+    """Return seeds and whether they hold, read off the solved motions of all designs."""
+    values = {**{one: np.full(numbers.extent, np.nan) for one in seeds}, HOLDS: np.zeros((numbers.extent[0], 1))}
+    for designs, solved in solve_in_parts(by, numbers, np.arange(numbers.extent[0])):
+        if solved:
+            values[HOLDS][designs, 0] = _in_configuration(solved.motion, signs)
+            for one, value in seed_values(seeds, solved.motion).items():
+                values[one][designs] = value
+    return values
 
 
 def _in_configuration(motion: Motion, signs: Mapping[int, int], where: slice = slice(None)) -> Number:
@@ -139,32 +139,17 @@ def _in_configuration(motion: Motion, signs: Mapping[int, int], where: slice = s
     return good
 
 
-def _first_poses(numbers: CallNumbers) -> CallNumbers:
-    given = {one: value[:, :1] for one, value in numbers.given.items()}
-    return replace(numbers, given=given, shape=(numbers.extent[0], 1))
-
-
-def _steps(numbers: CallNumbers) -> dict[InputNumber, Number]:
-    """Return how far drivers go from each pose to the next."""
-    values = numbers.driver_values.items()
-    return {InputNumber(DRIVE, name, STEP): np.diff(value, axis=1, append=value[:, -1:]) for name, value in values}
-
-
 # So many steps lead from a path's own dimensions to a design's.
 CONTINUATION_STEPS = 8
-
-
-# Designs whose groups come farther from the path's own (parts of the size, radians) are solved: of several
-# configurations theirs is the one nearest to the drawing, which may be another one there.
+# Designs whose groups differ by more from the path's own (parts of the size, radians) are solved: of several
+# configurations they have the one nearest to the drawing, which may be another one there.
 FAR_STATE = 0.2
+_MARGIN, _CERTAIN = InputNumber("least", "margin"), InputNumber("least", "certain")
 
 
 @dataclass(frozen=True)
 class DesignContinuation(ShortRepr):
-    """A program that carries states of groups from dimension to dimension.
-
-    The drivers rest at one pose.
-    """
+    """A program that continues states of groups over changing dimensions, at one pose of the drivers."""
 
     program: ReadyProgram[InputNumber]
     weights: Mapping[InputNumber, float]
@@ -186,32 +171,23 @@ class DesignContinuation(ShortRepr):
         return cls(ReadyProgram.of(graph, nodes, numbers, backend, carried), weights)
 
     def ends(self, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
-        """Return the states at the ends of the way, and which designs are near.
-
-        They are (designs, 1).
-        """
-        found = {one: np.broadcast_to(value, numbers.extent) for one, value in self.program.run(numbers).items()}
-        # on the way states need not be exact, but must not stray
-        near = (found.pop(_CERTAIN)[:, -1] >= NEAR) & (found.pop(_MARGIN).min(axis=1) >= NEAR)
+        """Return the states at the end of the continuation, (designs, 1), and which designs are near enough."""
+        states = {one: np.broadcast_to(value, numbers.extent) for one, value in self.program.run(numbers).items()}
+        # intermediate states need not be exact, but must not stray
+        near = (states.pop(_CERTAIN)[:, -1] >= NEAR) & (states.pop(_MARGIN).min(axis=1) >= NEAR)
         for one, weight in self.weights.items():
-            value = np.concatenate([numbers.given[start_of(one)], found[one]], axis=1) * weight
+            value = np.concatenate([numbers.given[start_of(one)], states[one]], axis=1) * weight
             near = near & (np.abs(np.diff(value, axis=1)).max(axis=1) <= STRAY)
             near = near & (np.abs(value[:, -1] - value[:, 0]) <= FAR_STATE)
-        for one, value in found.items():
+        for one, value in states.items():
             near = near & (one in self.weights or np.all(value * value[:, :1] > 0.0, axis=1))
-        return {one: found[one][:, -1:] for one in self.weights}, near
-
-
-_MARGIN, _CERTAIN = InputNumber("least", "margin"), InputNumber("least", "certain")
+        return {one: states[one][:, -1:] for one in self.weights}, near
 
 
 def continuation_numbers(
     numbers: CallNumbers, own: Mapping[InputNumber, Number], states: Mapping[InputNumber, Number]
 ) -> CallNumbers:
-    """Return the numbers of the way.
-
-    It is one pose, with the path's own dimensions and states first.
-    """
+    """Return the numbers of a continuation: one pose, with the path's own dimensions and states first."""
     designs, part = numbers.extent[0], np.minimum(np.arange(CONTINUATION_STEPS + 2.0) / CONTINUATION_STEPS, 1.0)
     given = {one: value[:, :1] for one, value in numbers.given.items()}
     for one, first in own.items():

@@ -11,11 +11,10 @@ from typing import Any
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.configuration import SIGNS, Configuration, named
-from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.call_numbers import check_threads, output_arrays
+from compoundkin.programs.call_numbers import Call, check_threads, output_arrays
 from compoundkin.programs.derivatives.path_objective import ObjectivePose, PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities, SensitivityPrograms
 from compoundkin.programs.dimensions import (
@@ -31,7 +30,6 @@ from compoundkin.programs.path_programs import PathPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.quick_calls import QuickCalls
 from compoundkin.programs.recording.recorded_motion import output_of
-from compoundkin.programs.solved_designs import ProgramConfiguration
 from compoundkin.programs.sources.path_text import WritesSources
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -51,8 +49,8 @@ def compile(
 
     `outputs` are quantities by name ("G.position", "bar.angle"), `free` the dimensions that every call may change
     ("crank.D" a point of a link). The assembly modes are those that `solve` takes for the mechanism as it stands, at
-    its own driver values or `values`, or with `modes` and `hint`; they are kept for all designs. Raises UnknownName for
-    what there is not, and what `solve` raises.
+    its own driver values or `values`, or with `modes` and `hint`; all designs have them. Raises UnknownName for
+    names that the mechanism does not have, and what `solve` raises.
 
     >>> import numpy as np
     >>> from compoundkin.model.elements import drive, link
@@ -67,16 +65,18 @@ def compile(
     freed = (free,) if isinstance(free, str) else tuple(free)
     chosen_back_end(backend)
     with warnings.catch_warnings():
-        # what is not assembled or has few digits is told at each call
+        # each call warns of unassembled poses and of rates with few digits
         warnings.simplefilter("ignore")
         motion = solve(mechanism, values, order=0, modes=modes, hint=hint)
-    found = tuple(output_of(motion, name) for name in names)
     stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
     dimensions = free_dimensions(stated, freed)
     check_single_values(stated, dimensions)
     check_redundant_pairs(motion, stated, dimensions)
     request = {"mechanism": mechanism, "outputs": names, "free": freed, "values": values, "modes": modes, "hint": hint}
-    return CompiledPath(PathPrograms(motion, found, dimensions, backend), {**request, "backend": backend})
+    return CompiledPath(
+        PathPrograms(motion, tuple(output_of(motion, name) for name in names), dimensions, backend),
+        {**request, "backend": backend},
+    )
 
 
 def compile_request(request: Mapping[str, Any]) -> CompiledPath:
@@ -89,7 +89,7 @@ class CompiledPath(WritesSources):
     """A mechanism compiled for some outputs, in one configuration.
 
     It is called with driver values and free dimensions. `names` are its outputs, `free` its dimensions, `modes` the
-    name of its configuration, `backend` what computes it. It is pickled as what it was made of, and compiled anew.
+    name of its configuration, `backend` what computes it. It is pickled as the arguments of `compile`.
     """
 
     programs: PathPrograms
@@ -136,13 +136,13 @@ class CompiledPath(WritesSources):
         >>> compile(crank, "B")([0.0])["B"].tolist()
         [(2+0j)]
         """
-        rates = speed, acceleration, jerk
         if out is None and time is None and self._quick is not None:
-            found = self._quick.found(values, dimensions, rates, threads)
-            if found is not None:
-                return found
+            quick = self._quick.values(values, dimensions, (speed, acceleration, jerk), threads)
+            if quick is not None:
+                return quick
         check_threads(threads)
-        programs, numbers = self.programs, self.programs.numbers(values, dimensions, *rates, time=time)
+        programs = self.programs
+        numbers = programs.numbers(Call(values, dimensions, speed, acceleration, jerk, time))
         return programs.computed(numbers, threads, output_arrays(out, programs.outputs_of(numbers), numbers.shape))
 
     @cached_property
@@ -155,7 +155,13 @@ class CompiledPath(WritesSources):
 
         It is the name, or where a group has no signs the configuration itself.
         """
-        return program_modes(self.programs.reference, self.programs.configuration)
+        reference, signs = self.programs.reference, self.programs.signs
+        # numbers of configurations are those at one pose: where a group has them, the configuration itself is given
+        numbered = first_configuration(reference, 0) if reference.solving_order.numbered else None
+        if numbered is not None:
+            return numbered
+        two = {solver.index for solver in reference.solving_order.solvers if solver.modes == 2}
+        return named(reference.structure, {k: SIGNS[sign] for k, sign in signs.items() if k in two})
 
     @checked
     def mechanism(self, dimensions: Mapping[str, Any] | None = None) -> Mechanism:
@@ -214,8 +220,8 @@ class CompiledPath(WritesSources):
         >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
         ([1.0], [2.0])
         """
-        numbers = self.programs.numbers(values, dimensions, speed, acceleration, jerk, time, is_sloped=True)
-        return self.sensitivities.found(numbers, by, threads)
+        numbers = self.programs.numbers(Call(values, dimensions, speed, acceleration, jerk, time), with_slopes=True)
+        return self.sensitivities.computed(numbers, by, threads)
 
     @cached_property
     def sensitivities(self) -> SensitivityPrograms:
@@ -227,8 +233,6 @@ class CompiledPath(WritesSources):
         return jax_path(self.programs)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        pass  # joined
-
         return compile_request, (dict(self.request),)
 
     def __copy__(self) -> CompiledPath:
@@ -240,15 +244,3 @@ class CompiledPath(WritesSources):
     def __repr__(self) -> str:
         of = f" of {', '.join(self.free)}" if self.free else ""
         return f"CompiledPath({self.programs.reference.mechanism.title!r}: {', '.join(self.names)}{of})"
-
-
-def program_modes(reference: Motion, configuration: ProgramConfiguration) -> str | Configuration:
-    """Return the signs of all groups that have some, named as configurations are.
-
-    Numbers of configurations are those at one pose: where a group has them it is the configuration itself.
-    """
-    near = first_configuration(reference, 0) if reference.solving_order.numbered else None
-    if near is not None:
-        return near
-    two = {solver.index for solver in reference.solving_order.solvers if solver.modes == 2}
-    return named(reference.structure, {k: SIGNS[sign] for k, sign in configuration.signs.items() if k in two})

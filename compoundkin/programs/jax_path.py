@@ -24,6 +24,7 @@ from compoundkin.kinematics.change_points import NEAR
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector
+from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.graph.operation_graph import DRIVE, SEED, InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS, TOTAL
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
@@ -61,8 +62,9 @@ class JaxPath(ShortRepr):
         """
         import jax.numpy as jnp
 
-        drives = self._drives(values, dict(zip(RATES, (speed, acceleration, jerk), strict=True)))
-        given = {**drives, **self._dimensions(dimensions or {})}
+        call = Call(values, dimensions, speed, acceleration, jerk)
+        drives = self._drives(call)
+        given = {**drives, **self._dimensions(call)}
         still = frozenset(
             (one.name, int(one.part)) for one, value in drives.items() if one.part > "0" and _is_known_zero(value)
         )
@@ -70,51 +72,50 @@ class JaxPath(ShortRepr):
         graph, wanted = path.mechanism.graph, _output_nodes(path)
         shape = common_shape(given)
         used = {k: graph.nodes[k].given for k in graph.inputs(wanted)}
-        *found, failed, margin = evaluate_graph(
-            graph, wanted, {k: given[one] for k, one in used.items() if one is not None}
-        )
+        arrays = {k: given[one] for k, one in used.items() if one is not None}
+        *values_of_nodes, failed, margin = evaluate_graph(graph, wanted, arrays)
         assembled = jnp.broadcast_to(failed == 0.0, shape)
-        parts = iter(jnp.where(assembled, value, jnp.nan) for value in found)
-        whole = {}
+        parts = iter(jnp.where(assembled, value, jnp.nan) for value in values_of_nodes)
+        outputs = {}
         for output, nodes in zip(self.path.outputs, path.nodes, strict=True):
             value = _as_output(tuple(next(parts) for _ in nodes))
-            whole[output.name] = continuous_angle(value) if output.is_wrapped else value
-        return {**whole, ASSEMBLED: assembled, CERTAIN: self._certain(jnp.broadcast_to(margin, shape), drives)}
+            outputs[output.name] = continuous_angle(value) if output.is_wrapped else value
+        return {**outputs, ASSEMBLED: assembled, CERTAIN: self._certain(jnp.broadcast_to(margin, shape), drives)}
 
-    def _drives(self, values: Any, rates: Mapping[str, Any]) -> dict[InputNumber, Any]:
+    def _drives(self, call: Call) -> dict[InputNumber, Any]:
         """Return the drivers' values and rates."""
         mechanism = self.path.reference.mechanism
-        values = by_name(mechanism, values) or {}
         drives = {drive.name: drive for drive in mechanism.drives}
-        _check_names("values", values, drives)
-        found = {}
+        values, *rates = (by_name(mechanism, getattr(call, word)) or {} for word in ("values", *RATES))
+        for word, given in zip(("values", *RATES), (values, *rates), strict=True):
+            _check_names(word, given, drives)
+        inputs = {}
         for name, drive in drives.items():
             value = values.get(name, drive.values)
             if value is None:
-                raise InvalidInput(Problem(f"values.{name}", "the driver is given no values", f"{{{name!r}: angles}}"))
-            found[InputNumber(DRIVE, name, "0")] = jax_number(f"values.{name}", value)
+                raise InvalidInput(Problem(f"values.{name}", "the driver has no values", f"{{{name!r}: angles}}"))
+            inputs[InputNumber(DRIVE, name, "0")] = jax_number(f"values.{name}", value)
             for k, word in enumerate(RATES, 1):
-                given = {} if rates[word] is None else by_name(mechanism, rates[word]) or {}
-                _check_names(word, given, drives)
-                found[InputNumber(DRIVE, name, str(k))] = given.get(name, getattr(drive, word))
-        return found
+                inputs[InputNumber(DRIVE, name, str(k))] = rates[k - 1].get(name, getattr(drive, word))
+        return inputs
 
-    def _dimensions(self, dimensions: Mapping[str, Any]) -> dict[InputNumber, Any]:
-        """Return the free dimensions, their own values where none are given."""
+    def _dimensions(self, call: Call) -> dict[InputNumber, Any]:
+        """Return the free dimensions; those left out have the mechanism's own values."""
         import jax.numpy as jnp
 
-        free = [one for one in self.path.dimensions if not one.is_of_law]
-        _check_names("dimensions", dimensions, [one.name for one in free])
-        found: dict[InputNumber, Any] = {}
+        given, free = call.dimensions or {}, [one for one in self.path.dimensions if not one.is_of_law]
+        _check_names("dimensions", given, [one.name for one in free])
+        inputs: dict[InputNumber, Any] = {}
         for one in free:
-            own = one.name not in dimensions
-            value = self.path.stated.own(one) if own else dimensions[one.name]
-            value = value if own else jax_number(f"dimensions.{one.name}", value, one.is_vector)
-            found.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
-        return found
+            if one.name in given:
+                value = jax_number(f"dimensions.{one.name}", given[one.name], one.is_vector)
+            else:
+                value = self.path.stated.own(one)
+            inputs.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
+        return inputs
 
     def _certain(self, margin: Any, drives: Mapping[InputNumber, Any]) -> Any:
-        """Tell which designs need no closer look, as `limit_look.bound` has it."""
+        """Tell which designs need no near-limit screening, as `limit_screening.safe_margin` has it."""
         import jax.numpy as jnp
 
         if not margin.ndim:
@@ -133,15 +134,15 @@ class JaxPath(ShortRepr):
 def jax_path(path: PathVariants) -> JaxPath:
     """Return a path as a function of JAX.
 
-    Raises InvalidInput where JAX is not installed, and for what is found by search: states of general groups, contacts
-    of profiles, counted turns.
+    Raises InvalidInput where JAX is not installed, and for inputs that only a search can determine: states of general
+    groups, contacts of profiles, counted turns.
     """
     if not find_spec("jax"):
         raise InvalidInput(Problem("jax", "JAX is not installed", "pip install 'compoundkin[jax]'"))
-    found = path.variant(frozenset())
-    graph = found.mechanism.graph
-    given = [graph.nodes[k].given for k in graph.inputs(_output_nodes(found))]
-    what, remedy = "it is found by search, which is no pure function", "call the path itself, or its derivatives"
+    recorded = path.variant(frozenset())
+    graph = recorded.mechanism.graph
+    given = [graph.nodes[k].given for k in graph.inputs(_output_nodes(recorded))]
+    what, remedy = "it needs a search, which is not a pure function", "call the path itself, or its derivatives"
     searched = dict.fromkeys(one.name for one in given if one is not None and one.kind == SEED)
     if searched:
         raise InvalidInput([Problem(name, what, remedy) for name in searched])
@@ -149,19 +150,19 @@ def jax_path(path: PathVariants) -> JaxPath:
 
 
 def _output_nodes(path: RecordedPath) -> list[int]:
-    """Return the nodes of the outputs, then those of what failed and of what is certain."""
+    """Return the nodes of the outputs, then those of the group that failed and of the certain margin."""
     limits = RecordedLimits(path.mechanism)
     return [*(node for nodes in path.nodes for node in nodes), limits.failed.x, limits.certain.x]
 
 
 def _as_output(parts: tuple[Any, ...]) -> Any:
-    from jax.lax import complex as joined
+    from jax import lax
 
-    return parts[0] if len(parts) == 1 else joined(*parts)
+    return parts[0] if len(parts) == 1 else lax.complex(*parts)
 
 
 def continuous_angle(angle: Any) -> Any:
-    """Return an angle continuous along the last axis, over poses not assembled too."""
+    """Return an angle without jumps along the last axis, across unassembled poses too."""
     import jax.numpy as jnp
     from jax import lax
 
@@ -176,7 +177,7 @@ def continuous_angle(angle: Any) -> Any:
 
 
 def _is_known_zero(value: Any) -> bool:
-    """Tell whether a rate is a number known to be zero; what JAX traces is not known."""
+    """Tell whether a rate is the number zero; a traced one may have any value."""
     return type(value) in (int, float) and value == 0
 
 
@@ -191,7 +192,7 @@ def _check_names(where: str, given: Mapping[str, Any], known: Any) -> None:
 
 
 def jax_number(where: str, value: Any, is_vector: bool = False) -> Any:
-    """Return a value as it is, if it can be one. Points may be pairs."""
+    """Return a number or an array as JAX takes it; points may be pairs. Raises InvalidInput for anything else."""
     import jax
 
     if isinstance(value, jax.Array):
@@ -213,8 +214,8 @@ def common_shape(given: Mapping[InputNumber, Any]) -> tuple[int, ...]:
     try:
         shape = np.broadcast_shapes(*shapes.values())
     except ValueError:
-        told = ", ".join(dict.fromkeys(f"{one.name} {shape}" for one, shape in shapes.items() if shape))
-        raise InvalidInput(Problem("shapes", f"{told} do not broadcast", "the last axis is the motion")) from None
+        named = ", ".join(dict.fromkeys(f"{one.name} {shape}" for one, shape in shapes.items() if shape))
+        raise InvalidInput(Problem("shapes", f"{named} do not broadcast", "the last axis is the motion")) from None
     if 0 in shape:
         raise InvalidInput(Problem("shapes", "there are no poses, or no designs"))
     return shape

@@ -27,120 +27,108 @@ from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, 
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 
-# So many poses are looked at together.
+# So many poses are screened together.
 POSES_AT_ONCE = 1 << 19
 
 
 @dataclass(frozen=True)
 class ScreenedDesigns(ShortRepr):
-    """What is found at designs near limits.
+    """The result of screening designs near limits.
 
-    `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; `handed` are the
-    designs, by index, that only solving can tell, `near` those that were looked at.
+    `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; `to_solve` are the
+    designs, by index, that have to be solved, `designs` those that were screened.
     """
 
     failed: Number
     to_solve: Number
-    near: Number
+    designs: Number
 
     @property
-    def lost(self) -> Number:
+    def unassembled(self) -> Number:
         """The designs, by index, that have unassembled poses and need not be solved."""
         return np.setdiff1d(np.flatnonzero(self.failed.any(axis=1)), self.to_solve)
 
 
 def safe_margin(order: SolvingOrder, numbers: CallNumbers) -> float:
-    """Return the margin above which a design needs no look.
-
-    It grows with the square of the drivers' longest step.
-    """
+    """Return the margin above which a design needs no screening; it grows with the square of the longest step."""
     return NEAR * max(1.0, _longest_step(order, numbers)) ** 2
 
 
 def _longest_step(order: SolvingOrder, numbers: CallNumbers) -> float:
-    """Return the longest step of a driver, in spacings at which `solve` looks for change points, as many as it does."""
-    found = 0.0
+    """Return the longest step of a driver, in spacings at which `solve` searches for change points."""
+    longest = 0.0
     for name, value in numbers.driver_values.items():
         if value.shape[1] > 1:
             steps = value[:, 1:] - value[:, :-1]
-            found = max(found, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
-    return min(found, float(MOST))
-
-
-def _is_rigid(numbers: CallNumbers) -> bool:
-    """Tell whether no dimension varies along the motion."""
-    return all(value.shape[1] == 1 for given, value in numbers.given.items() if given.kind == DIMENSION)
+            longest = max(longest, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
+    return min(longest, float(MOST))
 
 
 class LimitScreening(ShortRepr):
-    """The programs that look at limits, recorded when they are first needed."""
+    """The programs that screen designs, recorded when they are first needed."""
 
     def __init__(self, recording: Recording, approach: DrawnApproach, backend: str | None) -> None:
         self.recording, self.approach, self.backend = recording, approach, backend
         self._ready: dict[Any, ReadyProgram[int]] = {}
 
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
-        """Return which designs need a look, and which may change mode before their motion."""
+        """Return which designs need screening, and which have to be solved whatever it says."""
         order = self.recording.solving_order
         if numbers.is_seeded:
-            # solving has told how they begin; near a limit it tells the rest
+            # their first poses were solved, and so is the rest near a limit
             known = numbers.given.get(HOLDS, np.ones((1, 1)))[:, 0] != 0.0
             near = ~(known & (least.min(axis=1) >= safe_margin(order, numbers)))
             return np.zeros_like(near), near
         near = ~(least.min(axis=1) >= safe_margin(order, numbers))
-        way = self.approach.values(numbers.driver_values) if self._squares else None
-        if not _is_rigid(numbers):
-            # solving tells all of designs whose dimensions vary along the motion
-            return np.zeros_like(near), near | (way is not None)
-        if way is None:
+        approach = self.approach.values(numbers.driver_values) if self._squares else None
+        if any(value.shape[1] > 1 for given, value in numbers.given.items() if given.kind == DIMENSION):
+            # designs whose dimensions vary along the motion are solved at once
+            return np.zeros_like(near), near | (approach is not None)
+        if approach is None:
             return near, np.zeros_like(near)
         early = self._computed(
-            self._poses, _with_driver_values(numbers, way, {name: np.zeros((1, 1)) for name in way})
+            self._poses, _with_driver_values(numbers, approach, dict.fromkeys(approach, np.zeros((1, 1))))
         )[1]
         return near, np.any(early < NEAR, axis=1)
 
-    def doubtful(self, numbers: CallNumbers, least: Number) -> ScreenedDesigns | None:
-        """Look at the designs that need it; return None where none does.
+    def screen(self, numbers: CallNumbers, least: Number) -> ScreenedDesigns | None:
+        """Screen the designs that need it; return None where none does.
 
         `least` is the least of `RecordedLimits.certain` over poses, (1 or designs, 1).
         """
         near, early = (np.broadcast_to(each, numbers.extent[:1]) for each in self.needed(numbers, least))
         if not (near.any() or early.any()):
             return None
-        failed, handed = np.zeros(numbers.extent, dtype=np.int32), early.copy()
+        failed, to_solve = np.zeros(numbers.extent, dtype=np.int32), early.copy()
         designs = np.flatnonzero(near)
         if len(designs):
-            look = self.look(numbers_of_designs(numbers, designs))
-            failed[designs] = look.failed
-            handed[designs[look.to_solve]] = True
-        return ScreenedDesigns(failed, np.flatnonzero(handed), designs)
+            screened = self.screen_all(numbers_of_designs(numbers, designs))
+            failed[designs] = screened.failed
+            to_solve[designs[screened.to_solve]] = True
+        return ScreenedDesigns(failed, np.flatnonzero(to_solve), designs)
 
-    def look(self, numbers: CallNumbers) -> ScreenedDesigns:
-        """Look at all designs of some numbers."""
+    def screen_all(self, numbers: CallNumbers) -> ScreenedDesigns:
+        """Screen all designs of some numbers."""
         designs, poses = numbers.extent
         high = max(1, POSES_AT_ONCE // max(poses, 1))
         parts = [numbers_of_designs(numbers, np.arange(d, min(d + high, designs))) for d in range(0, designs, high)]
-        found = [self._block(part) for part in parts]
-        failed, handed = (np.concatenate(each) for each in zip(*found, strict=True))
-        return ScreenedDesigns(failed, np.flatnonzero(handed), np.arange(designs))
+        failed, to_solve = map(np.concatenate, zip(*map(self._screen_block, parts), strict=True))
+        return ScreenedDesigns(failed, np.flatnonzero(to_solve), np.arange(designs))
 
     def at_poses(self, numbers: CallNumbers) -> tuple[Number, Number]:
-        """Return which group fails at each pose, and the least margin.
-
-        It is the index plus one, else 0.
-        """
+        """Return the index of the group that fails at each pose plus one, else 0, and the least margin."""
         failed, margin, _ = self._computed(self._poses, numbers)
         return failed.astype(np.int32), margin
 
-    def _block(self, numbers: CallNumbers) -> tuple[Number, Number]:
+    def _screen_block(self, numbers: CallNumbers) -> tuple[Number, Number]:
         failed, margin, clear = self._computed(self._poses, numbers)
         failed = failed.astype(np.int32)
-        handed = np.any((failed == 0) & ~((margin >= CLOSE) & (clear != 0.0)), axis=1)
+        to_solve = np.any((failed == 0) & ~((margin >= CLOSE) & (clear != 0.0)), axis=1)
         steps = int(np.ceil(_longest_step(self.recording.solving_order, numbers)))
         squares = self._squares if steps else None
         if squares:
-            handed |= self._touches(squares, numbers, steps)
-        return failed, handed
+            to_solve |= self._touches(squares, numbers, steps)
+        return failed, to_solve
 
     def _touches(self, squares: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers, per_pose: int) -> Number:
         """Tell which designs may pass a change point between two samples."""
@@ -149,11 +137,11 @@ class LimitScreening(ShortRepr):
         values = {name: _refined(value, per_pose) for name, value in whole.items()}
         ahead = {name: value[:, 1:] - value[:, :-1] for name, value in values.items()}
         ends = [{name: value[:, part] for name, value in values.items()} for part in (slice(-1), slice(1, None))]
-        one, two = (self._computed(squares, _with_driver_values(numbers, end, ahead)) for end in ends)
-        found: Number = np.zeros(numbers.extent[0], dtype=bool)
-        for k in range(0, len(one), 2):
-            found |= np.any(may_touch_zero(one[k], one[k + 1], two[k], two[k + 1]), axis=1)
-        return found
+        starts, stops = (self._computed(squares, _with_driver_values(numbers, end, ahead)) for end in ends)
+        touches: Number = np.zeros(numbers.extent[0], dtype=bool)
+        for k in range(0, len(starts), 2):
+            touches |= np.any(may_touch_zero(starts[k], starts[k + 1], stops[k], stops[k + 1]), axis=1)
+        return touches
 
     @cached_property
     def _limits(self) -> RecordedLimits:
@@ -170,19 +158,15 @@ class LimitScreening(ShortRepr):
         nodes = [number.x for pair in limits.squares for number in pair]
         return (limits, nodes) if nodes else None
 
-    def _computed(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
-        """Return some nodes at all designs and poses."""
-        return [np.broadcast_to(one, numbers.extent) for one in self._program(asked, numbers).run(numbers).values()]
-
-    def _program(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> ReadyProgram[int]:
-        """Return the program of some nodes for numbers of these forms, made once."""
-        limits, nodes = asked
+    def _computed(self, wanted: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
+        """Return some nodes at all designs and poses; their program is made once for numbers of each form."""
+        limits, nodes = wanted
         graph = limits.mechanism.graph
         key = id(graph), tuple(nodes), tuple(numbers.given), numbers.form
         if key not in self._ready:
-            asked_for = {place: (node,) for place, node in enumerate(nodes)}
-            self._ready[key] = ReadyProgram.of(graph, asked_for, numbers, self.backend)
-        return self._ready[key]
+            named = {place: (node,) for place, node in enumerate(nodes)}
+            self._ready[key] = ReadyProgram.of(graph, named, numbers, self.backend)
+        return [np.broadcast_to(value, numbers.extent) for value in self._ready[key].run(numbers).values()]
 
 
 def _refined(value: Number, per_pose: int) -> Number:
@@ -211,14 +195,11 @@ TOUCHING_PART = 0.25
 
 
 def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Number:
-    """Tell where functions may touch zero between the ends of a unit interval.
-
-    They are given by their values and slopes there.
-    """
+    """Tell where functions may touch zero in a unit interval, by their values and slopes at its ends."""
     lesser = np.minimum(y0, y1)
-    # few intervals are so: all others are done with
-    found = (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR)
-    y0, slope0, y1, slope1, lesser = (each[found] for each in (y0, slope0, y1, slope1, lesser))
+    # few intervals fulfil this
+    touches = (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR)
+    y0, slope0, y1, slope1, lesser = (each[touches] for each in (y0, slope0, y1, slope1, lesser))
     rise = y1 - y0
     # the slope of the cubic is slope0 + b t + a t^2
     a, b = 3.0 * (slope0 + slope1 - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * slope0 - slope1)
@@ -227,12 +208,12 @@ def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Nu
         t = np.where(b > 0.0, -2.0 * slope0 / (b + root), (root - b) / (2.0 * a))
         t = np.clip(np.nan_to_num(t, nan=0.5), 0.0, 1.0)
         least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
-        found[found] = least < TOUCHING_PART * lesser
-    return found
+        touches[touches] = least < TOUCHING_PART * lesser
+    return touches
 
 
 class DrawnApproach(ShortRepr):
-    """Where a path's drivers are drawn, and the ways from there to motions."""
+    """The approach from where a path's drivers are drawn to its motions, as `solve` takes it."""
 
     def __init__(self, reference: Motion, shown: StatedModes) -> None:
         self.reference, self.shown = reference, shown
@@ -240,11 +221,11 @@ class DrawnApproach(ShortRepr):
 
     @property
     def has_configuration(self) -> bool:
-        """Whether the configuration is shown anywhere."""
+        """Whether a configuration is given at any pose."""
         return bool(self.shown.poses or self.shown.beside)
 
     def values(self, values: Mapping[str, Number]) -> Mapping[str, Number] | None:
-        """Return drivers' values on the way from where they are drawn. None where they are drawn on the motion.
+        """Return the drivers' values on the approach from where they are drawn; None where that is on the motion.
 
         `values` are those of the motion, (1 or designs, 1 or poses).
         """
@@ -257,15 +238,15 @@ class DrawnApproach(ShortRepr):
         return {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()} if way.poses > 1 else None
 
     def drawn(self, name: str) -> Number | None:
-        """Return the value at which a driver is drawn. None where it is not."""
+        """Return the value at which a driver is drawn; None where it is not drawn."""
         if name not in self._drawn:
             order, given, shown = self.reference.solving_order, self.reference.inputs, self.shown
-            found = drawn_value(order, given, name, shown.poses, shown.beside) if self.has_configuration else None
-            self._drawn[name] = found
+            value = drawn_value(order, given, name, shown.poses, shown.beside) if self.has_configuration else None
+            self._drawn[name] = value
         return self._drawn[name]
 
     def _is_passed(self, values: Mapping[str, Number]) -> bool:
-        """Tell whether the only driver surely comes by its drawn value."""
+        """Tell whether the only driver surely passes its drawn value."""
         if len(values) != 1:
             return False
         ((name, value),) = values.items()
@@ -279,14 +260,12 @@ class DrawnApproach(ShortRepr):
 
 
 def passes_value(drawn: float, first: float, last: float, is_angle: bool) -> bool:
-    """Tell whether a driver comes by its drawn value on a motion.
-
-    It does where that lies between its first value and its last.
+    """Tell whether a driver passes its drawn value between the first and the last value of a motion.
 
     >>> passes_value(0.5, 6.0, 7.0, True), passes_value(0.5, 6.0, 7.0, False)
     (True, False)
     """
     low, high = (first, last) if first <= last else (last, first)
-    # the next place at or after the lower one where the driver is as it is drawn
+    # the first value from the lower one on at which the driver is as drawn
     after = drawn - TURN * ((drawn - low) // TURN) if is_angle else drawn
     return low <= after <= high

@@ -14,7 +14,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import Description
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers, ReadyProgram, call_numbers
+from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram, call_numbers
 from compoundkin.programs.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.law_slopes import with_law_slopes
 from compoundkin.programs.dimensions import (
@@ -32,15 +32,15 @@ from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_motion import ProgramOutput
 from compoundkin.programs.solved_designs import ProgramConfiguration, solve_designs, values_near_limits
 
-# The least margin among what a program finds; no output is called so.
+# The name of the least margin among the results of a program; no output has it.
 LEAST = ""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PathPrograms(ShortRepr):
-    """A mechanism in one configuration, and the programs made of it.
+    """A mechanism in one configuration, and the programs that compute its outputs from its free dimensions.
 
-    They compute outputs, of free dimensions. `reference` is its own motion, from which the configuration is taken.
+    `reference` is its own motion, from which the configuration is taken.
     """
 
     reference: Motion
@@ -72,7 +72,7 @@ class PathPrograms(ShortRepr):
 
     @property
     def order(self) -> int:
-        """The highest derivative that its outputs ask for."""
+        """The highest derivative among its outputs."""
         return max(output.attribute.order for output in self.outputs)
 
     @cached_property
@@ -92,25 +92,22 @@ class PathPrograms(ShortRepr):
 
     @cached_property
     def seeds(self) -> CallSeeds:
-        """What finds the seeds of its calls."""
+        """The solver of the seeds of its calls."""
         own = {one: value for free in self.dimensions for one, value in free.parts_of(self.stated.own(free))}
-        return CallSeeds(partial(self.solved, order=0), own, self.chosen_backend)
+        return CallSeeds(partial(self.solve, order=0), own, self.chosen_backend)
 
     @cached_property
     def approach(self) -> DrawnApproach:
-        """The way from the drawing to the motions of its calls."""
+        """The approach from the drawing to the motions of its calls."""
         return DrawnApproach(self.reference, self.configuration.shown)
 
     @cached_property
     def limits(self) -> LimitScreening:
-        """The programs that look at designs near limits."""
+        """The programs of near-limit screening."""
         return LimitScreening(self._recording(), self.approach, self.chosen_backend)
 
     def variant(self, still: frozenset[tuple[str, int]], is_seeded: bool = False) -> RecordedPath:
-        """Return it recorded where some rates of drivers are zero.
-
-        The signs of its groups may be seeds.
-        """
+        """Return it recorded where some rates of drivers are zero; the signs of its groups may be seeds."""
         if (still, is_seeded) not in self._variants:
             own = self._recording(still)
             # one step before that whose matrix all rates share: they then have the slopes of where it leads
@@ -125,10 +122,7 @@ class PathPrograms(ShortRepr):
         return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
     def program(self, numbers: CallNumbers) -> ReadyProgram[str]:
-        """Return the program for numbers of these forms.
-
-        It computes all outputs, and last the least margin.
-        """
+        """Return the program for numbers of this form; it computes all outputs, and last the least margin."""
         if numbers.form not in self._programs:
             path = self.variant(numbers.still)
             nodes = {**dict(zip(self.names, path.nodes, strict=True)), LEAST: (path.least,)}
@@ -136,28 +130,17 @@ class PathPrograms(ShortRepr):
             self._programs[numbers.form] = ReadyProgram.of(graph, nodes, numbers, self.chosen_backend, carried)
         return self._programs[numbers.form]
 
-    def numbers(
-        self,
-        values: Any,
-        dimensions: Mapping[str, Any] | None,
-        speed: Any,
-        acceleration: Any,
-        jerk: Any,
-        time: Any = None,
-        is_sloped: bool = False,
-    ) -> CallNumbers:
-        """Return the numbers of a call, perhaps with the slopes of laws.
-
-        Raises InvalidInput for what does not fit.
-        """
-        found = dimension_values(self.stated, self.dimensions, dimensions)
-        motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
+    def numbers(self, call: Call, with_slopes: bool = False) -> CallNumbers:
+        """Return the numbers of a call, perhaps with the slopes of laws; raises InvalidInput for what does not fit."""
+        values = dimension_values(self.stated, self.dimensions, call.dimensions)
         order = self.reference.solving_order
         if self.law_numbers:
-            check_laws(self.law_numbers, dimensions, motion.times(order))
-        numbers = call_numbers(order, motion, found)
+            check_laws(self.law_numbers, call.dimensions, call.times(order))
+        numbers = call_numbers(order, call, values, self.order)
         numbers = self.seeds.added(self.variant(numbers.still), numbers)
-        return with_law_slopes(numbers, order, motion, found) if is_sloped and self.law_numbers else numbers
+        return (
+            with_law_slopes(numbers, order, call, values, self.order) if with_slopes and self.law_numbers else numbers
+        )
 
     def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
         """Return the names of its outputs, and which are vectors."""
@@ -165,37 +148,37 @@ class PathPrograms(ShortRepr):
         return {name: len(nodes[name]) > 1 for name in self.names}
 
     def computed(self, numbers: CallNumbers, threads: int, given: Mapping[str, Number]) -> PathValues:
-        """Compute all outputs. Those in arrays that are given are written there."""
-        found = self.program(numbers).run(numbers, threads, given)
-        least = found.pop(LEAST)
-        return self.settled(numbers, list(found.values()), least)
+        """Compute all outputs; those in arrays that are given are written there."""
+        outputs = self.program(numbers).run(numbers, threads, given)
+        least = outputs.pop(LEAST)
+        return self.checked_values(numbers, list(outputs.values()), least)
 
-    def solved(self, numbers: CallNumbers, order: int | None = None) -> Description:
-        """Solve the designs of some numbers instead, in its configuration."""
+    def solve(self, numbers: CallNumbers, order: int | None = None) -> Description:
+        """Solve the designs of some numbers instead of computing them, in its configuration."""
         values = {one: one.value_in(numbers.given) for one in self.dimensions}
-        # what moves the drivers is told; a program of motion has no designs
+        # the drivers' values are among the numbers, and a law cannot have designs
         one_law = {one: value for one, value in values.items() if not (one.is_of_law and np.ndim(value))}
         mechanism = mechanism_with(self.stated, one_law)
         return solve_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
 
-    def settled(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:
-        """Return outputs as they are found, made certain near limits."""
-        look = self.limits.doubtful(numbers, least)
-        failed = values_near_limits(numbers, self.names, arrays, look, self.solved)
-        return self.shown(numbers, arrays, failed, look=look)
+    def checked_values(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:
+        """Return computed outputs, corrected near limits."""
+        screened = self.limits.screen(numbers, least)
+        failed = values_near_limits(numbers, self.names, arrays, screened, self.solve)
+        return self.path_values(numbers, arrays, failed, screened=screened)
 
-    def shown(
+    def path_values(
         self,
         numbers: CallNumbers | Callable[[], CallNumbers],
         arrays: list[Number],
         failed: Number | None,
         shape: tuple[int, ...] | None = None,
-        look: ScreenedDesigns | None = None,
+        screened: ScreenedDesigns | None = None,
     ) -> PathValues:
-        """Return certain outputs; angles are unwrapped along the motion in place."""
+        """Return outputs by name; angles are unwrapped along the motion in place."""
         for k in self._wrapped:
             arrays[k][...] = self.outputs[k].continuous(arrays[k])
-        return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solved, shape, look)
+        return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solve, shape, screened)
 
     @cached_property
     def _wrapped(self) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""What a compiled path finds: its outputs by name, and which poses are assembled."""
+"""The values of a compiled path: its outputs by name, and which poses are assembled."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class PathValues(Mapping[str, Any]):
 
     They are arrays of the call's `shape`, the last axis the motion. Points are complex, angles unwrapped along the
     motion. `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; None where
-    all close. `look` is what was found of designs near limits, if any came near one.
+    all close. `screened` are the designs near limits, None where none came near one.
 
     >>> import compoundkin as ck
     >>> found = ck.compile(ck.load("slider-crank"), ["B", "B.x"])([0.0, 1.0])
@@ -30,7 +30,7 @@ class PathValues(Mapping[str, Any]):
     (PathValues(B, B.x at (2,) poses), ['B', 'B.x'], (2,))
     """
 
-    __slots__ = ("_numbers", "_solving", "failed", "found", "look", "shape")
+    __slots__ = ("_numbers", "_solving", "failed", "found", "screened", "shape")
 
     def __init__(
         self,
@@ -39,9 +39,10 @@ class PathValues(Mapping[str, Any]):
         failed: Number | None,
         solving: Callable[[CallNumbers], Description],
         shape: tuple[int, ...] | None = None,
-        look: ScreenedDesigns | None = None,
+        screened: ScreenedDesigns | None = None,
     ) -> None:
-        self._numbers, self.found, self.failed, self._solving, self.look = numbers, found, failed, solving, look
+        self._numbers, self.found, self.failed, self._solving = numbers, found, failed, solving
+        self.screened = screened
         self.shape = self.numbers.shape if shape is None else shape
 
     @property
@@ -77,10 +78,10 @@ class PathValues(Mapping[str, Any]):
 
     @checked
     def motion(self, design: int = 0) -> Motion:
-        """Return one design solved by `solve`, which tells what fails and why.
+        """Return one design solved by `solve`, which reports failures with their reasons.
 
-        `design` counts along all axes but the last. Raises InvalidInput where there is no such design, NotAssembled
-        where it has no pose at all.
+        `design` counts along all axes but the last. Raises InvalidInput for an index out of range, NotAssembled
+        for a design without an assembled pose.
 
         >>> import compoundkin as ck
         >>> found = ck.compile(ck.load("slider-crank"), "B")()

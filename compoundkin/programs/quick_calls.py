@@ -19,7 +19,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.change_points import NEAR
 from compoundkin.kinematics.solution import COUNTED
-from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram
+from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
 from compoundkin.programs.graph.operation_graph import DRIVE, InputNumber
 from compoundkin.programs.limit_screening import passes_value
@@ -30,14 +30,13 @@ if TYPE_CHECKING:
 
 # So many plain numbers are kept as arrays.
 NUMBERS_KEPT = 256
-
-
-# The greatest finite number: whole numbers above it are no floats, and nothing is above or below what is none.
+# The greatest finite number: greater whole numbers are not floats, and comparisons with NaN are false.
 LARGEST_FLOAT = float(np.finfo(float).max)
+FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
 
 
 class QuickCalls(ShortRepr):
-    """Calls of a path with one driver, read and computed with few looks.
+    """Calls of a path with one driver, read and computed with few checks.
 
     Arguments become arrays (1 or designs, 1 or poses) in one order: free dimensions, the driver's value, its rates.
     """
@@ -61,15 +60,12 @@ class QuickCalls(ShortRepr):
         self.at = len(self.own)
         self.names += [InputNumber(DRIVE, driver, str(k)) for k in range(4)]
         self.own += [np.zeros((1, 1)), *(np.full((1, 1), rate) for rate in rates)]
-        self._kept: dict[float, Number] = {}
+        self._arrays: dict[float, Number] = {}
         self._plans: dict[Any, QuickPlan | None] = {}
 
     @classmethod
     def of(cls, path: PathPrograms) -> QuickCalls | None:
-        """Return the quick calls of a path.
-
-        None where it has several drivers, or designs of its own.
-        """
+        """Return the quick calls of a path; None where it has several drivers, or designs of its own."""
         drives = path.reference.mechanism.drives
         if len(drives) != 1:
             return None
@@ -78,11 +74,8 @@ class QuickCalls(ShortRepr):
             return None
         return cls(path, drives[0].name, tuple(float(rate) for rate in rates))
 
-    def found(self, values: Any, dimensions: Any, rates: tuple[Any, Any, Any], threads: Any) -> PathValues | None:
-        """Return what a call finds.
-
-        None where the slow way is to look at it.
-        """
+    def values(self, values: Any, dimensions: Any, rates: tuple[Any, Any, Any], threads: Any) -> PathValues | None:
+        """Return the values of a call; None where it has to go the general way."""
         if type(values) is dict and len(values) == 1:
             values = values.get(self.driver)
         if type(values) is not np.ndarray or values.dtype is not FLOAT or values.ndim != 1 or len(values) < 2:
@@ -91,7 +84,7 @@ class QuickCalls(ShortRepr):
         if self.is_angle and first.is_integer() and last.is_integer() and max(first, last, -first, -last) > COUNTED:
             return None
         given = self.own.copy()
-        given[self.at] = values[None].copy()  # what is found is asked for its numbers later
+        given[self.at] = values[None].copy()  # the caller may change his array before the result is read
         still = self._with_rates(given, rates)
         placed = self._with_dimensions(given, dimensions) if dimensions is not None else (1, 0)
         if still is None or placed is None or type(threads) is not int or threads < 1:
@@ -106,9 +99,9 @@ class QuickCalls(ShortRepr):
         arrays, least = plan.run(given, extent, threads)
         if self._is_certain(least, values, first, last):
             numbers = partial(self._numbers, given, designs, still)
-            return self.path.shown(numbers, arrays, None, extent if columns else extent[1:])
-        # what is not finite is told of
-        return self.path.settled(self.path.numbers(values, dimensions, *rates), arrays, least)
+            return self.path.path_values(numbers, arrays, None, extent if columns else extent[1:])
+        # the general way reports values that are not finite
+        return self.path.checked_values(self.path.numbers(Call(values, dimensions, *rates)), arrays, least)
 
     def _plan(self, numbers: CallNumbers) -> QuickPlan | None:
         if self.path.variant(numbers.still).seeds:
@@ -160,12 +153,12 @@ class QuickCalls(ShortRepr):
         return designs, columns
 
     def _array(self, number: float) -> Number:
-        found = self._kept.get(number)
-        if found is None:
-            if len(self._kept) >= NUMBERS_KEPT:
-                self._kept.clear()
-            found = self._kept[number] = np.full((1, 1), float(number))
-        return found
+        array = self._arrays.get(number)
+        if array is None:
+            if len(self._arrays) >= NUMBERS_KEPT:
+                self._arrays.clear()
+            array = self._arrays[number] = np.full((1, 1), float(number))
+        return array
 
     def _numbers(self, given: list[Number], designs: int, still: int) -> CallNumbers:
         zero = frozenset((self.driver, k + 1) for k in range(3) if still >> k & 1)
@@ -173,7 +166,7 @@ class QuickCalls(ShortRepr):
         return CallNumbers(dict(zip(self.names, given, strict=True)), shape if designs > 1 else shape[1:], zero)
 
     def _is_certain(self, least: Number, values: Number, first: float, last: float) -> bool:
-        """Tell whether no design needs a look, as `LimitPrograms.needed` does."""
+        """Tell whether no design needs screening, as `LimitScreening.needed` does."""
         margin = least.item() if least.size == 1 else float(least.min())
         if not margin >= NEAR or not (self.drawn is None or passes_value(self.drawn, first, last, self.is_angle)):
             return False
@@ -182,11 +175,8 @@ class QuickCalls(ShortRepr):
         return bool(steps[steps.argmax()] <= longest and steps[steps.argmin()] >= -longest)
 
 
-FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
-
-
 class QuickPlan(ShortRepr):
-    """A program, and how its inputs and results stand.
+    """A program, and the places of its inputs and results.
 
     `is_watched` tells whether driver values that are not finite spoil the least margin.
     """
@@ -205,10 +195,7 @@ class QuickPlan(ShortRepr):
 
     @classmethod
     def of(cls, program: ReadyProgram[str], numbers: CallNumbers, value: InputNumber) -> QuickPlan | None:
-        """Return the plan of a program.
-
-        None where inputs are found outside, or parts of a vector vary by other axes.
-        """
+        """Return the plan of a program; None where it has other inputs, or parts of a vector vary by other axes."""
         flat = program.flat
         if any(flat.graph.nodes[k].given not in numbers.given for k in flat.inputs):
             return None

@@ -33,7 +33,7 @@ DesignSolver: TypeAlias = Callable[[CallNumbers], Description]
 
 @dataclass(frozen=True)
 class ProgramConfiguration(ShortRepr):
-    """The configuration of a program: signs of groups, and where they are shown."""
+    """The configuration of a program: signs of groups, and the poses that show it."""
 
     signs: dict[int, int]
     shown: StatedModes
@@ -44,7 +44,7 @@ class ProgramConfiguration(ShortRepr):
         tracker = reference.tracker
         signs = {s.index: int(np.ravel(tracker.signs[s.index])[0]) for s in reference.solving_order.solvers
                  if not s.is_numbered}  # fmt: skip
-        # configurations that are numbered are those nearest to the reference, whatever their number in a design
+        # of numbered configurations that nearest to the reference is taken, whatever its number in a design
         near = first_configuration(reference, 0) if reference.solving_order.numbered else None
         if near is None or tracker.shown.points:
             return cls(signs, tracker.shown)
@@ -54,10 +54,9 @@ class ProgramConfiguration(ShortRepr):
 def solve_in_parts(
     by: DesignSolver, numbers: CallNumbers, designs: Number
 ) -> Iterator[tuple[Number, Description | None]]:
-    """Solve some designs, and yield them in parts.
+    """Solve some designs, and yield them in parts with what `by` returns: None where none can be built or assembled.
 
-    It is None where nothing can be built or assembled. One design of which there is nothing must not take the others
-    with it.
+    A design that cannot be assembled must not fail the others, so that parts are halved.
     """
     if not len(designs):
         return
@@ -97,7 +96,7 @@ def seed_values(wanted: Collection[InputNumber], motion: Motion) -> dict[InputNu
     block = order.start(inputs.ends, inputs.series(0), 0, shape)
     block.world.update({name: pose.trimmed(0) for name, pose in motion.poses.items()})
     solvers = {group_seed(solver.index): solver for solver in order.solvers}
-    found: dict[InputNumber, Number] = {}
+    seeds: dict[InputNumber, Number] = {}
     for name in dict.fromkeys(seed.name for seed in wanted):
         parts = [seed for seed in wanted if seed.name == name]
         if name in solvers:
@@ -106,8 +105,8 @@ def seed_values(wanted: Collection[InputNumber], motion: Motion) -> dict[InputNu
             numbers = dict(_contact_seeds(motion, block, name, parts))
         else:
             numbers = {TURNS: motion.poses[name].angle.c[0]}
-        found.update({seed: np.array(np.broadcast_to(numbers[seed.part], shape), float) for seed in parts})
-    return found
+        seeds.update({seed: np.array(np.broadcast_to(numbers[seed.part], shape), float) for seed in parts})
+    return seeds
 
 
 def _group_seeds(motion: Motion, block: Block, solver: GroupSolver, parts: Sequence[InputNumber]) -> dict[str, Number]:
@@ -133,44 +132,33 @@ def _contact_seeds(
 
 
 def values_near_limits(
-    numbers: CallNumbers, names: Sequence[str], arrays: list[Number], look: ScreenedDesigns | None, by: DesignSolver
+    numbers: CallNumbers, names: Sequence[str], arrays: list[Number], screened: ScreenedDesigns | None, by: DesignSolver
 ) -> Number | None:
-    """Make outputs certain in place; return which poses failed, None where none did.
+    """Correct outputs near limits in place; return which poses failed, None where none did.
 
-    `arrays` are (1 or designs, 1 or poses), and put at their full size in the list; `look` is what was found at limits,
-    if any design came near one. Warns UnassembledPoses and FewDigits as `solve`.
+    `arrays` are (1 or designs, 1 or poses), and in the list brought to their full size; `screened` is None where no
+    design came near a limit. Unassembled poses become NaN. Warns UnassembledPoses and FewDigits as `solve`.
     """
-    if look is None:
+    if screened is None:
         return None
     for k, array in enumerate(arrays):
         if array.shape != numbers.extent:
             arrays[k] = np.array(np.broadcast_to(array, numbers.extent))
-    failed = look.failed
-    poor = _put_solved_values(numbers, names, arrays, failed, look.to_solve, by)
+    failed, imprecise = screened.failed, 0
+    for part, result in solve_in_parts(by, numbers, screened.to_solve):
+        failed[part] = result.motion.failed if result else 1
+        if result:
+            shape = result.motion.failed.shape
+            for name, array in zip(names, arrays, strict=True):
+                array[part] = np.broadcast_to(quantity(result.motion, name).values.reshape(shape), shape)
+            imprecise += result.poor
     for array in arrays if failed.any() else ():
         array[failed != 0] = np.nan if array.dtype == float else complex(np.nan, np.nan)
     missing = int(np.count_nonzero(failed))
     if missing:
         how_many = f"{missing} of {failed.size} poses cannot be assembled"
         warn(f"{how_many}: assembled masks them, gaps(found.motion(design=...)) explains", UnassembledPoses)
-    if poor:
-        warn(f"rates at {poor} of {failed.size} poses have fewer than three digits, next to limit positions", FewDigits)
+    if imprecise:
+        few = f"rates at {imprecise} of {failed.size} poses have fewer than three digits"
+        warn(f"{few}, next to limit positions", FewDigits)
     return failed if missing else None
-
-
-def _put_solved_values(
-    numbers: CallNumbers, names: Sequence[str], arrays: list[Number], failed: Number, designs: Number, by: DesignSolver
-) -> int:
-    """Put in what solving finds of some designs; return at how many poses rates have few digits."""
-    poor = 0
-    for part, told in solve_in_parts(by, numbers, designs):
-        failed[part] = told.motion.failed if told else 1
-        if told:
-            for name, array in zip(names, arrays, strict=True):
-                array[part] = _solved_values(told.motion, name)
-            poor += told.poor
-    return poor
-
-
-def _solved_values(motion: Motion, name: str) -> Number:
-    return np.broadcast_to(quantity(motion, name).values.reshape(motion.failed.shape), motion.failed.shape)

@@ -29,7 +29,7 @@ def _free(mechanism: Any) -> dict[str, complex]:
 
 
 def _solved(path: CompiledPath, dimensions: Any, speed: Any) -> Motion:
-    return path.programs.solved(path.programs.numbers(None, dimensions, speed, None, None)).motion
+    return path.programs.solve(path.programs.numbers(call_numbers.Call(None, dimensions, speed))).motion
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -145,7 +145,7 @@ def test_slips_in_objectives_are_told():
     cost = path.objective(lambda at: abs(at["C"] - at["target"]) ** 2)
     with pytest.raises(ck.errors.UnknownName, match=r"tragt.*did you mean 'target'"):
         cost([0.1], target=1.0, tragt=2.0)
-    with pytest.raises(ck.errors.UnknownName, match="target: it is no output"):
+    with pytest.raises(ck.errors.UnknownName, match="target: it is neither an output"):
         cost([0.1])
     with pytest.raises(ck.errors.InvalidInput, match=r"target: shape .* does not broadcast"):
         cost([0.1, 0.2], target=[1.0, 2.0, 3.0])
@@ -154,7 +154,7 @@ def test_slips_in_objectives_are_told():
     with pytest.raises(ck.errors.InvalidInput, match=r"target: .*not finite"):
         cost([0.1], target=np.nan)
     for name in ("rocker.angle", "assembled"):
-        with pytest.raises(ck.errors.InvalidInput, match=f"{name}: the pose has this by itself"):
+        with pytest.raises(ck.errors.InvalidInput, match=f"{name}: the pose has this name itself"):
             path.objective(lambda at, name=name: at[name])([0.1], **{name: 1.0})
     for wrong, told in (
         (lambda at: at["C"], "complex"),

@@ -315,9 +315,8 @@ class _Loop:
                 parts.append(half if lanes > 1 else text.put(f"extractelement <1 x double> {half}, i64 0"))
             end = reduction_of_two(text.narrowed(lanes), self.plan, reduction, *parts)
         before = text.put(f"load double, ptr {place}, align 8")
-        text.do(
-            f"store double {reduction_of_two(text.narrowed(1), self.plan, reduction, before, end)}, ptr {place}, align 8"
-        )
+        total = reduction_of_two(text.narrowed(1), self.plan, reduction, before, end)
+        text.do(f"store double {total}, ptr {place}, align 8")
 
     def note(self, large: str) -> None:
         """Write that an angle was too large."""

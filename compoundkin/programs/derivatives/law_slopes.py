@@ -11,25 +11,25 @@ from compoundkin.base.arrays import Number
 from compoundkin.kinematics.driver_values import fit
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.laws.law_numbers import law_sensitivities
-from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers
+from compoundkin.programs.call_numbers import Call, CallNumbers
 from compoundkin.programs.dimensions import FreeDimension, drives_of_call
 from compoundkin.programs.graph.operation_graph import DRIVE, LAW_SLOPE, InputNumber
 
 
 def with_law_slopes(
-    numbers: CallNumbers, order: SolvingOrder, motion: DriverNumbers, values: Mapping[FreeDimension, Number]
+    numbers: CallNumbers, order: SolvingOrder, call: Call, values: Mapping[FreeDimension, Number], highest: int
 ) -> CallNumbers:
-    """Return the numbers of a call with the slopes of laws.
+    """Return the numbers of a call with the slopes of laws by their free numbers, zero where no law moves.
 
-    They are those by their free numbers, zero where no law moves.
+    They are those of the drivers' values and of their rates up to the `highest` derivative.
     """
     drives = {one.name: one for one in drives_of_call(order.structure.mechanism.drives, values)}
-    times, fitted = motion.times(order, tuple(drives.values())), fit(numbers.shape)
+    times, fitted = call.times(order, tuple(drives.values())), fit(numbers.shape)
     found = dict(numbers.given)
     for one in (each for each in values if each.is_of_law):
-        slopes = [0.0] * (motion.order + 1)
+        slopes = [0.0] * (highest + 1)
         if times is not None:
-            slopes = law_sensitivities(drives[one.owner].law, one.part, times, motion.order)
+            slopes = law_sensitivities(drives[one.owner].law, one.part, times, highest)
         for k, slope in enumerate(slopes):
             found[_law_slope(one, k)] = np.atleast_2d(np.asarray(fitted(slope), float))
     return replace(numbers, given=found)

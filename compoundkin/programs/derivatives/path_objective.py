@@ -23,7 +23,7 @@ from compoundkin.base.errors import (
     warn,
 )
 from compoundkin.kinematics.driver_values import fit
-from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, check_threads, numbers_of_designs
+from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram, check_threads, numbers_of_designs
 from compoundkin.programs.derivatives.differentiation import reverse
 from compoundkin.programs.derivatives.law_slopes import slope_inputs, summed_slopes
 from compoundkin.programs.derivatives.solved_inputs import (
@@ -79,8 +79,8 @@ class PathObjective(ShortRepr):
         >>> float(cost([0.0, 0.0], {"crank.B": 3.0}, target=1.0))
         8.0
         """
-        numbers = self.path.numbers(values, dimensions, speed, acceleration, jerk, time)
-        return self._found(numbers, given, False, threads)[0]
+        numbers = self.path.numbers(Call(values, dimensions, speed, acceleration, jerk, time))
+        return self._computed(numbers, given, False, threads)[0]
 
     @checked
     def gradient(
@@ -108,29 +108,30 @@ class PathObjective(ShortRepr):
         >>> float(value), complex(slope["crank.B"])
         (2.0, (4+0j))
         """
-        numbers = self.path.numbers(values, dimensions, speed, acceleration, jerk, time, is_sloped=True)
-        return self._found(numbers, given, True, threads)
+        numbers = self.path.numbers(Call(values, dimensions, speed, acceleration, jerk, time), with_slopes=True)
+        return self._computed(numbers, given, True, threads)
 
-    def _found(
+    def _computed(
         self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
     ) -> tuple[Any, dict[str, Any]]:
-        """Return value and slopes; designs that come near a limit are computed again with masks."""
+        """Return sum and slopes; designs that come near a limit are computed again with masks."""
         check_threads(threads)
         whole, complex_names = with_parameters(numbers, given)
         run, path = partial(self._run, complex_names, is_sloped, threads), self.path
-        every = np.arange(whole.extent[0])
-        found = run(whole, ALL_POSES)
-        look = path.limits.doubtful(whole, found.least)
-        if look is None:
-            return found.shaped(whole.shape)
-        parts = [(every, found)]
-        if len(look.lost):
-            parts.append((look.lost, run(numbers_of_designs(whole, look.lost), ASSEMBLED_POSES)))
-        parts += [(part, run(told, SOLVED_POSES)) for part, told in solved_inputs(path, whole, look.to_solve)]
-        joined = ObjectiveValues.joined(len(every), parts)
+        first = run(whole, ALL_POSES)
+        screened = path.limits.screen(whole, first.least)
+        if screened is None:
+            return first.shaped(whole.shape)
+        designs = whole.extent[0]
+        parts = [(np.arange(designs), first)]
+        if len(screened.unassembled):
+            masked = run(numbers_of_designs(whole, screened.unassembled), ASSEMBLED_POSES)
+            parts.append((screened.unassembled, masked))
+        parts += [(part, run(own, SOLVED_POSES)) for part, own in solved_inputs(path, whole, screened.to_solve)]
+        joined = ObjectiveValues.joined(designs, parts)
         missing = int(np.count_nonzero(np.isnan(joined.value)))
         if missing:
-            of_all = f"{missing} of {len(every)} designs have poses that cannot be assembled"
+            of_all = f"{missing} of {designs} designs have poses that cannot be assembled"
             warn(f"{of_all}: numpy.where(at.assembled, ..., 0.0) leaves them out", UnassembledPoses)
         return joined.shaped(whole.shape)
 
@@ -144,10 +145,10 @@ class PathObjective(ShortRepr):
             form = ObjectiveForm(self.function, given, by, known)
             variant = path.variant(numbers.still, known == SOLVED_POSES)
             self._programs[key] = objective_program(variant, path.names, numbers, form, path.chosen_backend)
-        found = ObjectiveValues.of(self._programs[key].run(numbers, threads))
+        values = ObjectiveValues.of(self._programs[key].run(numbers, threads))
         if not (is_sloped and self.path.law_numbers):
-            return found
-        return replace(found, slopes=summed_slopes(self.path.dimensions, numbers, found.slopes, self.path.order))
+            return values
+        return replace(values, slopes=summed_slopes(self.path.dimensions, numbers, values.slopes, self.path.order))
 
     def __repr__(self) -> str:
         return f"PathObjective(of {self.path!r})"
@@ -159,10 +160,10 @@ _SUM, _MARGIN = "", " "
 
 @dataclass(frozen=True)
 class ObjectiveForm:
-    """What is asked of an objective.
+    """A function to record, and the form of its program.
 
-    `given` tells of each name given with the call whether it is complex, `by` what slopes are by, one input or two of a
-    point, and `known` how it is known which poses there are.
+    `given` tells of each parameter of a call whether it is complex; slopes are `by` one input, or two of a point;
+    `known` is one of ALL_POSES, ASSEMBLED_POSES, SOLVED_POSES.
     """
 
     function: Callable[[ObjectivePose], Any]
@@ -184,15 +185,12 @@ class ObjectiveValues(ShortRepr):
 
     @classmethod
     def of(cls, found: Mapping[str, Number]) -> ObjectiveValues:
-        """Return what the program of an objective has found."""
+        """Return the results of a program by name."""
         return cls(found[_SUM], found[_MARGIN], {k: slope for k, slope in found.items() if k not in (_SUM, _MARGIN)})
 
     @classmethod
     def joined(cls, count: int, parts: Sequence[tuple[Number, ObjectiveValues]]) -> ObjectiveValues:
-        """Join the values of some designs, by index.
-
-        Later ones take the place of earlier ones.
-        """
+        """Join the values of some designs, by index; later ones replace earlier ones."""
 
         def put(arrays: Sequence[Number]) -> Number:
             whole = np.empty((count, arrays[0].shape[1]), arrays[0].dtype)
@@ -204,15 +202,12 @@ class ObjectiveValues(ShortRepr):
         slopes = {name: put([each.slopes[name] for each in values]) for name in values[0].slopes}
         value = put([each.value for each in values])
         for slope in slopes.values():
-            # a sum that is none has no slopes
+            # an invalid sum has no gradient
             slope[np.isnan(value[:, 0])] = complex(np.nan, np.nan) if np.iscomplexobj(slope) else np.nan
         return cls(value, put([each.least for each in values]), slopes)
 
     def shaped(self, shape: tuple[int, ...]) -> tuple[Any, dict[str, Any]]:
-        """Return sum and slopes in the form of the call.
-
-        Slopes along the motion keep the last axis.
-        """
+        """Return sum and slopes in the shape of the call; slopes along the motion keep the last axis."""
 
         def formed(array: Number) -> Any:
             over = shape if array.shape[1] > 1 else shape[:-1]
@@ -228,37 +223,30 @@ def objective_program(
     """Make the program of an objective for numbers of some form."""
     graph = path.mechanism.graph
     assembled, known = known_poses(path, names, form.known)
-    outputs = {name: _masked_output(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
+    outputs = {}
+    for name, output in zip(names, path.outputs, strict=True):
+        outputs[name] = selected(known[name], output, complex(np.nan, np.nan) if output.y is not None else np.nan)
     cost = record_objective(form.function, graph, outputs, form.given, assembled)
     root = graph.apply(TOTAL, cost)
-    kept = reduce(RecordedNumber.__and__, _used_truths(graph, cost, known), assembled)
+    needed = set(graph.needed([cost]))
+    counted = reduce(RecordedNumber.__and__, (truth for truth in known.values() if truth.x in needed), assembled)
     by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
     every = [k for nodes in by.values() for k in nodes]
-    found = dict(zip(every, reverse(graph, root, every, numbers.strata(graph), kept.x), strict=True))
-    slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
+    adjoints = dict(zip(every, reverse(graph, root, every, numbers.strata(graph), counted.x), strict=True))
+    slopes = {name: tuple(adjoints[k] for k in nodes) for name, nodes in by.items()}
     nodes = {_SUM: (root,), _MARGIN: (path.least,), **slopes}
     return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
 
 
-def _masked_output(output: RecordedNumber, assembled: RecordedNumber) -> RecordedNumber:
-    return selected(assembled, output, complex(np.nan, np.nan) if output.y is not None else np.nan)
-
-
-def _used_truths(graph: OperationGraph, cost: int, known: Mapping[str, RecordedNumber]) -> list[RecordedNumber]:
-    """Return where the outputs are known that a cost hangs on."""
-    needed = set(graph.needed([cost]))
-    return [truth for truth in known.values() if truth.x in needed]
-
-
-# What an objective reads besides outputs and what it is given.
+# An objective reads this name besides outputs and parameters.
 ASSEMBLED = "assembled"
 
 
 class ObjectivePose:
-    """One pose of a path, as an objective sees it.
+    """One pose of a path, as an objective reads it.
 
-    `at["G.position"]` is an output of the path, `at["target"]` what is given under this name with each call;
-    `at.assembled`, or `at["assembled"]`, tells whether the pose is.
+    `at["G.position"]` is an output of the path, `at["target"]` a parameter that each call gives; `at.assembled`, or
+    `at["assembled"]`, tells whether the pose is assembled.
     """
 
     def __init__(self, known: Mapping[str, RecordedNumber], assembled: RecordedNumber) -> None:
@@ -266,9 +254,9 @@ class ObjectivePose:
         self.read: set[str] = set()
 
     def __getitem__(self, name: str) -> RecordedNumber:
-        """Return an output of the path, or what is given with the call."""
+        """Return an output of the path, or a parameter of the call."""
         if name not in self._known:
-            what = "it is no output of the path, and was not given with the call"
+            what = "it is neither an output of the path nor a parameter of the call"
             raise UnknownName(Problem(str(name), what, suggestion(name, list(self._known))))
         self.read.add(name)
         return self._known[name]
@@ -282,13 +270,8 @@ class ObjectivePose:
         return f"ObjectivePose({', '.join(self._known)})"
 
 
-def recorded_parameter(graph: OperationGraph, name: str, is_complex: bool) -> RecordedNumber:
-    """Return what is given under a name with a call, as a recorded number."""
-    return RecordedNumber.given(graph, *parameter_inputs(name, is_complex))
-
-
 def parameter_inputs(name: str, is_complex: bool) -> tuple[InputNumber, ...]:
-    """Return the real numbers that are given under a name."""
+    """Return the real inputs of a parameter."""
     return tuple(InputNumber(PARAMETER, name, part) for part in (("x", "y") if is_complex else ("",)))
 
 
@@ -299,19 +282,16 @@ def record_objective(
     given: Mapping[str, bool],
     assembled: RecordedNumber,
 ) -> int:
-    """Return the node of what an objective says of one pose.
+    """Return the node of an objective's value at one pose.
 
-    `given` tells of each name given with the call whether it is complex. Raises InvalidInput for what cannot be
-    recorded, UnknownName for what is not read or not there.
+    `given` tells of each parameter of the call whether it is complex. Raises InvalidInput for what cannot be recorded,
+    UnknownName for parameters that are not read or not given.
     """
-    taken = [
-        Problem(name, "the pose has this by itself", "give it another name") for name in _taken_names(outputs, given)
-    ]
+    taken = [name for name in given if name in outputs or name == ASSEMBLED]
     if taken:
-        raise InvalidInput(taken)
-    pose = ObjectivePose(
-        {**outputs, **{name: recorded_parameter(graph, name, c) for name, c in given.items()}}, assembled
-    )
+        raise InvalidInput([Problem(name, "the pose has this name itself", "choose another name") for name in taken])
+    parameters = {name: RecordedNumber.given(graph, *parameter_inputs(name, kind)) for name, kind in given.items()}
+    pose = ObjectivePose({**outputs, **parameters}, assembled)
     try:
         with one_pose():
             cost = assembled.like(function(pose))
@@ -330,11 +310,6 @@ def record_objective(
     if graph.is_truth(cost.x):
         return graph.apply("select", cost.x, graph.constant(1.0), graph.constant(0.0))
     return cost.x
-
-
-def _taken_names(outputs: Mapping[str, RecordedNumber], given: Mapping[str, bool]) -> list[str]:
-    """Return what is given under a name that means something already."""
-    return [name for name in given if name in outputs or name == ASSEMBLED]
 
 
 def with_parameters(numbers: CallNumbers, given: Mapping[str, Any]) -> tuple[CallNumbers, dict[str, bool]]:

@@ -15,7 +15,6 @@ from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, check_t
 from compoundkin.programs.derivatives.differentiation import forward
 from compoundkin.programs.derivatives.law_slopes import law_slope_parts, slope_inputs
 from compoundkin.programs.derivatives.solved_inputs import solved_inputs
-from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, InputNumber
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.recorded_path import RecordedPath
@@ -73,10 +72,8 @@ class PathSensitivities(ShortRepr):
         return f"PathSensitivities({', '.join(self.values.found)} by {', '.join(self.by)})"
 
 
-# An output and what its slope is by; the output itself is by nothing, and the least margin of no output.
+# An output and the name that its slope is by, which is empty for the output itself; both are for the least margin.
 SlopeName: TypeAlias = tuple[str, str]
-
-
 _MARGIN = ("", "")
 
 
@@ -89,8 +86,8 @@ def sensitivity_program(
     wanted = [k for parts in path.nodes for k in parts]
     nodes: dict[SlopeName, tuple[int, ...]] = {(name, ""): parts for name, parts in outputs.items()}
     for word, given in by.items():
-        found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
-        nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
+        tangents = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
+        nodes |= {(name, word): tuple(tangents[k] for k in parts) for name, parts in outputs.items()}
     nodes[_MARGIN] = (path.least,)
     return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
 
@@ -102,40 +99,44 @@ class SensitivityPrograms(ShortRepr):
     path: PathPrograms
     _programs: dict[Any, ReadyProgram[SlopeName]] = field(default_factory=dict)
 
-    def found(self, numbers: CallNumbers, by: str | Sequence[str] | None, threads: int) -> PathSensitivities:
-        """Compute outputs and slopes.
-
-        They are by what is named, or by all free dimensions and drivers.
-        """
+    def computed(self, numbers: CallNumbers, by: str | Sequence[str] | None, threads: int) -> PathSensitivities:
+        """Compute outputs and slopes by the names given, or by all free dimensions and drivers."""
         check_threads(threads)
         known = _directions(numbers)
         named = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
-        asked = [each for name in named for each in ([name] if name in known else _coordinates(name, known))]
-        unknown = [name for name in asked if name not in known]
+        # the name of a free point stands for both coordinates
+        chosen = [
+            each
+            for name in named
+            for each in ([] if name in known else [k for k, one in known.items() if one.name == name]) or [name]
+        ]
+        unknown = [name for name in chosen if name not in known]
         if unknown:
-            raise UnknownName(
-                [Problem(f"by.{name}", "it is no input", suggestion(name, list(known))) for name in unknown]
-            )
+            what = "it is not an input"
+            raise UnknownName([Problem(f"by.{name}", what, suggestion(name, list(known))) for name in unknown])
         path, names = self.path, self.path.names
-        laws = [one for one in path.law_numbers if one.name in asked]
-        read = {name: known[name] for name in asked if name not in {one.name for one in laws}}
+        laws = [one for one in path.law_numbers if one.name in chosen]
+        read = {name: known[name] for name in chosen if name not in {one.name for one in laws}}
         wanted = read | {label: drive for label, (drive,) in slope_inputs(laws, path.order).items()}
-        found = self._run(numbers, wanted, False, threads)
-        look = path.limits.doubtful(numbers, found.pop(_MARGIN))
-        outputs = [found.pop((name, "")) for name in names]
-        failed = values_near_limits(numbers, names, outputs, look, path.solved)
-        slopes = found
-        if look is not None:
-            slopes = {key: np.array(np.broadcast_to(slope, numbers.extent)) for key, slope in found.items()}
-            for designs, told in solved_inputs(path, numbers, look.to_solve):
-                solved = self._run(told, wanted, True, threads)
+        slopes = self._run(numbers, wanted, False, threads)
+        screened = path.limits.screen(numbers, slopes.pop(_MARGIN))
+        outputs = [slopes.pop((name, "")) for name in names]
+        failed = values_near_limits(numbers, names, outputs, screened, path.solve)
+        if screened is not None:
+            slopes = {key: np.array(np.broadcast_to(slope, numbers.extent)) for key, slope in slopes.items()}
+            for designs, own in solved_inputs(path, numbers, screened.to_solve):
+                solved = self._run(own, wanted, True, threads)
                 for key, slope in slopes.items():
                     slope[designs] = solved[key]
-        slopes = _with_law_slopes(laws, numbers, slopes, names, path.order)
-        values = path.shown(numbers, outputs, failed)
-        return PathSensitivities(
-            values, {key: _masked_slope(values.found[key[0]], slope) for key, slope in slopes.items()}
-        )
+        for one in laws:
+            for name in names:
+                parts = {label: slopes.pop((name, label)) for label in slope_inputs([one], path.order)}
+                slopes[name, one.name] = sum(law_slope_parts(one, numbers, parts, path.order))
+        values = path.path_values(numbers, outputs, failed)
+        for key, slope in slopes.items():
+            missing = np.isnan(values.found[key[0]])
+            slopes[key] = np.where(missing, np.nan, slope) if missing.any() else slope
+        return PathSensitivities(values, slopes)
 
     def _run(
         self, numbers: CallNumbers, by: Mapping[str, InputNumber], is_seeded: bool, threads: int
@@ -156,30 +157,3 @@ def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:
         elif (given.kind, given.part) == (DRIVE, "0"):
             found[given.name] = given
     return found
-
-
-def _with_law_slopes(
-    laws: Sequence[FreeDimension],
-    numbers: CallNumbers,
-    slopes: Mapping[SlopeName, Number],
-    names: Sequence[str],
-    order: int,
-) -> dict[SlopeName, Number]:
-    """Return slopes with those by numbers of laws in the place of those by what the laws move."""
-    found = dict(slopes)
-    for one in laws:
-        for name in names:
-            own = {label: found.pop((name, label)) for label in slope_inputs([one], order)}
-            found[name, one.name] = sum(law_slope_parts(one, numbers, own, order))
-    return found
-
-
-def _coordinates(name: str, known: Mapping[str, InputNumber]) -> list[str]:
-    """Return the coordinates of a free point, or the name itself."""
-    return [each for each, given in known.items() if given.name == name] or [name]
-
-
-def _masked_slope(value: Number, slope: Number) -> Number:
-    """Return a slope that is none where the value is none."""
-    lost = np.isnan(value)
-    return np.where(lost, np.nan, slope) if lost.any() else slope

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,15 +18,14 @@ from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.solved_designs import seed_values, solve_in_parts
 
 if TYPE_CHECKING:
-    from compoundkin.kinematics.motion import Motion
     from compoundkin.programs.path_programs import PathPrograms
 
-# How it is known which poses an output has: at all; where the program finds it assembled; where it was solved.
+# The poses that have an output: all; those that the program itself assembles; those that were solved.
 ALL_POSES, ASSEMBLED_POSES, SOLVED_POSES = "everywhere", "assembled", "solved"
 
 
 def known_poses(path: RecordedPath, names: Sequence[str], how: str) -> tuple[RecordedNumber, dict[str, RecordedNumber]]:
-    """Return whether a pose is assembled, and whether each output is known."""
+    """Return whether a pose is assembled, and for each output whether it is known there."""
     mechanism = path.mechanism
     if how == SOLVED_POSES:
         mask = [RecordedNumber.given(mechanism.graph, _known_input(name)) > 0.5 for name in ("", *names)]
@@ -36,21 +35,20 @@ def known_poses(path: RecordedPath, names: Sequence[str], how: str) -> tuple[Rec
 
 
 def solved_inputs(path: PathPrograms, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, CallNumbers]]:
-    """Solve some designs, and yield what a seeded program is given for them."""
+    """Solve some designs, and yield the numbers of a seeded program for them, part by part."""
     seeds = path.variant(numbers.still, is_seeded=True).seeds
     names = path.names
-    for part, told in solve_in_parts(path.solved, numbers, designs):
+    for part, solved in solve_in_parts(path.solve, numbers, designs):
         own = numbers_of_designs(numbers, part)
-        found = dict.fromkeys([*map(_known_input, ["", *names]), *seeds], np.zeros(own.extent))
-        if told:
-            found |= {**_known_masks(told.motion, names), **seed_values(seeds, told.motion)}
-        yield part, replace(own, given={**own.given, **found})
-
-
-def _known_masks(motion: Motion, names: Sequence[str]) -> Mapping[InputNumber, Number]:
-    shape = motion.failed.shape
-    values = {name: np.isfinite(quantity(motion, name).values).reshape(shape) for name in names}
-    return {_known_input(name): known.astype(float) for name, known in {"": motion.failed == 0, **values}.items()}
+        inputs = dict.fromkeys([*map(_known_input, ["", *names]), *seeds], np.zeros(own.extent))
+        if solved:
+            motion = solved.motion
+            inputs[_known_input("")] = (motion.failed == 0).astype(float)
+            for name in names:
+                known = np.isfinite(quantity(motion, name).values).reshape(motion.failed.shape)
+                inputs[_known_input(name)] = known.astype(float)
+            inputs |= seed_values(seeds, motion)
+        yield part, replace(own, given={**own.given, **inputs})
 
 
 def _known_input(name: str) -> InputNumber:

@@ -54,9 +54,10 @@ def _search_failures(designs: Designs) -> AssembledRange:
     between, after = np.zeros(shape[0], dtype=np.int32), np.zeros(shape[0], dtype=int)
     none: Number = np.empty(0, dtype=int)
     programs = designs.path.compiled.programs
-    if values.look is None and not designs.path.has_ends:
+    if values.screened is None and not designs.path.has_ends:
         return AssembledRange(failed, between, after, none)
-    near, handed = (np.arange(shape[0]), none) if values.look is None else (values.look.near, values.look.to_solve)
+    screened = values.screened
+    near, handed = (np.arange(shape[0]), none) if screened is None else (screened.designs, screened.to_solve)
     near = np.arange(shape[0]) if designs.path.has_ends else near
     near = np.union1d(near, handed)
     near = near[~failed[near].any(axis=1)]

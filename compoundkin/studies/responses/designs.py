@@ -18,7 +18,7 @@ from compoundkin.kinematics.extremes.motion_between import inputs_between, inter
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.call_numbers import Call, CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
@@ -128,7 +128,7 @@ class Designs(ShortRepr):
         values, dimensions, more = self.call
         speed, acceleration, jerk = (more.get(name) for name in RATES)
         programs = self.path.compiled.programs
-        return programs.numbers(values, dimensions, speed, acceleration, jerk, more.get(TIME))
+        return programs.numbers(Call(values, dimensions, speed, acceleration, jerk, more.get(TIME)))
 
     @property
     def motion(self) -> Motion:
