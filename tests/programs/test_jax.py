@@ -148,7 +148,7 @@ def test_a_slip_is_told() -> None:
         (lambda: function([1j]), "values.crank: complex"),
         (lambda: function("a"), "values.crank: a text"),
         (lambda: function(CRANK[:0]), "no poses"),
-        (function, "given no values"),
+        (function, "the driver has no values"),
         (lambda: function(CRANK, {"plate.C": "a"}), "plate.C"),
     ):
         with pytest.raises(CompoundkinError, match=told):
