@@ -1,4 +1,4 @@
-"""The equations of textbooks: loop equations as text, Freudenstein's constants, Newton's iterations, dyads as functions.
+"""The equations of textbooks: loop equations as text, Freudenstein's constants, Newton's iterations, dyads.
 
 `compoundkin.loop_equations` gives the loop equations of a mechanism.
 

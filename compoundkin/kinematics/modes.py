@@ -1,4 +1,4 @@
-"""Assembly modes at the reference pose: stated by a call or a drawing, by default, or found among all configurations."""
+"""Assembly modes at the reference pose: stated by a call or a drawing, by default, or out of all configurations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A solved motion: points, links, pairs and drivers by name with all derivatives, and the error that rounding leaves."""
+"""A solved motion: points, links, pairs and drivers by name with all derivatives, and its rounding error."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from compoundkin.files.exchange.contract import ExchangeFormat
 
-# Each format's word with its module, imported on demand, and its name there, FORMAT where none is given. In the order in
+# Each format's word with its module, imported on demand, and its name there, else FORMAT. In the order in
 # which they are tried on a content; those whose marks are plainest first.
 MODULES = {
     "linkage": "linkage.linkage_format",

@@ -1,4 +1,4 @@
-"""Loop closure of a group: its bodies as plain numbers, origins along a spanning tree, one equation per closing pair."""
+"""Loop closure of a group: its bodies as plain numbers, origins along a spanning tree, an equation per closing pair."""
 
 from __future__ import annotations
 

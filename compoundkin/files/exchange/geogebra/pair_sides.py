@@ -1,4 +1,4 @@
-"""Sides of pairs in a construction: points and lines of bodies, which intersection is taken, and bodies placed by them."""
+"""Sides of pairs in a construction: points and lines of bodies, the intersection taken, bodies placed by them."""
 
 from __future__ import annotations
 
