@@ -46,7 +46,7 @@ class PyslvsExpression:
 
 
 @dataclass
-class _Fields:
+class _ExpressionFields:
     """What a joint says of itself."""
 
     at: complex | None = None
@@ -98,7 +98,7 @@ def _joint(words: ExpressionWords, found: PyslvsExpression, problems: Problems) 
     kind = _KINDS.get(word)
     if kind is None:
         problems.add(where, f"no joint type {word}", "there are R, P and RP")
-    own = _Fields()
+    own = _ExpressionFields()
     while words.more():
         _field(words, own, found, where, problems)
     words.take("]")
@@ -119,7 +119,9 @@ def _joint(words: ExpressionWords, found: PyslvsExpression, problems: Problems) 
     return JointRecord(kind or "R", keys, own.at or 0j, angle + pi if backward else angle, where=where)
 
 
-def _field(words: ExpressionWords, own: _Fields, found: PyslvsExpression, where: str, problems: Problems) -> None:
+def _field(
+    words: ExpressionWords, own: _ExpressionFields, found: PyslvsExpression, where: str, problems: Problems
+) -> None:
     word = words.take()
     words.take("[")
     if word == "P":

@@ -119,7 +119,7 @@ class ZeroPlaces(NamedTuple):
     sense: Number
 
 
-class _Samples(NamedTuple):
+class _SampledValues(NamedTuple):
     """All that is known of a quantity along a motion, in order: stretch, t in it, sign."""
 
     which: Number
@@ -171,7 +171,7 @@ class ZeroSearch(ShortRepr):
         zero = np.abs(ends).max(axis=-1) <= self._tiny
         return np.isnan(ends).any(axis=-1) | (ends[:, 0] * ends[:, 1] < 0) | (near & ~zero)
 
-    def _samples(self) -> _Samples:
+    def _samples(self) -> _SampledValues:
         """Return what is known at poses and in windows."""
         which = np.flatnonzero(self._candidates())
         plain = np.setdiff1d(np.arange(len(self.stretches)), which)
@@ -187,7 +187,7 @@ class ZeroSearch(ShortRepr):
         index = stretch.astype(int)
         sign = np.where(np.abs(value) <= self._tiny, 0.0, np.sign(value))
         place = self.stretches.places(t[:, None], index)[:, 0]
-        return _Samples(index, t, np.where(np.abs(t) > 1.0, np.round(place), place), sign)
+        return _SampledValues(index, t, np.where(np.abs(t) > 1.0, np.round(place), place), sign)
 
     def _at_outer_jumps(self) -> Number:
         """Return stretch, t and value of the first and last poses at which it is zero, though derivatives jump there.
@@ -206,7 +206,7 @@ class ZeroSearch(ShortRepr):
     def _windows(self, which: Number, low: Number, high: Number) -> Windows:
         return sampled(self.motion, (self.measure,), self.stretches, which, low, high)
 
-    def _of_runs(self, samples: _Samples) -> list[tuple[float, ...]]:
+    def _of_runs(self, samples: _SampledValues) -> list[tuple[float, ...]]:
         """Return the zeros at samples, and where the quantity stays zero."""
         piece = self.stretches.piece[samples.which]
         zero = samples.sign == 0
@@ -221,7 +221,7 @@ class ZeroSearch(ShortRepr):
             found.append((float(self.stretches.design[samples.which[a]]), samples.place[a], samples.place[b], sense))
         return found
 
-    def _of_brackets(self, samples: _Samples) -> list[tuple[float, ...]]:
+    def _of_brackets(self, samples: _SampledValues) -> list[tuple[float, ...]]:
         """Return the zeros between two samples."""
         piece, sign = self.stretches.piece[samples.which], samples.sign
         k = np.flatnonzero((sign[:-1] * sign[1:] < 0) & (piece[:-1] == piece[1:]))

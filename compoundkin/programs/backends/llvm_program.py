@@ -230,7 +230,7 @@ def function_text(plan: LanePlan, name: str, is_masked: bool, suffix: str = "") 
     """Return the function of a section, and what it declares."""
     section = LaneSection(plan, name, is_masked)
     section.body()
-    loop = _Loop(section)
+    loop = _RowLoop(section)
     ends = list(loop.ends())
     large = section.too_large()
     lines = [f"define internal void @{name}{suffix}({PARAMETERS}) #0 {{", "entry:"]
@@ -244,7 +244,7 @@ def function_text(plan: LanePlan, name: str, is_masked: bool, suffix: str = "") 
     return "\n".join([*lines, "  ret void", "}"]), section.text.declared
 
 
-class _Loop:
+class _RowLoop:
     """Values that go from one round to the next."""
 
     def __init__(self, section: LaneSection) -> None:
