@@ -272,7 +272,7 @@ class Turns:
 
 def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
     """Follow the angle of a link of group `k` from the first pose. There it is nearest to the drawn one or to zero."""
-    ways = (_TrackedGroup(tracker, k, link, on_approach) for on_approach in (True, False))
+    ways = (_TrackedOrientation(tracker, k, link, on_approach) for on_approach in (True, False))
     (before, early), (along, late) = (way.samples() for way in ways)
     drawn = tracker.solving_order.structure.mechanism.drawn_poses.get(link)
     first = early[:, 0] if drawn is None else np.ravel(column(drawn).angle.c[0])
@@ -283,7 +283,7 @@ def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
 
 
 @dataclass(frozen=True)
-class _TrackedGroup:
+class _TrackedOrientation:
     """The orientation of a link of group `k` along the approach path or the motion."""
 
     tracker: Tracker
