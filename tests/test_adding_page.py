@@ -14,6 +14,8 @@ import pytest
 from compoundkin.kinematics.groups import DyadSolver, GroupSolver
 from compoundkin.model.pairs import Pair
 
+pytestmark = pytest.mark.full
+
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "adding.md").read_text(encoding="utf-8")
 PAIR, EXAMPLE, GROUP = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)

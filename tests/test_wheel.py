@@ -10,6 +10,8 @@ import pytest
 
 import compoundkin as ck
 
+pytestmark = pytest.mark.full
+
 ROOT = Path(__file__).parent.parent
 
 

@@ -12,6 +12,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics import Motion
+from tests.catalog import EVERYTHING
 from tests.support import REFERENCE, reference
 
 
@@ -185,6 +186,7 @@ def newton(x: np.ndarray, theta: float, places: dict[str, complex]) -> tuple[np.
     return None, matrix
 
 
+@pytest.mark.full
 def test_no_random_drawn_stephenson_iii_is_lost() -> None:
     """Over a full turn; 9 of 59 once lost everything: what own continuation reaches is reached."""
     rng, reached = np.random.default_rng(1), 0
@@ -203,7 +205,7 @@ def test_no_random_drawn_stephenson_iii_is_lost() -> None:
     assert reached > 350
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(4) if EVERYTHING else range(1))
 def test_whichever_place_is_drawn_the_motion_is_the_same(seed: int) -> None:
     """Drawn anywhere on the branch, asked for forth and back: one motion, and that of own continuation."""
     rng = np.random.default_rng(seed)

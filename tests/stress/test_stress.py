@@ -16,6 +16,8 @@ from tests.stress.mutated_files import mutated
 from tests.stress.sketch import Placed
 from tests.stress.trial import Outcome, drawn_case, tried
 
+pytestmark = pytest.mark.full
+
 COUNT, PARTS = 80, 4
 small = partial(tried, small=True)
 

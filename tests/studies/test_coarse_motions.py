@@ -73,6 +73,7 @@ def test_figures_do_not_depend_on_the_step(step: float) -> None:
             assert abs(found[figure][row] - float(np.ravel(ck.quantity(fine, figure).values)[0])) < 1e-8
 
 
+@pytest.mark.full
 def test_an_answer_at_a_limit_position_that_fails_its_verification_is_told() -> None:
     shaper = ck.load("crank-shaper")
     with pytest.warns(ck.errors.UnassembledPoses, match="does not pass its verification.*assembles"):

@@ -73,7 +73,7 @@ def optimise(
     NotAssembled where no design within the ranges is assembled; warns UnmetConstraints where they hold nowhere,
     UnassembledPoses where the best design is not assembled between the poses of its goals.
 
-    >>> from compoundkin.files import shipped_mechanisms
+    >>> from compoundkin.files import load
     >>> from compoundkin.studies.goals.value_goals import least
     >>> rocker = load("crank-rocker")
     >>> found = optimise(rocker, {"rocker.C.x": (3.5, 4.5)}, least("rocker.angle.stroke"), starts=4)

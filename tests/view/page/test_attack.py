@@ -11,6 +11,8 @@ from compoundkin.files import load
 from compoundkin.view.report import page
 from tests import catalog
 
+pytestmark = pytest.mark.full
+
 PLAYER = "compoundkin.players[0]"
 # How far names reach out of the sketch at some poses, in pixels; two pixels of a letter's box are empty.
 OUT = f"""() => {{

@@ -13,6 +13,8 @@ from tests.view.loaded import six_bar_forces
 
 from .conftest import PHONE
 
+pytestmark = pytest.mark.full
+
 PLAYER = "compoundkin.players[0]"
 
 
