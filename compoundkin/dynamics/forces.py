@@ -40,7 +40,8 @@ class Forces(DisplaysHtml, ForceResult):
     @cached_property
     def efficiency(self) -> Efficiency:
         """How much of the power put in comes out, and whether it is self-locking."""
-        return Efficiency(self)
+        efforts = {name: self.frictionless.drives[name].effort for name in self.friction.intervals}
+        return Efficiency(self.motion, self.power, self.friction, efforts)
 
     @cached_property
     def pairs(self) -> Mapping[str, PairForce]:
@@ -150,8 +151,8 @@ class Forces(DisplaysHtml, ForceResult):
         missing += f", {len(self.singular)} singular" if self.singular else ""
         if self.assumed:
             kind = f"assuming freed {', '.join(map(str, self.relaxed))}, {kind}"
-        told = f"{kind} inertia: {len(self.wrenches)} pairs at {self.shape} poses{missing}"
-        return f"Forces({self.mechanism.title!r} {told})"
+        text = f"{kind} inertia: {len(self.wrenches)} pairs at {self.shape} poses{missing}"
+        return f"Forces({self.mechanism.title!r} {text})"
 
 
 def motion_of(what: Motion | Forces) -> Motion:

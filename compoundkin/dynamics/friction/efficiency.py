@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.dynamics.friction.friction_forces import PoseStretch, stretches_where
-
-if TYPE_CHECKING:
-    from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.friction.friction_forces import FrictionForces, PoseStretch, stretches_where
+from compoundkin.dynamics.reactions.driver_efforts import Powers
+from compoundkin.kinematics.motion import Motion
 
 # Powers below this part of the greatest one at any pose of the motion are rounding.
 NO_POWER = 1e-12
@@ -28,7 +26,10 @@ class Efficiency(ShortRepr):
     output. Arrays have the motion's shape; NaN where no power flows.
     """
 
-    forces: Forces
+    motion: Motion
+    power: Powers
+    friction: FrictionForces
+    frictionless_efforts: Mapping[str, Number]
 
     @property
     def at_poses(self) -> Number:
@@ -42,7 +43,7 @@ class Efficiency(ShortRepr):
         Works are sums over the poses, by the trapezoidal rule.
         """
         works = [self._integrated(power) for power in self._all]
-        return np.reshape(_ratio(works, self._least), self.forces.motion.shape[:-1])[()]
+        return np.reshape(_ratio(works, self._least), self.motion.shape[:-1])[()]
 
     @property
     def backward(self) -> Number:
@@ -58,35 +59,35 @@ class Efficiency(ShortRepr):
     @property
     def self_locking(self) -> Number:
         """Where loads cannot move the mechanism without the drivers, in either direction; of the motion's shape."""
-        return self.forces.motion.grid.shaped(self._locked)
+        return self.motion.grid.shaped(self._locked)
 
     @property
     def self_locking_stretches(self) -> tuple[PoseStretch, ...]:
         """The stretches of poses where it is self-locking, with the driver's values."""
         labels = np.where(self._locked, 0, -1)
-        return tuple(stretch for _, stretch in stretches_where(self.forces.motion, labels))
+        return tuple(stretch for _, stretch in stretches_where(self.motion, labels))
 
     @cached_property
     def _locked(self) -> Number:
-        motion = self.forces.motion
+        motion = self.motion
         drivers, loads = sum(self._drivers), sum(self._loads)
         forward = (loads > self._least) & (drivers >= 0.0)
         backward = (self._loads_backward > self._least) & (self._drivers_backward >= 0.0)
         resting = np.zeros(motion.failed.shape, dtype=bool)
-        friction = self.forces.friction
+        friction = self.friction
         for name, (low, high) in friction.intervals.items():
-            held = self._flat(self.forces.frictionless.drives[name].effort)
+            held = self._flat(self.frictionless_efforts[name])
             resting = resting | (friction.resting & (low <= 0.0) & (high >= 0.0) & (np.abs(held) > 0.0))
         return (forward | backward | resting) & (motion.failed == 0)
 
     @cached_property
     def _drivers(self) -> list[Number]:
-        return [self._flat(power) for power in self.forces.power.drives.values()]
+        return [self._flat(power) for power in self.power.drives.values()]
 
     @cached_property
     def _loads(self) -> list[Number]:
         """The powers of loads one by one, of all weights, and of inertia."""
-        power = self.forces.power
+        power = self.power
         return [self._flat(one) for one in (*power.loads.values(), power.gravity, -power.kinetic_rate)]
 
     @property
@@ -104,14 +105,14 @@ class Efficiency(ShortRepr):
 
     @property
     def _drivers_backward(self) -> Number:
-        efforts, drives = self.forces.friction.backward, self.forces.motion.drives
+        efforts, drives = self.friction.backward, self.motion.drives
         if not efforts:
             return -sum(self._drivers)
         return -sum(effort * self._flat(drives[name].rate) for name, effort in efforts.items())
 
     def _integrated(self, power: Number) -> Number:
         """Return the work of a power (designs, poses) over the motion."""
-        motion = self.forces.motion
+        motion = self.motion
         if motion.time is not None:
             return _sum_over(power, self._flat(np.broadcast_to(motion.time, motion.shape)))
         name = next(iter(motion.drives))
@@ -125,10 +126,10 @@ class Efficiency(ShortRepr):
         return _sum_over(slope, value)
 
     def _flat(self, value: Number) -> Number:
-        return np.reshape(value, self.forces.motion.failed.shape)
+        return np.reshape(value, self.motion.failed.shape)
 
     def _shaped(self, value: Number) -> Number:
-        return self.forces.motion.grid.known(value)
+        return self.motion.grid.known(value)
 
 
 def _sum_over(values: Number, places: Number) -> Number:
