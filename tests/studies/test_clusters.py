@@ -15,6 +15,7 @@ from tests.source import ROOT
 from tests.studies.test_study import assert_same
 
 
+@pytest.mark.full
 def test_the_page_on_clusters_runs_though_a_worker_is_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
