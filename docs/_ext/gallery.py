@@ -130,7 +130,7 @@ def marks_of(mechanism: ck.Mechanism) -> set[type]:
     shown = solved_over(mechanism)
     if shown is None:
         return set()
-    return {type(seen.mark) for seen in scene_in(shown, None, None, 0).seen}
+    return {type(seen.mark) for seen in scene_in(shown, None, None, 0).pair_marks}
 
 
 def chosen(names: str) -> dict[str, ck.Mechanism]:

@@ -21,10 +21,10 @@ CONTENTS: dict[str, tuple[str, ...]] = {
         *("studies", "clusters", "tolerances", "optimisation", "compiled"),
         *("cli", "file-format", "exchange/index", "study-files", "programs_in_other_languages"),
     ),
-    "Understand it": ("theory", "friction", "notation"),
+    "Understand it": ("theory", "friction", "notation", "words"),
     "Examples": ("gallery/index", "catalog"),
     "Refer to it": ("api/index",),
-    "Add to it": ("adding", "architecture", "modules"),
+    "Add to it": ("adding", "architecture"),
 }
 
 

@@ -12,8 +12,7 @@ from sphinx.domains.python import PyXRefRole
 import compoundkin as ck
 
 # Where every public name is described: the package, its named modules, not those whose names are words of all days.
-NAMED = ("results", "errors", "laws", "profiles", "chains", "composing", "coupler", "advantage", "cams", "equivalents",
-         "performance")  # fmt: skip
+NAMED = ("results", "errors", "laws", "profiles", "chains", "figures")
 PLACES = {name: f"compoundkin.{part}.{name}" for part in NAMED for name in getattr(ck, part).__all__}
 PLACES |= {name: f"compoundkin.{name}" for name in ck.__all__}
 # `Motion`, `Pair.glyph`: never parameters or words of files, which are written in lower case.
