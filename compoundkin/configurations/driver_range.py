@@ -15,8 +15,8 @@ from compoundkin.base.arrays import TURN, Number, first_entry, row
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.segment_poses import Sweep, drawn_angle
 from compoundkin.configurations.segments import Segments, driver_segment
-from compoundkin.kinematics.approach import approach_path
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.curve.driver_path import driver_path
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder, run
@@ -163,5 +163,5 @@ def _drawn(solving_order: SolvingOrder, first: Mapping[str, float]) -> dict[str,
     if not mechanism.sketch:
         return {}
     given = inputs(solving_order, first, None, None, None)
-    path, _ = approach_path(solving_order, given, mechanism.drawn_poses, mechanism.geometry.sketch)
-    return {name: float(first_entry(v[0])) for name, v in path.drives.items()}
+    path, _ = driver_path(solving_order, given, mechanism.drawn_poses, mechanism.geometry.sketch)
+    return {name: float(first_entry(v[0])) for name, v in path.at_home().drives.items()}

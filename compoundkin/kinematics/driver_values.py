@@ -298,6 +298,10 @@ class Inputs(ShortRepr):
         """Return the same dimensions with other driver values."""
         return self._made(self.shape, self.ends, drives)
 
+    def with_dimensions(self, change: Callable[[Number], Number]) -> Inputs:
+        """Return the same drivers with every dimension changed."""
+        return self._made(self.shape, self._ends(change), self.drives)
+
     def of_poses(self, count: int) -> Inputs:
         """Return the same numbers, as a motion of `count` poses."""
         return self._made((*self.shape[:-1], count), self.ends, self.drives)

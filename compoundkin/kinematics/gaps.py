@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.bracketing import bisect_brackets
-from compoundkin.kinematics.group_paths import why_no_return
+from compoundkin.kinematics.curve.group_paths import why_no_return
 from compoundkin.kinematics.motion import Motion
 
 # Halvings of the distance between two neighbouring poses: 2**-45 of it is far below 1e-9 of any driver value.
@@ -146,8 +146,9 @@ def _blames(motion: Motion, designs: Number, poses: Number) -> list[_Blame]:
             group, solver = motion.structure.groups[index - 1], motion.solving_order.solvers[index - 1]
             reason = solver.why(block, k)
             if solver.is_numbered:
-                path = (motion.tracker.branch or motion.tracker).paths[solver.index]
-                reason += f"; {why_no_return(motion.tracker, solver.index, path, int(designs[k]), float(poses[k]))}"
+                curve, (d, s) = motion.followed.curve, (designs[k : k + 1], poses[k : k + 1].astype(float))
+                place = float(motion.followed.places_on_path(d, s)[0])
+                reason += f"; {why_no_return(curve, solver.index, curve.paths[solver.index], int(d[0]), place)}"
             found.append(_Blame(group.links, group.name, reason))
     return found
 

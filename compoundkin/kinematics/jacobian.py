@@ -14,10 +14,10 @@ from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
-from compoundkin.kinematics.change_points import rates_at
+from compoundkin.kinematics.curve.change_points import rates_at
+from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.quantities import AtPoses, Quantity, quantity, whole_and_part
-from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import LENGTH, RATE_OF, derivative_order, unit_of
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -189,8 +189,8 @@ class Solved(AtPoses, Protocol):
         """The mechanism's length scale."""
 
     @property
-    def tracker(self) -> Tracker:
-        """What keeps its configuration."""
+    def followed(self) -> FollowedPoses:
+        """Its poses on the configuration curve."""
 
     def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
         """Solve a block of other inputs in its configuration."""
@@ -299,15 +299,15 @@ def _solved(motion: Solved, given: Inputs, s: Number | None, order: int = 1) -> 
             store.take(motion.block(given.cut(d, m), order, at if s is None else s[None, m], index), d, m)
     again: Any = motion
     found = replace(again, order=order, inputs=given, poses=store.poses(), failed=store.failed, time=None)
-    if s is None and motion.is_whole and len(given.drives) == 1 and motion.tracker.expanded is not None:
+    if s is None and motion.is_whole and len(given.drives) == 1 and motion.followed.expanded is not None:
         with np.errstate(all="ignore"):
-            return found.mended(*rates_at(given, motion.tracker, order))
+            return found.mended(*rates_at(given, motion.followed, order))
     return found
 
 
 def undetermined(motion: Solved) -> Number:
     """Return the change points where drivers together tell the rates, (designs, poses)."""
     found = np.zeros(motion.assembled.shape, dtype=bool).reshape(motion.inputs.designs, motion.inputs.poses)
-    if motion.tracker.expanded is not None and len(motion.inputs.drives) > 1:
-        found[motion.tracker.expanded[:2]] = True
+    if motion.followed.expanded is not None and len(motion.inputs.drives) > 1:
+        found[motion.followed.expanded[:2]] = True
     return found

@@ -17,14 +17,14 @@ from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block, blocks, places, with_poses
-from compoundkin.kinematics.change_points import rates_at
+from compoundkin.kinematics.curve.change_points import rates_at
+from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
+from compoundkin.kinematics.curve.modes import GroupMode, modes_of
 from compoundkin.kinematics.derived.figures_of_forces import AsksForces
 from compoundkin.kinematics.driver_values import Inputs, PoseGrid, fit
 from compoundkin.kinematics.jacobian import Jacobian, jacobian_of
-from compoundkin.kinematics.modes import GroupMode, modes_of
 from compoundkin.kinematics.quantities import Table, table_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.geometry import vector
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
@@ -43,10 +43,10 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
     inputs: Inputs
     poses: Mapping[str, Pose]
     failed: Number  # shape (designs, poses): index of the first group that does not close plus one, or 0
-    tracker: Tracker
+    followed: FollowedPoses  # on the configuration curve
     time: Number | None = None  # the times (seconds) of a motion in time; broadcasts with its shape
     loading: Mapping[str, Any] = field(default_factory=dict)  # how its forces are asked for: of `force_analysis`
-    is_whole: ClassVar[bool] = True  # whether its poses are those that its tracker has noted, not places between them
+    is_whole: ClassVar[bool] = True  # whether its poses are those that are noted on its curve, not places between them
 
     @property
     def mechanism(self) -> Mechanism:
@@ -97,7 +97,7 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
     @cached_property
     def _errors(self) -> list[Number]:
         with np.errstate(all="ignore"):
-            return errors_of(self.tracker, self.inputs, self.order)
+            return errors_of(self.followed, self.inputs, self.order)
 
     @property
     def size(self) -> float:
@@ -167,30 +167,30 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
     @property
     def solving_order(self) -> SolvingOrder:
         """What solved it: the driven links, then a solver for each group."""
-        return self.tracker.solving_order
+        return self.followed.solving_order
 
     @property
     def modes(self) -> Mapping[str, GroupMode]:
         """The assembly mode of every group, by the group's name in configurations."""
-        return modes_of(self.solving_order, self.chosen_by, self.tracker.sign, self.shape[:-1])
+        return modes_of(self.solving_order, self.chosen_by, self.followed.sign, self.shape[:-1])
 
     @property
     def chosen_by(self) -> Mapping[int, str]:
         """What chose the mode of each group: `sign`, `drawing`, `hint`, `default` or another."""
-        return self.tracker.chosen_by
+        return self.followed.curve.chosen_by
 
     @property
     def change_points(self) -> Mapping[int, Number]:
         """Where groups are at change points, (designs, count), padded with inf. Twice where the motion turns back."""
-        return self.tracker.flips
+        return self.followed.flips
 
     def sign(self, k: int, design: int) -> int:
         """Return the sign of a group's mode at the first pose of a design."""
-        return int(np.ravel(self.tracker.sign(k, np.array([[design]]), np.array([[0.0]])))[0])
+        return int(np.ravel(self.followed.sign(k, np.array([[design]]), np.array([[0.0]])))[0])
 
     def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
         """Solve other inputs in the configuration at places `s` of `designs` (indices)."""
-        return self.tracker.run(part, order, s, designs)
+        return self.followed.run(part, order, s, designs)
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
         """Return the motion with some poses in the place of what was solved."""
@@ -432,25 +432,25 @@ SEED = 20261122
 LinkErrors: TypeAlias = dict[str, list[Number]]
 
 
-def errors_of(tracker: Tracker, given: Inputs, order: int) -> list[Number]:
+def errors_of(followed: FollowedPoses, given: Inputs, order: int) -> list[Number]:
     """Return the largest error of any link in each derivative, (designs, poses) each."""
     found = [np.zeros((given.designs, given.poses)) for _ in range(order + 1)]
     for d, m in blocks(given.designs, given.poses):
-        part = errors_at(tracker, given.cut(d, m), order, *places(d, m))
+        part = errors_at(followed, given.cut(d, m), order, *places(d, m))
         for whole, errors in zip(found, _largest(part, order), strict=True):
             whole[d, m] = errors
-    if tracker.expanded is not None:
-        designs, index, poses = rates_at(given, tracker, order)
+    if followed.expanded is not None:
+        designs, index, poses = rates_at(given, followed, order)
         if len(designs):
             part = _differences(
-                lambda other: rates_at(other, tracker, order)[2], given, poses, order, tracker.solving_order
+                lambda other: rates_at(other, followed, order)[2], given, poses, order, followed.solving_order
             )
             for whole, errors in zip(found, _largest(part, order), strict=True):
                 whole[designs, index] = np.broadcast_to(errors, (len(designs), 1))[:, 0]
     return found
 
 
-def errors_at(tracker: Tracker, given: Inputs, order: int, s: Number, designs: Number) -> LinkErrors:
+def errors_at(followed: FollowedPoses, given: Inputs, order: int, s: Number, designs: Number) -> LinkErrors:
     """Return the error of every link at a block of inputs.
 
     Of the origin in lengths, of the orientation in radians times the mechanism's size: whichever is larger. Infinite
@@ -458,9 +458,9 @@ def errors_at(tracker: Tracker, given: Inputs, order: int, s: Number, designs: N
     """
 
     def again(other: Inputs) -> Mapping[str, Pose]:
-        return tracker.run(other, order, s, designs).world
+        return followed.run(other, order, s, designs).world
 
-    return _differences(again, given, again(given), order, tracker.solving_order)
+    return _differences(again, given, again(given), order, followed.solving_order)
 
 
 def _largest(errors: LinkErrors, order: int) -> Iterator[Number]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, first_entry, turns_above
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
-from compoundkin.kinematics.approach import drawn_value
+from compoundkin.kinematics.curve.driver_path import drawn_value
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import quietly_solved
 
@@ -51,7 +51,7 @@ def exactly_drawn(motion: Motion) -> Motion | None:
     None where there is none, or it is not drawn to the last digits. Drivers' angles are within the motion's ranges if
     whole turns bring them there and it is the same pose.
     """
-    shown, sketch = motion.tracker.shown, motion.mechanism.sketch
+    shown, sketch = motion.followed.curve.shown, motion.mechanism.sketch
     values: dict[str, float] = {}
     for name in motion.structure.driven if sketch else ():
         value = drawn_value(motion.solving_order, motion.inputs, name, shown.poses, shown.beside)

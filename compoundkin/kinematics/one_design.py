@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from copy import copy
 from dataclasses import dataclass, replace
 from math import prod
 from typing import Any
@@ -15,13 +14,13 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotDetermined
 from compoundkin.base.poses import FIXED
 from compoundkin.base.series import Series
+from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses, Turns
+from compoundkin.kinematics.curve.group_paths import GroupPath
+from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs, inputs, mapped, times_of
-from compoundkin.kinematics.group_paths import GroupPath
-from compoundkin.kinematics.modes import StatedModes
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve, solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import TrackedBranch, Tracker, Turns
 from compoundkin.model.attributes import RATES
 from compoundkin.model.mechanism import Mechanism, mechanism_of_design, values_of_design
 from compoundkin.structure import decompose
@@ -71,9 +70,9 @@ def motion_of_design(motion: Motion, design: int) -> Motion:
         values, *rates = ({name: held[k] for name, held in given.drives.items()} for k in range(4))
         return replace(solve(structure, values, **dict(zip(RATES, rates, strict=True)), order=motion.order), time=time)
     poses = {name: pose if pose is FIXED else pose.mapped(own.series) for name, pose in motion.poses.items()}
-    tracker = own.tracker(motion.tracker, structure, given, shape)
+    followed = own.followed(motion.followed, structure, given, shape)
     failed = own.row(motion.failed)
-    return replace(motion, structure=structure, inputs=given, poses=poses, failed=failed, tracker=tracker, time=time)
+    return replace(motion, structure=structure, inputs=given, poses=poses, failed=failed, followed=followed, time=time)
 
 
 @dataclass(frozen=True)
@@ -100,41 +99,40 @@ class _Design:
         drives = {name: tuple(map(self._number, values)) for name, values in given.drives.items()}
         return Inputs((given.poses,), ends, drives)
 
-    def tracker(self, tracker: Tracker, structure: Structure, given: Inputs, shape: tuple[int, ...]) -> Tracker:
-        """Return its tracker: all that was chosen and found of it."""
-        one = copy(tracker)
-        one.solving_order = _followed(solving_order_of(structure), tracker.solving_order)
-        one.given, one.approach_path = given, self.inputs(tracker.approach_path)
-        one.shown = self._shown(tracker.shown, shape)
-        one.course = None if tracker.course is None else replace(tracker.course, start=self.row(tracker.course.start))
-        one.signs, one.flips = self.rows(tracker.signs), self.rows(tracker.flips)
-        one.approach_flips = self.rows(tracker.approach_flips)
-        one.paths = self._paths(tracker.paths)
-        one.approach_paths = self._paths(tracker.approach_paths)
-        one.turns = {link: self._turns(turns) for link, turns in tracker.turns.items()}
-        one.rests = {k: [(0, pose) for d, pose in found if d == self.index] for k, found in tracker.rests.items()}
-        if tracker.expanded is not None:
-            designs, index, groups = tracker.expanded
+    def followed(
+        self, followed: FollowedPoses, structure: Structure, given: Inputs, shape: tuple[int, ...]
+    ) -> FollowedPoses:
+        """Return its poses on the curve: all that was chosen and found of it."""
+        poses = followed.poses._replace(places=self.row(followed.poses.places))
+        expanded = followed.expanded
+        if expanded is not None:
+            designs, index, groups = expanded
             here = index[designs == self.index]
-            one.expanded = np.zeros_like(here), here, groups
-        if tracker.branch is not None and one.course is not None:
-            one.branch = TrackedBranch(one.course, self._paths(tracker.branch.paths))
-        return one
+            expanded = np.zeros_like(here), here, groups
+        return FollowedPoses(self._curve(followed.curve, structure, shape), given, poses, expanded)
+
+    def _curve(self, curve: ConfigurationCurve, structure: Structure, shape: tuple[int, ...]) -> ConfigurationCurve:
+        return replace(
+            curve,
+            solving_order=_followed(solving_order_of(structure), curve.solving_order),
+            path=replace(curve.path, knots=self.inputs(curve.path.knots)),
+            shown=self._shown(curve.shown, shape),
+            signs=self.rows(curve.signs),
+            flips=self.rows(curve.flips),
+            paths={k: self._path(path) for k, path in curve.paths.items()},
+            turns={link: self._turns(turns) for link, turns in curve.turns.items()},
+        )
 
     def _number(self, value: Number) -> Number:
         row = self.row(value)
         return row.item() if np.size(row) == 1 and np.ndim(row) else row
-
-    def _paths(self, paths: Mapping[int, GroupPath]) -> dict[int, GroupPath]:
-        return {k: self._path(path) for k, path in paths.items()}
 
     def _path(self, path: GroupPath) -> GroupPath:
         s, states, slopes, reach, side = map(self.row, (path.s, path.states, path.slopes, path.reach, path.side))
         return GroupPath(s, states, slopes, reach, side, tuple(self._path(one) for one in path.returns))
 
     def _turns(self, turns: Turns) -> Turns:
-        (before, early), (along, late) = turns.approach, turns.motion
-        return Turns((before, self.row(early)), (along, self.row(late)))
+        return replace(turns, angles=self.row(turns.angles))
 
     def _shown(self, shown: StatedModes, shape: tuple[int, ...]) -> StatedModes:
         def own(value: Any) -> Any:

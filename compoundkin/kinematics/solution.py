@@ -28,15 +28,15 @@ from compoundkin.base.errors import (
 )
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at
-from compoundkin.kinematics.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
+from compoundkin.kinematics.curve.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
+from compoundkin.kinematics.curve.configuration_curve import FollowedPoses, follow
+from compoundkin.kinematics.curve.driver_path import drawn_value
+from compoundkin.kinematics.curve.modes import StatedModes, signs_of, stated_by
 from compoundkin.kinematics.driver_values import Inputs, by_name, inputs, times_of
-from compoundkin.kinematics.modes import StatedModes, signs_of, stated_by
 from compoundkin.kinematics.motion import LinkErrors, Motion, errors_at
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import Begin, TrackedBranch, Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -110,8 +110,8 @@ def solved(
 ) -> Description:
     """Return the motion of some inputs. Raises as `solve`, and warns of nothing."""
     with diagnosing(solving_order.structure):
-        tracker = Tracker(solving_order, given, signs, shown)
-    told = without_imprecise_rates(*solve_all_blocks(tracker.solving_order, tracker.given, tracker, order))
+        followed = follow(solving_order, given, signs, shown)
+    told = without_imprecise_rates(*solve_all_blocks(followed, order))
     if solving_order.structure.relaxation:
         check_redundant(told.motion)
     return told
@@ -120,8 +120,8 @@ def solved(
 def _warn(motion: Motion, poor: int) -> None:
     """Warn of poses not assembled, of rates with few digits, of rests at change points, of drawings beyond ends."""
     if motion.solving_order.guide_ends.pairs:
-        _warn_of_drawing(motion.tracker)
-    if any(motion.tracker.rests.values()):
+        _warn_of_drawing(motion.followed)
+    if any(motion.followed.rests.values()):
         warn(_rest(motion), ChangePointWarning)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
@@ -134,7 +134,7 @@ def _warn(motion: Motion, poor: int) -> None:
 
 def _rest(motion: Motion) -> str:
     """Return where drivers rest at a change point for the first time, and which branch is taken from there."""
-    group, (design, pose) = next((k, found[0]) for k, found in motion.tracker.rests.items() if found)
+    group, (design, pose) = next((k, found[0]) for k, found in motion.followed.rests.items() if found)
     values = {
         name: np.broadcast_to(v[0], motion.failed.shape)[design, pose] for name, v in motion.inputs.drives.items()
     }
@@ -146,16 +146,16 @@ def _rest(motion: Motion) -> str:
     return f"{where}: either branch may go on from there, and the smooth motion is taken"
 
 
-def _warn_of_drawing(tracker: Tracker) -> None:
+def _warn_of_drawing(followed: FollowedPoses) -> None:
     """Warn where the pose drawn, at the driver values it shows, is beyond an end of a guide."""
-    solving_order, shown = tracker.solving_order, tracker.shown
+    solving_order, curve = followed.solving_order, followed.curve
+    shown, given = curve.shown, followed.given
     drivers = solving_order.structure.driven
-    given = tracker.given
     if any(drawn_value(solving_order, given, name, shown.poses, shown.beside) is None for name in drivers):
         return
-    first = tracker.approach_path.cut(slice(None), slice(0, 1))
+    designs = np.arange(given.designs)[:, None]
     with np.errstate(all="ignore"):
-        block = tracker.run(first, 0, *places(slice(0, given.designs), slice(0, 1)), on_approach=True)
+        block = curve.run(curve.path.at_home(), 0, np.full((1, 1), curve.path.home), designs)
         failed = np.broadcast_to(block.failed, block.shape).ravel()
         passed = [solving_order.guide_ends.passed(int(index), block, k) for k, index in enumerate(failed)]
     for reason in dict.fromkeys(one.reason for one in passed if one):
@@ -188,12 +188,12 @@ def starting_configuration(
     """Return the configuration in which `solve` begins at these values. None where it does not close there."""
     given = inputs(solving_order, values, None, None, None)
     try:
-        tracker = Tracker(solving_order, given, signs_of(solving_order), stated_by(solving_order))
+        followed = follow(solving_order, given, signs_of(solving_order), stated_by(solving_order))
     except NotAssembled:
         return None
-    if tracker.lost:
-        with_branch(tracker)
-    block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
+    if followed.lost:
+        followed = replace(followed, curve=followed.curve.with_returns())
+    block = followed.run(followed.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
     if np.broadcast_to(block.failed, block.shape)[design, 0]:
         return None
     return _picked(solving_order.structure, values, block.world, (design, 0))
@@ -226,71 +226,67 @@ def quietly_solved(structure: Structure, values: Any = None, order: int = 1, spe
 WHOLE = 65536
 
 
-def solve_all_blocks(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, Number]:
+def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Number]:
     """Solve until no further change point is found, and nothing more is reached.
 
     Return also the poses whose rates may have lost their digits.
     """
     while True:
-        motion, near, where, nearly = _run(solving_order, given, tracker, order)
-        near |= near_groups(tracker)
-        if near and pass_through(tracker, near):
+        found = _solved_along(followed, order)
+        near = found.near if followed.is_dense else found.near | near_groups(followed.curve)
+        curve = pass_through(followed.curve, near) if near else None
+        if curve is None and followed.lost and not followed.curve.has_returns:
+            curve = followed.curve.with_returns()
+        if curve is not None:
+            followed = replace(followed, curve=curve)
             continue
-        if not tracker.lost or not with_branch(tracker):
-            if not nearly:
-                return motion, where
-            designs, index, poses = expanded(tracker, nearly, order)
-            where[designs, index] = False
-            return motion.mended(designs, index, poses), where
+        if not found.nearly:
+            return found.motion, found.doubtful
+        followed, (designs, index, poses) = expanded(followed, found.nearly, order)
+        found.doubtful[designs, index] = False
+        return replace(found.motion, followed=followed).mended(designs, index, poses), found.doubtful
 
 
-def with_branch(tracker: Tracker) -> bool:
-    """Track the branch of the drawn pose, for what its motion has lost. Tell whether it did."""
-    if tracker.branch is not None or tracker.begin is not None:
-        return False
-    course = tracker.course
-    if course is None:
-        return False
-    states = {k: path.states[:, :1] for k, path in tracker.approach_paths.items()}
-    begin = Begin(course.at, tracker.signs, states, course.period)
-    around = Tracker(tracker.solving_order, course.inputs(tracker.given), tracker.fixed, tracker.shown, begin)
-    solve_all_blocks(tracker.solving_order, around.given, around, 0)
-    tracker.branch = TrackedBranch(course, around.paths)
-    if tracker.turns:
-        tracker.choose()
-    return True
+class _Solved(NamedTuple):
+    """A motion in the configuration of a curve.
 
-
-def _run(
-    solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int
-) -> tuple[Motion, set[int], Number, set[int]]:
-    """Solve block by block and gather; also the groups near limit positions, where rates are doubtful, and the nearest.
-
-    The groups nearest to limit positions are those that may need their double root.
+    Also the groups near limit positions, those so near that they may need their double root, and the poses whose rates
+    are doubtful.
     """
+
+    motion: Motion
+    near: set[int]
+    nearly: set[int]
+    doubtful: Number
+
+
+def _solved_along(followed: FollowedPoses, order: int) -> _Solved:
+    """Solve block by block and gather."""
     keep_freed_memory()
-    designs, poses = given.designs, given.poses
+    solving_order, given = followed.solving_order, followed.given
+    structure, designs, poses = solving_order.structure, given.designs, given.poses
     near: set[int] = set()
     nearly: set[int] = set()
     where = np.zeros((designs, poses), dtype=bool)
     parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
     if len(parts) == 1:
-        block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
+        block = followed.run(given, order, *places(slice(0, designs), slice(0, poses)))
         failed = np.broadcast_to(block.failed, (designs, poses))
         near = _near(block)
         where |= doubtful(solving_order, given, block, near)
-        motion = Motion(solving_order.structure, order, given, dict(block.world), failed, tracker)
-        return motion, near, where, _nearly(block) if near else near
+        motion = Motion(structure, order, given, dict(block.world), failed, followed)
+        return _Solved(motion, near, _nearly(block) if near else near, where)
     store = JoinedBlocks(designs, poses)
     for d, m in parts:
         part = given.cut(d, m)
-        block = tracker.run(part, order, *places(d, m))
+        block = followed.run(part, order, *places(d, m))
         store.take(block, d, m)
         here = _near(block)
         near |= here
         nearly |= _nearly(block) if here else here
         where[d, m] |= doubtful(solving_order, part, block, here)
-    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near, where, nearly
+    motion = Motion(structure, order, given, store.poses(), store.failed, followed)
+    return _Solved(motion, near, nearly, where)
 
 
 def _near(block: Block) -> set[int]:
@@ -440,7 +436,7 @@ def without_imprecise_rates(motion: Motion, where: Number) -> Description:
         return Description(motion, 0)
     part, s = motion.inputs.pick(designs, index.astype(float)), index[:, None].astype(float)
     with np.errstate(all="ignore"):
-        errors = errors_at(motion.tracker, part, motion.order, s, designs[:, None])
+        errors = errors_at(motion.followed, part, motion.order, s, designs[:, None])
         poses = poses_at(motion.poses, motion.failed.shape, designs, index)
         allowed = _natural(poses, motion.order, motion.size)
         lost = {name: [~(e <= a) for e, a in zip(found, allowed, strict=True)] for name, found in errors.items()}

@@ -13,7 +13,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.curve.change_points import NEAR
 from compoundkin.kinematics.groups.group_equations import STRAY
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
@@ -97,10 +97,9 @@ class CallSeeds:
             if solved is not None:
                 states = {one: value[:, :1] for one, value in seed_values(path.seeds, solved.motion).items()}
                 holds = _in_configuration(solved.motion, path.mechanism.recording.signs, slice(0, 1))
-                tracker = solved.motion.tracker
                 # `solve` gives up a design that cannot be assembled as drawn, even if it could along its motion
-                is_drawn = tracker.approach_path.poses == 1
-                return MarchStart(states, bool(holds[0]) and is_drawn, tracker.at == 0.0)
+                near, far = solved.motion.followed.nearest_to_home
+                return MarchStart(states, bool(holds[0]) and far == 0.0, near == 0)
         return MarchStart({}, False, False)
 
 
@@ -134,7 +133,7 @@ def _in_configuration(motion: Motion, signs: Mapping[int, int], where: slice = s
     designs, poses = np.arange(motion.failed.shape[0])[:, None], np.arange(float(motion.failed.shape[1]))[None]
     good = np.all(motion.failed[:, where] == 0, axis=1)
     for k, sign in signs.items():
-        own = np.broadcast_to(motion.tracker.sign(k, designs, poses), motion.failed.shape)
+        own = np.broadcast_to(motion.followed.sign(k, designs, poses), motion.failed.shape)
         good = good & np.all(own[:, where] == sign, axis=1)
     return good
 

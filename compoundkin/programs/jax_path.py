@@ -19,8 +19,8 @@ import numpy as np
 from compoundkin.base.arguments import real_numbers
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
-from compoundkin.kinematics.approach import SPACING
-from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.curve.change_points import NEAR
+from compoundkin.kinematics.curve.driver_path import SPACING
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector

@@ -16,10 +16,10 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.approach import MOST, SPACING, approach_path, drawn_value
-from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.curve.change_points import NEAR
+from compoundkin.kinematics.curve.driver_path import MOST, SPACING, approach, drawn_value, driver_path
+from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
-from compoundkin.kinematics.modes import StatedModes
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
@@ -234,8 +234,8 @@ class DrawnApproach(ShortRepr):
         designs, poses = np.broadcast_shapes(*(value.shape for value in values.values()))
         drives = {name: (value,) for name, value in values.items()}
         given = Inputs((designs, poses), self.reference.inputs.ends, drives)
-        way, _ = approach_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside)
-        return {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()} if way.poses > 1 else None
+        way = approach(*driver_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside))
+        return None if way is None else {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()}
 
     def drawn(self, name: str) -> Number | None:
         """Return the value at which a driver is drawn; None where it is not drawn."""

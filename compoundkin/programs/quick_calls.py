@@ -16,8 +16,8 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.buffers import LARGE, arrays_of_one_buffer, keep_freed_memory
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.approach import SPACING
-from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.curve.change_points import NEAR
+from compoundkin.kinematics.curve.driver_path import SPACING
 from compoundkin.kinematics.solution import COUNTED
 from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE

@@ -15,9 +15,9 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import FewDigits, InvalidMechanism, NotAssembled, NotDetermined, UnassembledPoses, warn
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.modes import StatedModes
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solution import Description, first_configuration, solved, solving_order_of
@@ -41,13 +41,13 @@ class ProgramConfiguration(ShortRepr):
     @classmethod
     def of(cls, reference: Motion) -> ProgramConfiguration:
         """Return the configuration of a motion of one design."""
-        tracker = reference.tracker
-        signs = {s.index: int(np.ravel(tracker.signs[s.index])[0]) for s in reference.solving_order.solvers
+        curve = reference.followed.curve
+        signs = {s.index: int(np.ravel(curve.signs[s.index])[0]) for s in reference.solving_order.solvers
                  if not s.is_numbered}  # fmt: skip
         # of numbered configurations that nearest to the reference is taken, whatever its number in a design
         near = first_configuration(reference, 0) if reference.solving_order.numbered else None
-        if near is None or tracker.shown.points:
-            return cls(signs, tracker.shown)
+        if near is None or curve.shown.points:
+            return cls(signs, curve.shown)
         return cls(signs, StatedModes("configuration", near.points, near.poses, near.points))
 
 
@@ -113,7 +113,7 @@ def _group_seeds(motion: Motion, block: Block, solver: GroupSolver, parts: Seque
     """Return the sign of a group at every pose, or its state."""
     if any(seed.part == SIGN for seed in parts):
         designs, poses = motion.failed.shape
-        return {SIGN: motion.tracker.sign(solver.index, np.arange(designs)[:, None], np.arange(float(poses))[None])}
+        return {SIGN: motion.followed.sign(solver.index, np.arange(designs)[:, None], np.arange(float(poses))[None])}
     return {str(k): number for k, number in enumerate(solver.state(block))}
 
 

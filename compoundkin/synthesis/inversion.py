@@ -18,7 +18,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.approach import column
+from compoundkin.kinematics.curve.driver_path import as_column
 from compoundkin.kinematics.driver_values import fit, mapped
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.motion import PairMotion
@@ -129,7 +129,7 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     pair = driven.pair
     drawn = mechanism.drawn_poses
     if all(name in drawn for name in pair.members):
-        poses = tuple(column(drawn[name]) for name in pair.members)
+        poses = tuple(as_column(drawn[name]) for name in pair.members)
         value = pair.drawn_coordinate(pair.ends(mechanism.geometry), poses) * pair.driven_by(new.link)
     else:
         value = pair.drawn_length(mechanism.sketch)

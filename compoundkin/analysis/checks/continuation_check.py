@@ -24,11 +24,11 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places, poses_at, rates
+from compoundkin.kinematics.curve.modes import distance, drawn_letters
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
-from compoundkin.kinematics.modes import distance, drawn_letters
 from compoundkin.kinematics.solving_order import BEFORE, SolvingOrder
 
 # Tolerance (of the size, or radians) between the end of a continuation and the pose, besides rounding: another
@@ -181,11 +181,11 @@ MOST_BODIES = 4
 
 def choice_findings(motion: Motion) -> Iterator[Finding]:
     """Yield the findings on drawn or hinted configurations, and on written modes."""
-    tracker = motion.tracker
-    drawn = [k for k, by in tracker.chosen_by.items() if by == tracker.shown.source and by != "default"]
+    curve = motion.followed.curve
+    drawn = [k for k, by in curve.chosen_by.items() if by == curve.shown.source and by != "default"]
     if drawn and np.any(motion.failed == 0):
         yield worst(motion, "nearest to the drawing", 0.0, _excess_distances(motion, drawn), motion.failed == 0)
-    written = [k for k in tracker.fixed if motion.solving_order.solvers[k].modes == 2]
+    written = [k for k in curve.fixed if motion.solving_order.solvers[k].modes == 2]
     if written:
         parts = rounded_by(motion, 0, _distances_from_modes(motion, written), SAME)
         yield worst(motion, "written modes", SAME, parts, motion.failed == 0)
@@ -195,10 +195,11 @@ def _excess_distances(motion: Motion, drawn: list[int]) -> dict[str, Number]:
     """Return the excess distances of groups from the drawing, at the pose nearest to the drawn one."""
     closed = motion.failed == 0
     designs = np.flatnonzero(closed.any(axis=1))
-    away = np.where(closed[designs], np.abs(np.arange(motion.inputs.poses) - motion.tracker.at), np.inf)
+    path, at = motion.followed.curve.path, np.broadcast_to(motion.followed.poses.of_poses, closed.shape)
+    away = np.where(closed[designs], np.abs(at[designs] - path.home), np.inf)
     index = np.argmin(away, axis=1)
     begin = motion.inputs.pick(designs, index.astype(float))
-    first = motion.tracker.approach_path.cut(slice(None), slice(0, 1))
+    first = path.at_home()
     walk = GroupContinuation(motion, begin, first.pick(designs, np.zeros(len(designs))),
                      known_at(motion, designs, index), len(designs))  # fmt: skip
     arrived, found = walk.follow(), dict[str, Number]()
@@ -212,7 +213,7 @@ def _excess_distances(motion: Motion, drawn: list[int]) -> dict[str, Number]:
 
 def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
     """Return the excess distance of a group from the drawing over its nearest configuration, 0 if not clear."""
-    drawing = motion.tracker.shown
+    drawing = motion.followed.curve.shown
     letters = drawn_letters(motion.solving_order, solver, drawing)
     if not letters:
         return np.zeros(block.shape)
@@ -241,7 +242,7 @@ def _distances_from_modes(motion: Motion, written: list[int]) -> dict[str, Numbe
     found = {}
     for k in written:
         solver, trial = motion.solving_order.solvers[k], block.copy()
-        solver.close(trial, motion.tracker.sign(k, designs, s))
+        solver.close(trial, motion.followed.sign(k, designs, s))
         found[solver.group.links[0]] = _distance_of_poses(motion, solver, trial.world)
     return found
 

@@ -13,7 +13,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
-from compoundkin.kinematics.change_points import rates_at
+from compoundkin.kinematics.curve.change_points import rates_at
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS
@@ -121,8 +121,8 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
     everywhere = places(slice(0, given.designs), slice(0, given.poses))
     moved_inputs = given.driven(drives)
     found = dict(motion.block(moved_inputs, 0, *everywhere).world)
-    if motion.tracker.expanded is not None:
-        designs, index, poses = rates_at(moved_inputs, motion.tracker, 0)
+    if motion.followed.expanded is not None:
+        designs, index, poses = rates_at(moved_inputs, motion.followed, 0)
         found = {name: _put(pose, poses[name], (designs, index), given) if name in poses else pose
                  for name, pose in found.items()}  # fmt: skip
     return found
@@ -153,9 +153,9 @@ def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
 def _away_from_change_points(motion: Motion) -> Number:
     """Return whether the neighbours of a pose lie on the same side of every change point."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
-    if motion.tracker.expanded is not None and motion.inputs.poses == 1:
+    if motion.followed.expanded is not None and motion.inputs.poses == 1:
         # for a single pose the side of its change point is unknown
-        good[motion.tracker.expanded[:2]] = False
+        good[motion.followed.expanded[:2]] = False
     index = np.arange(motion.inputs.poses, dtype=float)
     for found in motion.change_points.values():
         good = good & (np.abs(found[:, :, None] - index).min(axis=1) > 1.0)

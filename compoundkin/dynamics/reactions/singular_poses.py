@@ -81,8 +81,8 @@ def _singular(motion: Motion, wrenches: Mapping[str, Wrench]) -> Number:
     """Return the poses at which rates or forces have no limit, and the change points, (designs, poses)."""
     closed = motion.failed == 0
     found = closed & ~motion.regular if motion.order else np.zeros(closed.shape, dtype=bool)
-    if motion.is_whole and motion.tracker.expanded is not None:
-        found[motion.tracker.expanded[:2]] = True
+    if motion.is_whole and motion.followed.expanded is not None:
+        found[motion.followed.expanded[:2]] = True
     for wrench in wrenches.values():
         found |= closed & ~(np.isfinite(wrench.force) & np.isfinite(wrench.moment))
     return found & closed
@@ -91,8 +91,8 @@ def _singular(motion: Motion, wrenches: Mapping[str, Wrench]) -> Number:
 def _links(motion: Motion, design: int, pose: int) -> tuple[str, ...]:
     """Return the links of the groups that are singular at a pose."""
     solvers = motion.solving_order.solvers
-    if motion.is_whole and motion.tracker.expanded is not None and motion.regular[design, pose]:
-        which = motion.tracker.expanded[2]
+    if motion.is_whole and motion.followed.expanded is not None and motion.regular[design, pose]:
+        which = motion.followed.expanded[2]
         return tuple(link for solver in solvers if solver.index in which for link in solver.group.links)
     for solver in solvers:
         for link in solver.group.links:

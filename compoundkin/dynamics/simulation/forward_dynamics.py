@@ -25,11 +25,11 @@ from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, si
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import watches
 from compoundkin.kinematics import solve
-from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
+from compoundkin.kinematics.curve.driver_path import drawn_value
+from compoundkin.kinematics.curve.modes import stated_by
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.gaps import gaps
-from compoundkin.kinematics.modes import stated_by
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solving_order_of
 from compoundkin.model.elements import Drive

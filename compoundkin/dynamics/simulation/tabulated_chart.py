@@ -198,7 +198,7 @@ class DriveTable:
     def sign(self, k: int, value: float) -> float:
         """Return the sign of a dyad's mode at a value."""
         place = _places(np.array([[value]]), (self.low, self.high))
-        return float(np.ravel(self.motion.tracker.sign(k, np.array([[0]]), place))[0])
+        return float(np.ravel(self.motion.followed.sign(k, np.array([[0]]), place))[0])
 
 
 def drive_table(

@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at, with_poses
-from compoundkin.kinematics.change_points import NEARLY, solved_near
+from compoundkin.kinematics.curve.change_points import NEARLY, solved_near
 from compoundkin.kinematics.driver_values import Inputs, fit, mapped
 from compoundkin.kinematics.motion import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.model.attributes import HIGHEST_ORDER
@@ -290,7 +290,7 @@ def _moved(motion: Motion, name: str, designs: Number, places: Number) -> tuple[
 
 def passing_groups(motion: Motion) -> tuple[int, ...]:
     """Return the groups that pass change points along a motion."""
-    expanded = motion.tracker.expanded
+    expanded = motion.followed.expanded
     found = {*motion.change_points, *(expanded[2] if expanded is not None else ())}
     return tuple(sorted(k for k in found if motion.solving_order.solvers[k].modes_may_meet))
 
@@ -308,13 +308,4 @@ def through_double_roots(
 ) -> tuple[Mapping[str, Pose], Number]:
     """Return the poses of inputs near change points, and which are known."""
     designs, places = at
-    last = motion.inputs.poses - 1
-    ahead = motion.inputs.ahead(designs, np.minimum(places, last - 0.5)).drives
-    sense = np.where(places < last, 1.0, -1.0)
-    units = [motion.solving_order.unit(name) for name in ahead]
-    steps = [
-        np.broadcast_to(v[1] / unit, (len(places), 1))[:, 0] for v, unit in zip(ahead.values(), units, strict=True)
-    ]
-    onward = np.stack(steps, axis=-1) * sense[:, None]
-    s = np.nextafter(places, places + sense)
-    return solved_near(motion.tracker, part, order, (s, designs), groups, onward)
+    return solved_near(motion.followed, part, order, (places, designs), groups)

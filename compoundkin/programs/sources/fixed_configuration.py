@@ -31,7 +31,7 @@ def changed_modes(motion: Motion) -> tuple[str, ...]:
     """
     places = np.arange(motion.shape[-1], dtype=float)[None, :]
     for solver in motion.solving_order.solvers:
-        if not solver.is_numbered and np.ptp(motion.tracker.sign(solver.index, np.array([[0]]), places)):
+        if not solver.is_numbered and np.ptp(motion.followed.sign(solver.index, np.array([[0]]), places)):
             return solver.group.links
     return ()
 

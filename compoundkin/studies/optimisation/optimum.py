@@ -17,7 +17,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
 from compoundkin.base.errors import CompoundkinError, suppress_pose_warnings
 from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.modes import read_name
+from compoundkin.kinematics.curve.modes import read_name
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.elements import mode

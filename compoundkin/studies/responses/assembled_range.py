@@ -8,8 +8,8 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.kinematics.approach import MOST, SPACING
 from compoundkin.kinematics.configuration import label
+from compoundkin.kinematics.curve.driver_path import MOST, SPACING
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.responses.designs import Designs, design_blocks
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.curve.modes import CHOSEN_BY
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.groups import DYADS
-from compoundkin.kinematics.modes import CHOSEN_BY
 from compoundkin.model.attributes import (
     ACCELERATION,
     DEGREES,

@@ -121,7 +121,7 @@ def _constructed(
     order, size = motion.solving_order, motion.size
     links = {name: link_points(build, name, own) for name, own in shown.points.items()}
     pairs = (*shown.mechanism.written_pairs, *order.pairs.values())
-    sides = PairSides(build, links, motion.tracker.given.ends, pairs, size)
+    sides = PairSides(build, links, motion.followed.given.ends, pairs, size)
     placed = PlacedBodies(build, links)
     for body in motion.structure.bodies:
         placed.join(body, driven_links.inside_body(build, body, sides, sliders))

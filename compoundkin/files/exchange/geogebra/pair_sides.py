@@ -181,7 +181,7 @@ class ChosenSides:
         return not bool(np.any(same & (np.diff(self._signs(k)[order]) != 0.0)))
 
     def _signs(self, k: int) -> Number:
-        found = self._motion.tracker.sign(k, np.array([[0]]), self._known[None].astype(float))
+        found = self._motion.followed.sign(k, np.array([[0]]), self._known[None].astype(float))
         return np.broadcast_to(np.ravel(found), self._known.shape)
 
     @property

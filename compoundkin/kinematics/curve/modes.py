@@ -12,11 +12,11 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, as_series
-from compoundkin.kinematics.approach import first_of
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
-from compoundkin.kinematics.driver_values import Inputs, fit
-from compoundkin.kinematics.group_paths import COMPARED, ClosedStates, Followed, every_state
+from compoundkin.kinematics.curve.driver_path import DriverPath, first_of
+from compoundkin.kinematics.curve.group_paths import COMPARED, ClosedStates, Followed, every_state
+from compoundkin.kinematics.driver_values import fit
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.solving_order import SolvingOrder, residual
 from compoundkin.model.geometry import vector
@@ -205,55 +205,60 @@ EVEN = 1e-9
 TINY = 1e-300
 
 
-class AtFirstPose(Followed, Protocol):
-    """What chooses the modes: the motion, its approach path, signs so far."""
+class AtHome(Followed, Protocol):
+    """What chooses the modes: the curve, its signs so far, the pose of the motion that is nearest to home."""
 
-    signs: dict[int, Number]
+    @property
+    def signs(self) -> dict[int, Number]:
+        """The signs at home."""
+
+    @property
+    def pose_at_home(self) -> int:
+        """The index of the pose at home."""
 
 
-def default_sign(tracker: AtFirstPose, k: int, block: Block) -> Number:
+def default_sign(curve: AtHome, k: int, block: Block) -> Number:
     """Return the sign that a dyad has where nothing chooses. All before it is assembled in a block."""
-    loops = tracker.solving_order.four_bars.get(k)
-    return 1 if loops is None else _open_sign(tracker, k, loops, block)
+    loops = curve.solving_order.four_bars.get(k)
+    return 1 if loops is None else _open_sign(curve, k, loops, block)
 
 
-def _open_sign(tracker: AtFirstPose, k: int, loops: FourBarLoops, block: Block) -> Number:
+def _open_sign(curve: AtHome, k: int, loops: FourBarLoops, block: Block) -> Number:
     """Return the sign with which a dyad's four-bar loop has the larger area.
 
     The polygon of a loop A, B, C, D has the area of half the vector product of its diagonals, so that its two modes, C
     on one or on the other side of BD, differ in how A lies beside BD: C lies opposite. Where A is on BD, it is where A
     will be that counts.
     """
-    sides = _sides(tracker, loops, block)[0]
+    sides = _sides(curve, loops, block)[0]
     # higher derivatives change nothing of the first, which most often tells
     for order in (1, HIGHEST):
         if np.any(sides == 0.0):
-            for rate in _sides(tracker, loops, _ahead(tracker, k, order))[1:]:
+            for rate in _sides(curve, loops, _ahead(curve, k, order))[1:]:
                 sides = np.where(sides == 0.0, rate, sides)
     if np.any(sides == 0.0):
-        first, second = (_at(tracker, place, block).c[0] for place in (loops.first, loops.second))
+        first, second = (_at(curve, place, block).c[0] for place in (loops.first, loops.second))
         sides = np.where(sides == 0.0, _upward(second - first), sides)
     signs = np.where(sides < 0.0, -1.0, 1.0)
     alike = signs.size == 1 or np.all(signs == signs[0, 0])
     return float(signs.flat[0]) if alike else signs
 
 
-def _ahead(tracker: AtFirstPose, k: int, order: int) -> Block:
+def _ahead(curve: AtHome, k: int, order: int) -> Block:
     """Return what is solved before a group, with derivatives by increasing drivers. It is at the drawn pose.
 
-    At a change point of the group a mode is that of the side to which the motion goes: its drivers may decrease.
+    At a change point of the group a mode is that of the side to which the path goes: its drivers may decrease.
     """
-    first = tracker.approach_path.cut(slice(None), slice(0, 1))
-    place = np.zeros((1, 1)), np.arange(tracker.given.designs)[:, None]
-    single = tracker.approach_path.poses == 1
-    sense = _senses(tracker.given, int(tracker.at)) if single else _senses(tracker.approach_path, 0)
+    first, designs = curve.path.at_home(), np.arange(curve.path.designs)
+    at = np.full((1, 1), curve.path.home), designs[:, None]
+    sense = _senses(curve.path, designs)
     if any(np.any(one < 0.0) for one in sense.values()):
-        tracker.signs[k] = 1
-        margin = tracker.run(first, 0, *place, upto=k + 1, on_approach=True).margins[k]
+        curve.signs[k] = 1
+        margin = curve.run(first, 0, *at, upto=k + 1).margins[k]
         sense = {name: np.where(margin < FLAT, one, 1.0) for name, one in sense.items()}
-    rates = {name: tracker.solving_order.unit(name) * sense[name] for name in first.drives}
+    rates = {name: curve.solving_order.unit(name) * sense[name] for name in first.drives}
     part = first.driven({name: (v[0], rates[name]) for name, v in first.drives.items()})
-    return tracker.run(part, order, *place, upto=k, on_approach=True)
+    return curve.run(part, order, *at, upto=k)
 
 
 def regularity(solver: GroupSolver, state: Number, block: Block) -> Number:
@@ -270,28 +275,26 @@ def regularity(solver: GroupSolver, state: Number, block: Block) -> Number:
     return determinant * (1.0 + EVEN * heights / np.nanmax(np.abs(heights), initial=TINY))
 
 
-def _senses(way: Inputs, start: int) -> dict[str, Number]:
-    """Return in which sense each driver goes on from a pose of a way, +1 or -1. It is +1 for one that rests."""
-    found: dict[str, Number] = {}
-    for name, (value, *_) in way.drives.items():
-        steps = value[:, start + 1 :] - value[:, start : start + 1] if np.ndim(value) else np.zeros((1, 0))
-        first = np.argmax(steps != 0.0, axis=1) if steps.shape[1] else 0
-        falls = steps[np.arange(len(steps)), first] < 0.0 if steps.shape[1] else np.zeros(len(steps), dtype=bool)
-        found[name] = np.where(falls, -1.0, 1.0)[:, None]
-    return found
+def _senses(path: DriverPath, designs: Number) -> dict[str, Number]:
+    """Return in which sense each driver goes on from home, +1 or -1. It is +1 for one that rests."""
+    home = np.full(len(designs), path.home)
+    # from the end of a path it goes back
+    back = path.home == path.ends[1] != path.ends[0]
+    part = path.behind(designs, home) if back else path.pick(designs, home)
+    return {name: np.where((-v[1] if back else v[1]) < 0.0, -1.0, 1.0) for name, v in part.drives.items()}
 
 
-def _sides(tracker: AtFirstPose, loops: FourBarLoops, block: Block) -> list[Number]:
+def _sides(curve: AtHome, loops: FourBarLoops, block: Block) -> list[Number]:
     """Return on which side of the line through the outer pins the opposite pin lies, with derivatives; 0 for none.
 
     Of several opposite pins it is the one that makes the largest area.
     """
-    first, second = _at(tracker, loops.first, block), _at(tracker, loops.second, block)
+    first, second = _at(curve, loops.first, block), _at(curve, loops.second, block)
     line = second - first
     found: list[Number] = [0.0] * (block.order + 1)
     most: Number = 0.0
     for place in loops.opposite:
-        arm = _at(tracker, place, block) - first
+        arm = _at(curve, place, block) - first
         area = line.cross(arm)
         scale = TIE * np.abs(line.c[0]) * np.abs(arm.c[0])
         values = [np.where(np.abs(c) > scale, c, 0.0) for c in (*area.c, *[0.0] * (block.order - area.order))]
@@ -303,12 +306,12 @@ def _sides(tracker: AtFirstPose, loops: FourBarLoops, block: Block) -> list[Numb
     return found
 
 
-def _at(tracker: AtFirstPose, place: Place, block: Block) -> Series:
-    """Return where a point is, its place on its link being that of the motion's pose nearest to the drawn one."""
-    mechanism = tracker.solving_order.structure.mechanism
-    point = fit(tracker.given.shape)(mechanism.geometry.points[place.link][place.letter])
+def _at(curve: AtHome, place: Place, block: Block) -> Series:
+    """Return where a point is, its place on its link being that of the pose at home."""
+    mechanism = curve.solving_order.structure.mechanism
+    point = fit(curve.path.knots.shape)(mechanism.geometry.points[place.link][place.letter])
     varies = np.ndim(point) > 0 and point.shape[1] > 1
-    return as_series(block.world[place.link].at(point[:, [int(tracker.at)]] if varies else point))
+    return as_series(block.world[place.link].at(point[:, [curve.pose_at_home]] if varies else point))
 
 
 def _upward(line: Number) -> Number:

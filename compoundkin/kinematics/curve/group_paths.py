@@ -12,9 +12,8 @@ import numpy as np
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.approach import CLOSE, first_of, pace
-from compoundkin.kinematics.approach import column as pose_column
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.curve.driver_path import CLOSE, DriverPath, as_column, first_of
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at, known_configurations
@@ -22,12 +21,8 @@ from compoundkin.kinematics.groups.group_equations import GroupEquations, surrou
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import poses_from_drawing
 
-# No step takes more spacings than this of the drivers (of five degrees each), even where nothing moves.
-SPACINGS = 6.0
-
-
-# Drivers that take less than this part of a spacing a pose stand still.
-SLOWEST = 1e-9
+# No step takes more places than this of the drivers (of five degrees each), even where nothing moves.
+LONGEST = 6.0
 
 
 @dataclass(frozen=True)
@@ -56,6 +51,13 @@ class GroupPath:
         found = self._seeds(designs, s)
         for path in self.returns:
             found = np.where(np.isnan(found), path.seeds(designs, s), found)
+        return found
+
+    def reaches(self, designs: Number, s: Number) -> Number:
+        """Return whether the group was followed to places, or comes back there."""
+        found = (s >= self.reach[designs, 0]) & (s <= self.reach[designs, 1])
+        for path in self.returns:
+            found = found | path.reaches(designs, s)
         return found
 
     def _seeds(self, designs: Number, s: Number) -> Number:
@@ -90,53 +92,39 @@ class GroupPath:
 
 
 class Followed(Protocol):
-    """What is needed of a tracker to follow a group through its inputs."""
+    """What is needed of a curve to follow a group along its path."""
 
-    solving_order: SolvingOrder
-    given: Inputs
-    approach_path: Inputs
-    at: float
+    @property
+    def solving_order(self) -> SolvingOrder:
+        """The solving order."""
 
-    def run(
-        self, part: Inputs, order: int, s: Number, designs: Number, upto: int | None = None, on_approach: bool = False
-    ) -> Block:
+    @property
+    def path(self) -> DriverPath:
+        """The drivers' path."""
+
+    def run(self, part: Inputs, order: int, places: Number, designs: Number, upto: int | None = None) -> Block:
         """Solve a block of inputs, up to a group."""
 
 
-def track(tracker: Followed, k: int, state: Number) -> tuple[GroupPath, GroupPath]:
-    """Follow group `k` along the approach path to the motion. From there it goes to both ends of the motion."""
-    approach, start = tracker.approach_path, np.zeros(len(state))
-    first = _march(tracker, k, approach.ahead, state, on_approach=True).go(
-        start, np.arange(approach.poses, dtype=float)
-    )
-    path = _joined(np.stack([start, first.reached], axis=1), first.first_side, first.nodes)
-    state = np.where(first.alive[:, None, None], first.state, np.nan)
-    return path, both_directions(tracker, k, state, np.full(len(state), tracker.at))
-
-
-def both_directions(tracker: Followed, k: int, state: Number, at: Number) -> GroupPath:
-    """Follow a group from its states, each at its own place, to both ends."""
-    given = tracker.given
-    stops = np.arange(given.poses, dtype=float)
-    ahead = _march(tracker, k, given.ahead, state).go(at, stops)
-    back = _march(tracker, k, given.behind, state).go(at, stops[::-1])
-    # a change point at an end of the motion is solved just beyond it
-    reach = np.stack([_beyond(back.reached, 0.0, -CLOSE), _beyond(ahead.reached, stops[-1], CLOSE)], axis=1)
+def followed_path(curve: Followed, k: int, state: Number, at: Number) -> GroupPath:
+    """Follow a group from its states, each at its own place, to both ends of the path."""
+    path = curve.path
+    first, last = path.ends
+    ahead = _march(curve, k, path.pick, state).go(at, path.samples)
+    back = _march(curve, k, path.behind, state).go(at, path.samples[::-1])
+    # a change point at an end of the path is solved just beyond it
+    reach = np.stack([_beyond(back.reached, first, -CLOSE), _beyond(ahead.reached, last, CLOSE)], axis=1)
     # both begin with the same
     return _joined(reach, ahead.first_side, [*ahead.nodes, *back.nodes[1:]])
 
 
-def _march(
-    tracker: Followed, k: int, along: Callable[[Number, Number], Inputs], state: Number, on_approach: bool = False
-) -> GroupMarch:
+def _march(curve: Followed, k: int, along: Callable[[Number, Number], Inputs], state: Number) -> GroupMarch:
     """Return a continuation of a group from a state, (designs, 1, width), NaN for designs that have none."""
 
     def around(designs: Number, s: Number) -> Block:
-        return tracker.run(along(designs, s), TERMS, s[:, None], designs[:, None], k, on_approach)
+        return curve.run(along(designs, s), TERMS, s[:, None], designs[:, None], k)
 
-    each = pace(tracker.solving_order, tracker.approach_path if on_approach else tracker.given)
-    equations = equations_of(tracker.solving_order.solvers[k])
-    return GroupMarch(equations, around, SPACINGS / max(each, SLOWEST), state)
+    return GroupMarch(equations_of(curve.solving_order.solvers[k]), around, LONGEST, state)
 
 
 def _joined(reach: Number, side: Number, nodes: Sequence[Node]) -> GroupPath:
@@ -346,13 +334,13 @@ class _Kin:
     states: Number
 
 
-def with_returns(way: Followed, k: int, home: GroupPath, period: float = np.inf) -> GroupPath:
+def with_returns(curve: Followed, k: int, home: GroupPath) -> GroupPath:
     """Return a path of group `k` with its returns after gaps, each by itself.
 
-    A configuration that goes on beside the branch itself, or beside another one of its sign, is no return of it. After
-    `period` places the way is the same again.
+    A configuration that goes on beside the branch itself, or beside another one of its sign, is no return of it.
     """
-    kin = _kin(way, k, home, period) if len(home.reach) <= MOST_DESIGNS else None
+    period = curve.path.period
+    kin = _kin(curve, k, home, period) if len(home.reach) <= MOST_DESIGNS else None
     if kin is None:
         return home
     todo, found = kin.count == 1, list[GroupPath]()
@@ -360,7 +348,7 @@ def with_returns(way: Followed, k: int, home: GroupPath, period: float = np.inf)
         if not todo.any():
             break
         every, i, rows = np.arange(len(todo)), np.argmax(todo, axis=1), todo.any(axis=1)
-        piece = both_directions(way, k, np.where(rows[:, None], kin.states[every, i], np.nan)[:, None], kin.places[i])
+        piece = followed_path(curve, k, np.where(rows[:, None], kin.states[every, i], np.nan)[:, None], kin.places[i])
         low, high = piece.reach[:, :1], piece.reach[:, 1:]
         inside = (kin.places >= low) & (kin.places <= high)
         todo = todo & ~inside
@@ -373,6 +361,11 @@ def with_returns(way: Followed, k: int, home: GroupPath, period: float = np.inf)
     return replace(home, returns=tuple(found))
 
 
+def _samples(path: DriverPath) -> Number:
+    """Return the places at which a branch is looked for in its gaps: the samples, and those half way between."""
+    return np.union1d(path.samples, (path.samples[1:] + path.samples[:-1]) / 2.0)
+
+
 def _overlaps(piece: Number, home: Number, period: float) -> Number:
     """Tell for which designs a piece lies beside another one, also after a period."""
     shifts = (0.0,) if np.isinf(period) else (-period, 0.0, period)
@@ -380,10 +373,10 @@ def _overlaps(piece: Number, home: Number, period: float) -> Number:
     return np.logical_or.reduce(beside)
 
 
-def _kin(way: Followed, k: int, home: GroupPath, period: float) -> _Kin | None:
+def _kin(curve: Followed, k: int, home: GroupPath, period: float) -> _Kin | None:
     """Return the kin of a branch where it has a gap. None where it has none, or configurations are not known."""
     low, high = home.reach[:, :1], home.reach[:, 1:]
-    places = np.arange(way.given.poses, dtype=float)
+    places = _samples(curve.path)
     gone = ((places < low) | (places > high)) & (home.side != 0.0)[:, None]
     if np.isfinite(period):
         gone = (places > high) & (places < low + period)
@@ -392,7 +385,7 @@ def _kin(way: Followed, k: int, home: GroupPath, period: float) -> _Kin | None:
     designs, index = np.nonzero(gone)
     if not len(designs):
         return None
-    found = kin_at(way, k, home, designs, places[index])
+    found = kin_at(curve, k, home, designs, places[index])
     if found is None:
         return None
     count, state = found
@@ -402,20 +395,20 @@ def _kin(way: Followed, k: int, home: GroupPath, period: float) -> _Kin | None:
     return _Kin(places, counts, states)
 
 
-def kin_at(way: Followed, k: int, home: GroupPath, designs: Number, places: Number) -> tuple[Number, Number] | None:
+def kin_at(curve: Followed, k: int, home: GroupPath, designs: Number, places: Number) -> tuple[Number, Number] | None:
     """Return how many configurations have a branch's sign, and one of them. None where they are not known.
 
     `designs` and `places` are those of single poses. Where an earlier group is not assembled, the number is -1.
     """
-    solver = way.solving_order.solvers[k]
+    solver = curve.solving_order.solvers[k]
     if len(solver.group.bodies) > MOST_BODIES:
         return None
     equations = equations_of(solver)
     count, states = np.full(len(designs), -1), np.full((len(designs), equations.width), np.nan)
-    known = np.flatnonzero(column(_before(way, k, designs, places).failed == 0, len(designs)))
+    known = np.flatnonzero(column(_before(curve, k, designs, places).failed == 0, len(designs)))
     if not len(known):
         return count, states
-    block = _before(way, k, designs[known], places[known])
+    block = _before(curve, k, designs[known], places[known])
     every = every_state(solver, block, MOST_BODIES)
     if every is None:
         return None
@@ -429,16 +422,16 @@ def kin_at(way: Followed, k: int, home: GroupPath, designs: Number, places: Numb
     return count, states
 
 
-def _before(way: Followed, k: int, designs: Number, places: Number) -> Block:
+def _before(curve: Followed, k: int, designs: Number, places: Number) -> Block:
     """Return what is solved before a group at single poses."""
-    return way.run(way.given.pick(designs, places), 0, places[:, None], designs[:, None], k)
+    return curve.run(curve.path.pick(designs, places), 0, places[:, None], designs[:, None], k)
 
 
-def why_no_return(way: Followed, k: int, home: GroupPath, design: int, place: float) -> str:
+def why_no_return(curve: Followed, k: int, home: GroupPath, design: int, place: float) -> str:
     """Say why a group does not come back at a pose of a gap."""
     if len(home.reach) > MOST_DESIGNS:
         return f"whether it comes back is looked for in motions of up to {MOST_DESIGNS} designs only"
-    found = kin_at(way, k, home, np.array([design]), np.array([place]))
+    found = kin_at(curve, k, home, np.array([design]), np.array([place]))
     if found is None:
         return "not all its configurations are known, so that none can be told to be its own after a gap"
     count = int(found[0][0])
@@ -529,7 +522,7 @@ class ClosedStates:
         pose = told[link] if local is None else told[link].compose(local.trimmed(0).inverse())
         drawn = self.solving_order.structure.mechanism.drawn_poses.get(links[0])
         # pairs that count turns take the drawn angle, which at half a turn may have either sign
-        return pose if drawn is None or pose.theta is not None else pose.counted(pose_column(drawn).angle.c[0])
+        return pose if drawn is None or pose.theta is not None else pose.counted(as_column(drawn).angle.c[0])
 
     def _points(self, link: str) -> dict[str, Number]:
         points = self.solving_order.structure.mechanism.geometry.points[link]
@@ -560,6 +553,6 @@ class ClosedStates:
                 spot = centre + complex(*rng.standard_normal(2)) * wide / 2.0
                 u = np.full((1, 1), np.exp(1j * rng.uniform(-np.pi, np.pi)))
                 point, place = (middle, spot) if pin is None or number >= fixed else pin
-                bodies.append(Pose.of(place - u * point, u) if guess is None or number >= fixed else pose_column(guess))
+                bodies.append(Pose.of(place - u * point, u) if guess is None or number >= fixed else as_column(guess))
             state = self.equations.state(bodies)
             yield state.reshape((1,) * (3 - state.ndim) + state.shape)

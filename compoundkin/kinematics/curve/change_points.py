@@ -1,0 +1,418 @@
+"""Change points: where two modes of a dyad meet along a path, and the poses next to them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.bracketing import false_position
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Series, compose_series
+from compoundkin.kinematics.block import (
+    Root,
+    blocks,
+    places,
+    poses_at,
+    rates,
+    recorded_root,
+    root_of_square,
+    signed_root,
+)
+from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses
+from compoundkin.kinematics.curve.driver_path import CLOSE
+from compoundkin.kinematics.driver_values import Inputs
+from compoundkin.model.attributes import HIGHEST_ORDER
+
+# The discriminant's rate is searched for its zero so often, to this part of its values at the ends.
+TRIALS = 60
+
+
+FLAT = 1e-15
+
+
+class _Slopes(NamedTuple):
+    """The rates of a square by the drivers, (n, drivers), at samples.
+
+    `touching` is where the square is zero, `still` where its rates are too.
+    """
+
+    rates: Number
+    touching: Number
+    still: Number
+
+    def joined(self, other: _Slopes) -> _Slopes:
+        """Return these and others."""
+        return _Slopes(*(np.concatenate(columns) for columns in zip(self, other, strict=True)))
+
+
+def _slopes(columns: Sequence[Sequence[Number]], bound: float) -> _Slopes:
+    """Return the slopes from coefficients by each driver; a square is zero below a bound."""
+    first, second = (np.stack([c[i] for c in columns], axis=-1) for i in (1, 2))
+    touching = np.abs(columns[0][0]) < bound
+    return _Slopes(first, touching, slope_is_zero(first, second).all(axis=-1) & touching)
+
+
+class _Known(NamedTuple):
+    """What is known of a square of a group at samples of a path, by their indices in order along each design.
+
+    `square` tells which it is.
+    """
+
+    designs: Number
+    samples: Number
+    slopes: _Slopes
+    square: int
+
+
+def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> ConfigurationCurve | None:
+    """Return the curve that passes the change points of the first group among `near` that has any. None without."""
+    for k in sorted(k for k in near if k not in curve.flips and curve.solving_order.solvers[k].modes_may_meet):
+        places = [place for known in _known(curve, k) for place in _passed(curve, k, known)]
+        if places:
+            return curve.with_flips(k, _padded(places, curve.path.designs))
+    return None
+
+
+def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Number) -> list[_Slopes]:
+    """Return the slopes of a group's squares at places."""
+    part = curve.path.pick(designs, places)
+    groups, found = [n for n in curve.flips if n < k], []
+    onward, sense = curve.path.onward(curve.solving_order, designs, places)
+    spots = (places + CLOSE * sense)[:, None] if groups else places[:, None], designs[:, None]
+    for name in part.drives:
+        rates = {n: (v[0], curve.solving_order.unit(n) if n == name else 0.0) for n, v in part.drives.items()}
+        along = part.driven(rates)
+        roots, _ = roots_along(curve, along, spots, groups, onward)
+        found.append(squares(curve, along, spots, k, roots, 2 + (EXTRA if roots else 0)))
+    both = ((each.discriminant for each in found), (each.meeting for each in found if each.meeting))
+    bounds = (TOUCHING, TOUCHING**2)
+    return [_slopes(columns, bound) for columns, bound in zip(map(list, both), bounds, strict=True) if columns]
+
+
+def _known(curve: ConfigurationCurve, k: int) -> list[_Known]:
+    """Return what is known of a group's squares at samples at or beside which its margin is near zero."""
+    path = curve.path
+    near: Number = np.zeros((path.designs, len(path.samples)), dtype=bool)
+    for d, m, margins in _margins(curve, k + 1):
+        near[d, m] = np.abs(margins[k]) < NEAR
+    beside = near.copy()
+    beside[:, 1:] |= near[:, :-1]
+    beside[:, :-1] |= near[:, 1:]
+    designs, samples = np.nonzero(beside)
+    if not len(designs):
+        return []
+    parts = (slice(i, i + POSES_OF_A_SWEEP) for i in range(0, len(designs), POSES_OF_A_SWEEP))
+    found = [_slopes_at(curve, k, designs[part], path.samples[samples[part]]) for part in parts]
+    slopes = (reduce(_Slopes.joined, each) for each in zip(*found, strict=True))
+    return [_Known(designs, samples, each, square) for square, each in enumerate(slopes)]
+
+
+def _margins(curve: ConfigurationCurve, upto: int) -> Iterator[tuple[slice, slice, Mapping[int, Number]]]:
+    """Yield blocks of the path's samples, designs and indices, with the margins of the groups up to one."""
+    path = curve.path
+    for d, m in blocks(path.designs, len(path.samples), POSES_OF_A_SWEEP):
+        at = path.samples[m]
+        block = curve.run(path.at(at).cut(d, slice(None)), 0, at[None], np.arange(d.start, d.stop)[:, None], upto)
+        yield d, m, block.margins
+
+
+def _passed(curve: ConfigurationCurve, k: int, known: _Known) -> list[tuple[int, float]]:
+    """Return where a group passes between samples whose rates are opposite, or is at samples that are change points."""
+    designs, samples, slopes = known.designs, known.samples, known.slopes
+    places = curve.path.samples
+    moving = np.flatnonzero(~slopes.still)
+    a, b = moving[:-1], moving[1:]
+    # samples that are not near lie between some
+    joined = (designs[a] == designs[b]) & (samples[b] - samples[a] == b - a)
+    opposite = np.sum(slopes.rates[a] * slopes.rates[b], axis=-1) < 0.0
+    found = _between(curve, k, known, a[joined & opposite & (b - a == 1)])
+    for one in a[joined & opposite & (b - a > 1)]:
+        found.append((int(designs[one]), float(places[samples[one + 1]])))
+    for n in np.flatnonzero(slopes.still):
+        if samples[n] == 0:
+            found.append((int(designs[n]), float(places[0])))
+        elif samples[n] == len(places) - 1:
+            # beyond the whole path, which is on one side of it
+            found.append((int(designs[n]), float(np.nextafter(places[-1], np.inf))))
+    return found
+
+
+def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> list[tuple[int, float]]:
+    """Return designs and places of zeros between some samples and those after them. They are change points."""
+    if not len(a):
+        return []
+    designs, rates = known.designs[a], known.slopes.rates
+    low, high = (curve.path.samples[known.samples[a] + i] for i in (0, 1))
+    # the rates by the drivers are all multiples of the root: of one direction, which changes to the opposite
+    across = rates[a + 1] - rates[a]
+    across = across / np.sum(across**2, axis=-1, keepdims=True)
+
+    def slopes(share: Number) -> _Slopes:
+        return _slopes_at(curve, k, designs, low + share * (high - low))[known.square]
+
+    def rate(share: Number) -> Number:
+        found: Number = np.sum(slopes(share).rates * across, axis=-1)
+        return found
+
+    begin, end = (np.sum(rates[i] * across, axis=-1) for i in (a, a + 1))
+    share = false_position(rate, np.ones(len(a)), begin, end, FLAT, TRIALS)
+    touching = slopes(share).touching
+    places = low + share * (high - low)
+    return [(int(d), float(s)) for d, s in zip(designs[touching], places[touching], strict=True)]
+
+
+def _padded(found: Sequence[tuple[int, float]], count: int) -> Number:
+    """Return places by design in order, (count, most), padded with inf."""
+    rows: list[list[float]] = [[] for _ in range(count)]
+    for design, place in found:
+        rows[design].append(place)
+    out = np.full((count, max(1, *map(len, rows))), np.inf)
+    for row, own in zip(out, rows, strict=True):
+        row[: len(own)] = sorted(own)
+    return out
+
+
+# A discriminant is a square if it is one to this part of its scale: rounding times the inverse of its curvature.
+TOUCHING = 1e-12
+
+
+# Poses with a margin (a squared sine) below this are solved through the double root: at its bound both ways lose some
+# three digits of the velocity, nearer to the change point the plain root ever more.
+NEARLY = 1e-5
+
+
+# So many terms more are taken than are asked for: what is left out is this power of the way to the change point.
+EXTRA = 8
+
+
+# A driver is at a change point within this (radians, or parts of the size), or where the slope is rounding.
+AT = 1e-13
+
+
+LEVEL = 1e-15
+
+
+# Stands for the length of no step at all.
+TINY = 1e-300
+
+
+POSES_AT_ONCE = 4096
+
+
+# Places along a path and design indices, both columns.
+Spots = tuple[Number, Number]
+
+
+def slope_is_zero(first: Number, second: Number) -> Number:
+    """Return whether a margin with these rates is at its least, to rounding."""
+    return np.abs(first) <= 2.0 * AT * np.abs(second) + LEVEL
+
+
+class Squares(NamedTuple):
+    """The squares of smooth functions that a group has near change points.
+
+    They are its discriminant, in parts of its scale, and the squared distance of its outer pins, in parts of the size,
+    for a group that turns where they meet.
+    """
+
+    discriminant: list[Number]
+    meeting: list[Number] | None
+
+
+def squares(
+    curve: ConfigurationCurve, part: Inputs, spots: Spots, k: int, roots: Mapping[int, Root], order: int
+) -> Squares:
+    """Return the squares of a group by coefficients, (n,) each. The drivers of a part go on at their speeds.
+
+    Each double root before it costs two orders.
+    """
+    places, designs = spots
+    notes: list[Series] = []
+    order = order + 2 * len(roots)
+    block = curve.run(part, order, places, designs, k + 1, {**roots, k: recorded_root(notes)})
+
+    def column(c: tuple[Number, ...]) -> list[Number]:
+        padded = [*c, *[0.0] * (order + 1 - len(c))]
+        return [np.broadcast_to(np.reshape(x, (-1,)) if np.ndim(x) else x, (len(places),)) for x in padded]
+
+    line2 = block.meetings.get(k)
+    size = curve.solving_order.size
+    return Squares(column(notes[0].c), None if line2 is None else column(tuple(c / size**2 for c in line2.c)))
+
+
+def roots_along(
+    curve: ConfigurationCurve, part: Inputs, spots: Spots, groups: Iterable[int], onward: Number
+) -> tuple[dict[int, Root], Number]:
+    """Return how groups take their roots, and which poses are near change points.
+
+    The drivers of a part go on; near a change point the root is a smooth one. At a change point itself the mode is that
+    of the side to which the steps `onward` lead.
+    """
+    roots: dict[int, Root] = {}
+    any_near: Number = np.zeros(len(onward), dtype=bool)
+    for k in sorted(groups):
+        c = squares(curve, part, spots, k, roots, EXTRA).discriminant
+        smooth = root_of_square(tuple(c))
+        near = (c[0] < NEARLY) & (np.abs(smooth[0] ** 2 - c[0]) < TOUCHING)
+        if near.any():
+            still, sign = slope_is_zero(c[1], c[2]), np.where(c[1] < 0.0, -1.0, 1.0)
+            if np.any(still & near):
+                sign = np.where(still, _side(curve, part, spots, k, onward), sign)
+            roots[k] = signed_root(near[:, None], sign[:, None])
+            any_near |= near
+    return roots, any_near
+
+
+def _side(curve: ConfigurationCurve, part: Inputs, spots: Spots, k: int, onward: Number) -> Number:
+    """Return +1 where, from a change point, a group's root changes in one sense by a part's speeds and by steps."""
+    units = [curve.solving_order.unit(name) for name in part.drives]
+    columns = [
+        np.broadcast_to(v[1] / unit, (len(onward), 1)) for v, unit in zip(part.drives.values(), units, strict=True)
+    ]
+    speeds = np.concatenate(columns, axis=-1)
+    if len(units) == 1:
+        return np.where(speeds[:, 0] * onward[:, 0] < 0.0, -1.0, 1.0)
+    length = np.sqrt(np.sum(speeds**2, axis=-1, keepdims=True))
+    steps = onward * length / np.fmax(np.sqrt(np.sum(onward**2, axis=-1, keepdims=True)), TINY)
+    # the square curves more by the sum of two steps to one side than by their difference
+    bends = []
+    for both in (speeds + steps, speeds - steps):
+        rates = (column[:, None] * unit for column, unit in zip(both.T, units, strict=True))
+        along = part.driven({name: (v[0], rate) for (name, v), rate in zip(part.drives.items(), rates, strict=True)})
+        bends.append(squares(curve, along, spots, k, {}, 2).discriminant[2])
+    return np.where(bends[0] < bends[1], -1.0, 1.0)
+
+
+def expanded(
+    followed: FollowedPoses, groups: Iterable[int], order: int
+) -> tuple[FollowedPoses, tuple[Number, Number, Mapping[str, Pose]]]:
+    """Return the poses at change points and near them, solved by series about each, noted in what is followed.
+
+    They are designs, indices, poses.
+    """
+    groups = [k for k in groups if followed.solving_order.solvers[k].modes_may_meet]
+    designs, index = _nearly(followed, groups)
+    if not len(designs):
+        return replace(followed, expanded=(designs, index, groups)), (designs, index, {})
+    poses, good = _at_noted(replace(followed, expanded=(designs, index, groups)), followed.given, order)
+    designs, index = designs[good], index[good]
+    found = poses_at(poses, (len(good), 1), np.flatnonzero(good), np.zeros(len(designs), dtype=int))
+    return replace(followed, expanded=(designs, index, groups)), (designs, index, found)
+
+
+def rates_at(given: Inputs, followed: FollowedPoses, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:
+    """Return the poses near change points that are noted, for these inputs. Designs, indices, poses."""
+    assert followed.expanded is not None
+    designs, index, _ = followed.expanded
+    return designs, index, _at_noted(followed, given, order)[0] if len(designs) else {}
+
+
+def _at_noted(followed: FollowedPoses, given: Inputs, order: int) -> tuple[Mapping[str, Pose], Number]:
+    """Return the noted poses of some inputs, and which of them are near change points and known.
+
+    Where the drivers go straight on, all is a function of how far they have gone, known even where they rest; that
+    function of their time gives the derivatives.
+    """
+    assert followed.expanded is not None
+    designs, index, groups = followed.expanded
+    s = index.astype(float)
+    return solved_near(followed, given.pick(designs, s), order, (s, designs), groups)
+
+
+def solved_near(
+    followed: FollowedPoses, part: Inputs, order: int, at: tuple[Number, Number], groups: Iterable[int]
+) -> tuple[Mapping[str, Pose], Number]:
+    """Return the poses of a column of inputs at places along a motion and of designs, `at`.
+
+    Return also which of them are near change points and known.
+    """
+    curve, (s, designs) = followed.curve, at
+    places = np.broadcast_to(followed.places_on_path(designs, s), s.shape)
+    onward, sense = curve.path.onward(curve.solving_order, designs, places)
+    spots = (places + CLOSE * sense)[:, None], designs[:, None]
+    course = straight_path(curve, part, onward)
+    roots, near = roots_along(curve, course.part, spots, groups, onward)
+    block = curve.run(course.part, order + EXTRA + 2 * len(roots), *spots, roots=roots)
+    gone = rates(course.gone, order)
+    return {name: _composed(pose, gone) for name, pose in block.world.items()}, near & course.straight
+
+
+def _nearly(followed: FollowedPoses, groups: Sequence[int]) -> tuple[Number, Number]:
+    """Return designs and indices of the poses at which a group's margin is nearly zero."""
+    given, found = followed.given, [np.empty((0, 2), dtype=int)]
+    for d, m in blocks(given.designs, given.poses, POSES_AT_ONCE) if groups else ():
+        block = followed.run(given.cut(d, m), 0, *places(d, m), max(groups) + 1)
+        low = [np.broadcast_to(block.margins[k], block.shape) for k in groups]
+        here = np.any([(margin < NEARLY) & (margin >= 0.0) for margin in low], axis=0)
+        found.append(np.argwhere(here) + np.array([d.start, m.start]))
+    designs, index = np.concatenate(found).T
+    return designs, index
+
+
+def _composed(pose: Pose, gone: Series) -> Pose:
+    """Return poses as series in time, from those in how far the drivers have gone."""
+
+    def in_time(series: Series) -> Series:
+        return series if len(series.c) == 1 else compose_series(series.c, gone)
+
+    return pose.mapped(in_time)
+
+
+# Rates that differ in direction by less than this (radians) are those of one straight way.
+ASIDE = 1e-13
+
+
+# Margins (squared sines) below this between poses five degrees apart may have a zero between them.
+NEAR = 0.05
+
+
+POSES_OF_A_SWEEP = 4096
+
+
+class StraightPath(NamedTuple):
+    """How drivers go on from poses.
+
+    The inputs have a straight way as their speed; `gone` is how far they have gone on it, in time. Where several
+    drivers do not go straight, the way is that of their time. `straight` is where either is known.
+    """
+
+    part: Inputs
+    gone: tuple[Number, ...]
+    straight: Number
+
+
+def straight_path(curve: ConfigurationCurve, part: Inputs, onward: Number) -> StraightPath:
+    """Return how drivers go on: by their first rate, else by steps `onward`."""
+    units = np.array([curve.solving_order.unit(name) for name in part.drives])
+    padded = ((*vs, *[0.0] * (HIGHEST_ORDER + 1 - len(vs))) for vs in part.drives.values())
+    columns = [np.stack([np.broadcast_to(v, (len(onward), 1))[:, 0] for v in vs], axis=-1) for vs in padded]
+    moves = np.stack(columns, axis=1)[..., 1:] / units[:, None]
+    ahead = onward
+    for way in (moves[..., k] for k in reversed(range(moves.shape[-1]))):
+        ahead = np.where(np.any(way != 0.0, axis=-1, keepdims=True), way, ahead)
+    ahead = ahead / np.sqrt(np.sum(ahead**2, axis=-1, keepdims=True))
+    gone = np.sum(moves * ahead[..., None], axis=1)
+    aside = np.abs(moves - gone[:, None] * ahead[..., None]).max(axis=(1, 2)) > ASIDE * np.abs(moves).max(axis=(1, 2))
+    in_time = aside & np.any(moves[..., 0] != 0.0, axis=-1)
+    terms = np.zeros_like(moves)
+    terms[..., 0] = ahead
+    terms = np.where(in_time[:, None, None], moves, terms) * units[:, None]
+    gone = np.where(in_time[:, None], np.eye(moves.shape[-1])[0], gone)
+    drives = {name: (v[0], *(terms[:, i, k, None] for k in range(terms.shape[-1])))
+              for i, (name, v) in enumerate(part.drives.items())}  # fmt: skip
+    times = (0.0, *(gone[:, k, None] for k in range(gone.shape[-1])))
+    return StraightPath(part.driven(drives), times, in_time | ~aside)
+
+
+def near_groups(curve: ConfigurationCurve) -> set[int]:
+    """Return the groups that come near a limit position somewhere along the path."""
+    upto = 1 + max((k for k, solver in enumerate(curve.solving_order.solvers) if solver.modes_may_meet), default=-1)
+    found: set[int] = set()
+    for _, _, margins in _margins(curve, upto) if upto else ():
+        found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
+    return found

@@ -1,0 +1,553 @@
+"""The configuration curve: where a mechanism goes along its drivers' path, made once; poses are read off it.
+
+Groups with signs change them at change points, others are continued from the drawn pose both ways, and angles are
+counted with full turns. What is chosen is a value: a curve with more change points, or a longer path, is another curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+
+import numpy as np
+
+from compoundkin.base.arrays import TURN, Number, cross, whole_turns, wrapped
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.series import constant
+from compoundkin.kinematics.block import NEAREST, Block, Root
+from compoundkin.kinematics.configuration import ONLY
+from compoundkin.kinematics.curve.driver_path import CLOSE, DriverPath, PosePlaces, as_column, drawn_value, driver_path
+from compoundkin.kinematics.curve.group_paths import GroupPath, followed_path, with_returns
+from compoundkin.kinematics.curve.modes import (
+    StatedModes,
+    default_sign,
+    drawn_letters,
+    first_state,
+    nearest_sign,
+    shows_inner,
+)
+from compoundkin.kinematics.driver_values import Inputs
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.solving_order import SolvingOrder, run
+from compoundkin.model.pairs.contract import as_turn_counting
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ConfigurationCurve(ShortRepr):
+    """The configuration of every group along a path of the drivers.
+
+    `signs` are those of dyads at home, (designs, 1) or a number; they change at the places `flips`, (designs, count),
+    padded with infinity. `paths` are the states of the other groups, `turns` the angles of links that pairs count with
+    full turns. `chosen_by` tells what chose each group's mode.
+    """
+
+    solving_order: SolvingOrder
+    path: DriverPath
+    fixed: Mapping[int, int]
+    shown: StatedModes
+    pose_at_home: int = 0
+    has_returns: bool = False
+    flips: Mapping[int, Number] = field(default_factory=dict)
+    signs: dict[int, Number] = field(default_factory=dict)
+    paths: dict[int, GroupPath] = field(default_factory=dict)
+    turns: dict[str, Turns] = field(default_factory=dict)
+    chosen_by: dict[int, str] = field(default_factory=dict)
+
+    def run(
+        self,
+        part: Inputs,
+        order: int,
+        places: Number,
+        designs: Number,
+        upto: int | None = None,
+        roots: Mapping[int, Root] | None = None,
+    ) -> Block:
+        """Solve a block of inputs in the configuration at places of designs (indices), up to a group.
+
+        Both broadcast to the block, so that a column of designs and a row of places make a rectangle. `roots` says, by
+        group, how square roots are taken.
+        """
+        return _solved(self, part, order, _Configured(self, designs, places), upto, roots)
+
+    def sign(self, k: int, designs: Number, places: Number) -> Number:
+        """Return the sign of a dyad's mode at places. It changes wherever the dyad passes a change point."""
+        sign = self.signs[k]
+        sign = sign if np.ndim(sign) == 0 else sign[designs, 0]
+        if k not in self.flips:
+            return sign
+        flips = self.flips[k][designs]
+        # at a change point at home the mode is that of the way on
+        return sign * _parity(flips < places[..., None]) * _parity(flips <= self.path.home)
+
+    def reaches(self, designs: Number, places: Number) -> Number:
+        """Return whether all groups without a closed form were reached at places."""
+        found: Number = np.ones(np.broadcast_shapes(designs.shape, places.shape), dtype=bool)
+        for path in self.paths.values():
+            found = found & path.reaches(designs, places)
+        return found
+
+    def nearest_reached(self, designs: Number, places: Number) -> Number:
+        """Return places at which all groups were reached, where whole turns of the driver lead to some."""
+        if not self.has_returns or not self.paths or not np.isfinite(self.path.period):
+            return places
+        good = self.reaches(designs, places)
+        if np.all(good):
+            return places
+        period, found = self.path.period, np.broadcast_to(places, good.shape)
+        near = found - period * np.round((found - self.path.home) / period)
+        for other in (near, near - np.copysign(period, near - self.path.home)):
+            better = ~good & self.reaches(designs, other)
+            found, good = np.where(better, other, found), good | better
+        return found
+
+    def with_flips(self, k: int, places: Number) -> ConfigurationCurve:
+        """Return the curve on which a group also changes its sign at some places, (designs, count)."""
+        home = self.path.home
+        places = np.where(np.abs(places - home) < CLOSE, home, places)
+        other = replace(self, flips={**self.flips, k: places})
+        return other.chosen() if self.solving_order.numbered or self.turns else other
+
+    def with_returns(self) -> ConfigurationCurve:
+        """Return the curve with what comes back after gaps, also after a whole turn."""
+        path = self.path.around() if self.path.wraps else self.path
+        return replace(self, path=path, has_returns=True, flips={}).chosen()
+
+    def chosen(self) -> ConfigurationCurve:
+        """Return the curve with all modes chosen at home, and followed from there."""
+        # the dictionaries are filled group by group: later groups need the earlier ones along the whole path
+        found = replace(self, signs={}, paths={}, turns={}, chosen_by={})
+        order, shown = self.solving_order, self.shown
+        if shown.points or order.numbered or order.turning:
+            return _choose(found)
+        for k, solver in enumerate(order.solvers):
+            found.signs[k] = self.fixed.get(k, 1)
+            found.chosen_by[k] = "sign" if k in self.fixed else ONLY if solver.modes == 1 else "default"
+        open_loops = order.four_bars.keys() - self.fixed
+        return _choose(found, max(open_loops)) if open_loops else found
+
+
+def _choose(curve: ConfigurationCurve, last: int | None = None) -> ConfigurationCurve:
+    """Pass through the groups at home, choosing, all or up to one, and follow those without a closed form."""
+    first = curve.path.at_home()
+    block = curve.solving_order.start(first.ends, first.series(0), 0, (curve.path.designs, 1), NEAREST)
+    since = 0
+    for k in sorted(curve.solving_order.followable - curve.fixed.keys()):
+        run(curve.solving_order, block, _First(curve), k, since)
+        since = k
+        if shows_inner(curve.solving_order, curve.solving_order.solvers[k], block, curve.shown):
+            curve = replace(curve, solving_order=curve.solving_order.following(k))
+    run(curve.solving_order, block, _First(curve), last, since)
+    if last is not None:
+        _First(curve).mode(block, curve.solving_order.solvers[last])
+    return curve
+
+
+@dataclass(frozen=True)
+class _Configured:
+    """The choice at places of a path: the configuration that was chosen is kept."""
+
+    curve: ConfigurationCurve
+    designs: Number
+    places: Number
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.broadcast_shapes(self.places.shape, self.designs.shape)
+
+    @cached_property
+    def reached(self) -> Number:
+        """The places at which states are known, after whole turns too."""
+        return self.curve.nearest_reached(self.designs, self.places)
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the followed state, or the sign."""
+        curve, k = self.curve, solver.index
+        if solver.is_numbered:
+            return curve.paths[k].seeds(self.designs, self.reached)
+        # places along a motion are looked for on its path only where signs change
+        return curve.sign(k, self.designs, self.reached) if k in curve.flips else curve.sign(k, self.designs, _NOWHERE)
+
+    def angle(self, solver: GroupSolver, link: str) -> Number | None:
+        """Return what was counted along the way."""
+        turns = self.curve.turns.get(link)
+        return None if turns is None else turns.near(self.designs, self.reached)
+
+
+_NOWHERE = np.zeros((1, 1))
+
+
+@dataclass(frozen=True)
+class _ConfiguredAlong(_Configured):
+    """The choice at places along a motion."""
+
+    poses: PosePlaces
+
+    @cached_property
+    def reached(self) -> Number:
+        """The places on the path."""
+        return self.curve.nearest_reached(self.designs, self.poses.at(self.designs, self.places))
+
+
+def _solved(
+    curve: ConfigurationCurve,
+    part: Inputs,
+    order: int,
+    choice: _Configured,
+    upto: int | None,
+    roots: Mapping[int, Root] | None,
+) -> Block:
+    block = curve.solving_order.start(part.ends, part.series(order), order, choice.shape)
+    block.roots = roots or {}
+    return run(curve.solving_order, block, choice, upto)
+
+
+@dataclass(frozen=True)
+class _First:
+    """The choice at home: by number or sign, else the nearest to the drawing; paths begin there."""
+
+    curve: ConfigurationCurve
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the chosen mode, and note it."""
+        curve, k = self.curve, solver.index
+        if not solver.is_numbered:
+            curve.signs[k], curve.chosen_by[k] = self._sign(block, solver)
+            return curve.signs[k]
+        number = curve.fixed.get(k)
+        state, by = first_state(curve.solving_order, solver, block, curve.shown, number)
+        curve.chosen_by[k] = curve.shown.source if by == "drawing" else by
+        path = followed_path(curve, k, state, np.full(len(state), curve.path.home))
+        curve.paths[k] = with_returns(curve, k, path) if curve.has_returns else path
+        return state
+
+    def angle(self, solver: GroupSolver, link: str) -> Number:
+        """Count the turns of a link from here on."""
+        turns = self.curve.turns[link] = turns_of(self.curve, solver.index, link)
+        return turns.first
+
+    def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
+        """Return the mode whose points lie nearest to the drawn ones, and what chose it."""
+        curve, solving_order = self.curve, self.curve.solving_order
+        if solver.index in curve.fixed or solver.modes == 1:
+            return curve.fixed.get(solver.index, 1), "sign" if solver.index in curve.fixed else ONLY
+        letters = drawn_letters(solving_order, solver, curve.shown)
+        closing = solving_order.closing(solver)
+        if not letters and not closing:
+            return default_sign(curve, solver.index, block), "default"
+        default = partial(default_sign, curve, solver.index, block)
+        chosen, is_told = nearest_sign(solving_order, solver, block, curve.shown, default)
+        source = "redundant" if closing else curve.shown.source
+        return chosen, source if is_told else "default"
+
+
+def _parity(passed: Number) -> Number:
+    """Return +1 where an even number of change points is passed, -1 where an odd number."""
+    return np.where(passed.sum(axis=-1) % 2, -1.0, 1.0)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FollowedPoses(ShortRepr):
+    """The poses of a motion on its configuration curve.
+
+    `given` are its inputs, `poses` tells where on the curve they are. `expanded` are the designs and indices of poses
+    that are solved through the double root of some groups. Places here are along the motion: indices of poses, and
+    between them.
+    """
+
+    curve: ConfigurationCurve
+    given: Inputs
+    poses: PosePlaces
+    expanded: tuple[Number, Number, Sequence[int]] | None = None
+
+    @property
+    def solving_order(self) -> SolvingOrder:
+        """The solving order, with what is followed on the curve."""
+        return self.curve.solving_order
+
+    def run(self, part: Inputs, order: int, s: Number, designs: Number, upto: int | None = None) -> Block:
+        """Solve a block of inputs in the configuration at places `s` along the motion, up to a group."""
+        return _solved(self.curve, part, order, _ConfiguredAlong(self.curve, designs, s, self.poses), upto, None)
+
+    def sign(self, k: int, designs: Number, s: Number) -> Number:
+        """Return the sign of a dyad's mode at places along the motion."""
+        if k not in self.curve.flips:
+            return self.curve.sign(k, designs, _NOWHERE)
+        places = self.curve.nearest_reached(designs, self.poses.at(designs, s))
+        return self.curve.sign(k, designs, places)
+
+    def places_on_path(self, designs: Number, s: Number) -> Number:
+        """Return the places on the drivers' path of places along the motion."""
+        return self.curve.nearest_reached(designs, self.poses.at(designs, s))
+
+    @cached_property
+    def flips(self) -> Mapping[int, Number]:
+        """Where groups pass change points along the motion, (designs, count), padded with inf.
+
+        Twice where the motion turns back from one.
+        """
+        if self.given.poses == 1:
+            return {k: np.full((self.given.designs, 1), np.inf) for k in self.curve.flips}
+        places = np.broadcast_to(self.poses.of_poses, (self.given.designs, self.given.poses))
+        found = {}
+        for k, flips in self.curve.flips.items():
+            rows = [sorted(s for f in row[np.isfinite(row)] for s in _passings(places[d], f))
+                    for d, row in enumerate(flips)]  # fmt: skip
+            found[k] = np.full((len(rows), max(1, *map(len, rows))), np.inf)
+            for row, own in zip(found[k], rows, strict=True):
+                row[: len(own)] = own
+        return found
+
+    @cached_property
+    def rests(self) -> Mapping[int, Sequence[tuple[int, int]]]:
+        """By group, the designs and poses from which on the drivers rest at a change point."""
+        places = np.broadcast_to(self.poses.of_poses, (self.given.designs, self.given.poses))
+        found: dict[int, list[tuple[int, int]]] = {}
+        for k, flips in self.curve.flips.items() if self.given.poses > 1 else ():
+            for d, row in enumerate(flips):
+                for f in row[np.isfinite(row)]:
+                    there = np.abs(places[d] - f) < CLOSE
+                    both = np.flatnonzero(there[1:] & there[:-1])
+                    found.setdefault(k, []).extend((d, int(i)) for i in both[:1])
+        return found
+
+    @property
+    def lost(self) -> bool:
+        """Whether some group without a closed form was not reached at some pose."""
+        if not self.curve.paths:
+            return False
+        places, designs = self.poses.of_poses, np.arange(self.given.designs)[:, None]
+        ends = (places.min(axis=1, keepdims=True), places.max(axis=1, keepdims=True))
+        return not all(np.all(self.curve.reaches(designs, end)) for end in ends)
+
+    @property
+    def nearest_to_home(self) -> tuple[int, float]:
+        """The index of the first pose that is nearest to home, over all designs, and by how many places it is away."""
+        away = np.abs(self.poses.of_poses - self.curve.path.home).max(axis=0)
+        near = int(np.argmin(np.where(away < away.min() + CLOSE, 0.0, away)))
+        return near, float(away[near]) if away[near] > CLOSE else 0.0
+
+    @property
+    def is_dense(self) -> bool:
+        """Whether the poses are so near to each other that no change point hides between them."""
+        places, (first, last) = self.poses.of_poses, self.curve.path.ends
+        steps = np.diff(places, axis=1)
+        if not (np.all(steps >= 0.0) or np.all(steps <= 0.0)):
+            places = np.sort(places, axis=1)
+            steps = np.diff(places, axis=1)
+        widest = max(float(np.abs(steps).max(initial=0.0)), float(np.max(places.min(axis=1) - first)),
+                     float(np.max(last - places.max(axis=1))))  # fmt: skip
+        return widest <= 1.0 + CLOSE
+
+
+def _passings(places: Number, flip: float) -> Iterator[float]:
+    """Yield where a motion passes a place of its path, between poses too: twice where it turns back there."""
+    there = np.abs(places - flip) < CLOSE
+    last = len(places) - 1
+    if there[0]:
+        yield 0.0
+    if there[last]:
+        # the motion is on one side of it
+        yield float(np.nextafter(float(last), np.inf))
+    away = np.flatnonzero(~there)
+    a, b = away[:-1], away[1:]
+    passes = (places[a] - flip) * (places[b] - flip) < 0.0
+    for one, two, crosses in zip(a.tolist(), b.tolist(), passes.tolist(), strict=True):
+        if two - one > 1:
+            yield from (float(one + 1),) * (1 if crosses else 2)
+        elif crosses:
+            yield float(one + (flip - places[one]) / (places[two] - places[one]))
+
+
+def follow(solving_order: SolvingOrder, given: Inputs, fixed: Mapping[int, int], shown: StatedModes) -> FollowedPoses:
+    """Return the poses of some inputs on their curve: modes chosen at home, other groups followed from there.
+
+    Change points, and what comes back after gaps, are found while the poses are solved.
+    """
+    path, poses = driver_path(solving_order, given, shown.poses, shown.beside)
+    if solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
+        given, knots = recounted(solving_order, (given, path.knots), path.at_home())
+        path = replace(path, knots=knots)
+    # only dimensions that vary along the motion ask for it
+    pose = 0 if given.is_rigid else int(np.argmin(np.abs(poses.of_poses[0] - path.home)))
+    return FollowedPoses(ConfigurationCurve(solving_order, path, fixed, shown, pose).chosen(), given, poses)
+
+
+# From one sample to the next but one a link turns no farther than this (radians), so that no half a turn is missed;
+FARTHEST = 1.0
+
+
+# and as far as its speed in between says but for this (radians): a link that whirls round between two samples gives
+# itself away by its speed, though the whole turn does not show in its orientation.
+EVEN = 1e-5
+
+
+# So often an interval is halved at most: 5 degrees of the driver become 0.001.
+HALVINGS = 12
+
+
+BLOCK = 4096
+
+
+@dataclass(frozen=True)
+class Turns:
+    """The angle of a link at samples of a path: at `places`, (designs, samples), `start` being the sample at home."""
+
+    places: Number
+    angles: Number
+    start: int
+
+    @property
+    def first(self) -> Number:
+        """The angle at home, (designs, 1)."""
+        return self.angles[:, self.start : self.start + 1]
+
+    def near(self, designs: Number, places: Number) -> Number:
+        """Return the angle, right to less than half a turn, at places."""
+        after = np.clip(np.searchsorted(self.places, places), 1, max(len(self.places) - 1, 1))
+        after = np.minimum(after, len(self.places) - 1)
+        before = np.maximum(after - 1, 0)
+        nearer = places - self.places[before] < self.places[after] - places
+        return self.angles[designs, np.where(nearer, before, after)]
+
+
+def turns_of(curve: ConfigurationCurve, k: int, link: str) -> Turns:
+    """Follow the angle of a link of group `k` from home. There it is nearest to the drawn one or to zero."""
+    places, angles = _Orientation(curve, k, link).samples()
+    drawn = curve.solving_order.structure.mechanism.drawn_poses.get(link)
+    start = int(np.argmin(np.abs(places - curve.path.home)))
+    first = angles[:, start] if drawn is None else np.ravel(as_column(drawn).angle.c[0])
+    return Turns(places, _unwrapped(angles, start, first), start)
+
+
+@dataclass(frozen=True)
+class _Orientation:
+    """The orientation of a link of group `k` along the path."""
+
+    curve: ConfigurationCurve
+    k: int
+    link: str
+
+    def samples(self) -> tuple[Number, Number]:
+        """Return places and orientations there (radians), the places so near to each other that no turn is missed."""
+        at = self.curve.path.samples
+        found, _ = self._at(at, 0)
+        known = [(at, found)]
+        low, high = (at[:-1], found[:, :-1]), (at[1:], found[:, 1:])
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low[0] + high[0])
+            if not len(middle):
+                break
+            there, speed = self._at(middle, 1)
+            known.append((middle, there))
+            halves = wrapped(there - low[1]), wrapped(high[1] - there)
+            uneven = np.abs(halves[0] + halves[1] - speed * (high[0] - low[0])) > EVEN
+            far = np.maximum(np.abs(halves[0]), np.abs(halves[1])) > FARTHEST / 2.0
+            # where an end is not assembled there is nothing to be followed
+            rough = np.any((uneven | far) & np.isfinite(halves[0] + halves[1]), axis=0)
+            parts = ((low, (middle, there)), ((middle, there), high))
+            low, high = (_joined([(s[rough], v[:, rough]) for s, v in side]) for side in zip(*parts, strict=True))
+        return _in_order(_joined(known))
+
+    def _at(self, at: Number, order: int) -> tuple[Number, Number]:
+        """Return the orientation at places (designs, places), and how fast it turns."""
+        designs = np.arange(self.curve.path.designs)[:, None]
+        found, speed = np.empty((len(designs), len(at))), np.zeros((len(designs), len(at)))
+        for start in range(0, len(at), BLOCK):
+            here = slice(start, start + BLOCK)
+            block = self.curve.run(self.curve.path.at(at[here]), order, at[here][None], designs, self.k + 1)
+            u = block.world[self.link].u.c
+            found[:, here] = np.angle(u[0])
+            if order and len(u) > 1:
+                speed[:, here] = cross(u[0], u[1])
+        return found, speed
+
+
+def _joined(parts: Sequence[tuple[Number, Number]]) -> tuple[Number, Number]:
+    return np.concatenate([s for s, _ in parts]), np.concatenate([v for _, v in parts], axis=1)
+
+
+def _in_order(samples: tuple[Number, Number]) -> tuple[Number, Number]:
+    order = np.argsort(samples[0])
+    return samples[0][order], samples[1][:, order]
+
+
+def _unwrapped(angles: Number, start: int, first: Number) -> Number:
+    """Make angles continuous, over gaps too, and at the sample `start` nearest to `first`."""
+    known = np.isfinite(angles)
+    last = np.maximum.accumulate(np.where(known, np.arange(angles.shape[1]), -1), axis=1)
+    held = np.take_along_axis(angles, np.where(last < 0, known.argmax(axis=1)[:, None], last), axis=1)
+    out = np.unwrap(np.nan_to_num(held), axis=1)
+    return out + whole_turns(np.nan_to_num(first - out[:, start]))[:, None]
+
+
+def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
+    """Return the motion and its approach path with drawn phases taken on.
+
+    They go on by the turns that drivers have made.
+
+    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
+    """
+    drawn, rounds = _as_drawn(solving_order, pose)
+    turns = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
+    return tuple(_blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in ways)
+
+
+def _blocks_counted(solving_order: SolvingOrder, way: Inputs, turns: Mapping[str, Number]) -> Inputs:
+    """A way with blocks that count turns as they are drawn: a slide tells their angle within half a turn only."""
+    drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
+    for mounted in (mounted for solver in solving_order.solvers for mounted in solver.slid):
+        name, links, other = mounted.lower.name, mounted.lower.members, mounted.side.other
+        if not drawn.keys() >= set(links):
+            continue
+        guide, block = (
+            as_column(drawn[k]).angle.c[0] + TURN * (turns.get(k, 0.0) if k == other else 0.0) for k in links
+        )
+        turned = mounted.lower.placed(ends[name], constant(0.0)).angle.c[0]
+        ends[name] = ends[name][0], ends[name][1]._replace(measure=np.round((block - guide - turned) / TURN))
+    return replace(way, ends=ends)
+
+
+def _as_drawn(solving_order: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:
+    """Return the reference pose with drivers as drawn, in the turn they are in there; and that turn, by driven pair."""
+    rounds: dict[str, Number] = {}
+    for name, driven in solving_order.structure.driven.items():
+        value = drawn_value(solving_order, pose, name, solving_order.structure.mechanism.drawn_poses, {})
+        if value is None:
+            continue
+        if driven.pair.free_is_angle:
+            turns = np.round((pose.drives[name][0] - value) / TURN)
+            rounds[driven.pair.name] = turns * driven.pair.driven_by(driven.drive.link)
+            value = value + TURN * turns
+        pose = pose.driven({**pose.drives, name: (value,)})
+    return pose, rounds
+
+
+def _counted_on(
+    solving_order: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]
+) -> Inputs:
+    """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
+    geometry = solving_order.structure.mechanism.geometry
+    ends = dict(way.ends)
+    for name, pair in solving_order.pairs.items():
+        ahead = tuple(turns.get(member, 0.0) for member in pair.members)
+        counting = as_turn_counting(pair)
+        if counting and name in rounds:
+            ends[name] = counting.with_driver_turns(ends[name], geometry, rounds[name])
+        elif counting and any(np.any(turn != 0.0) for turn in ahead):
+            ends[name] = counting.with_link_turns(ends[name], geometry, ahead)
+    return replace(way, ends=ends)
+
+
+def _turns_at(solving_order: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
+    """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
+    poses = solving_order.structure.mechanism.drawn_poses
+    start = solving_order.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
+    for body in solving_order.structure.bodies:
+        base = body.links[0]
+        for link in (
+            link for link in body.links[1:] if link in poses and base in poses and link in solving_order.turning
+        ):
+            pose = start.world.get(link) or start.local[link]
+            gap = as_column(poses[base]).angle.c[0] + pose.angle.c[0] - as_column(poses[link]).angle.c[0]
+            yield link, np.round(gap / TURN)
