@@ -207,9 +207,9 @@ def test_solvers_are_told_apart_in_their_own_folder_only() -> None:
     only_shrinks(f"{where(p)}: {name}" for p in others for name in classes_told_apart(p) if name in told)
 
 
-def test_nobody_tracks_outside_kinematics() -> None:
-    """Neither by the class and its module, nor by the attribute of a motion."""
-    tracking = re.compile(r"\b\w*Tracker\w*|\bcompoundkin\.kinematics\.tracking\b|\.tracker\b")
+def test_nobody_follows_configurations_outside_kinematics() -> None:
+    """Neither by the class and its module, nor by the function."""
+    tracking = re.compile(r"\bConfigurationCurve\b|\bcompoundkin\.kinematics\.curve\.configuration_curve\b")
     others = [path for path in FILES if room(path) not in ("kinematics", "__init__")]
     only_shrinks(f"{where(p)}: {word}" for p in others for word in tracking.findall(code_of(p)))
 

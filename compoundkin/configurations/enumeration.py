@@ -20,7 +20,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.configurations.driver_range import greatest_reach
 from compoundkin.configurations.segment_poses import drawn_angle
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configuration, ConfigurationCurve, Configurations, dimensions_at
+from compoundkin.kinematics.configuration import Configuration, Configurations, RestingCurve, dimensions_at
 from compoundkin.kinematics.driver_values import Inputs, by_name, inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at
@@ -224,7 +224,7 @@ def _any(solving_order: SolvingOrder, given: Inputs, name: str, values: Number) 
 MOVES = 1e-6
 
 
-def resting_curve(structure: Structure, given: Inputs) -> ConfigurationCurve | None:
+def resting_curve(structure: Structure, given: Inputs) -> RestingCurve | None:
     """Return a curve of configurations at the first driver values, or None."""
     equations = ConstraintEquations(structure.mechanism)
     if equations.width > WIDEST:
@@ -236,4 +236,4 @@ def resting_curve(structure: Structure, given: Inputs) -> ConfigurationCurve | N
     share = np.linalg.norm(found.along, axis=1)
     links = tuple(name for name, k in equations.column.items() if np.max(share[k : k + 3]) > MOVES)
     dimensions = dimensions_at(structure, 0, 0)
-    return ConfigurationCurve(links, Configuration(structure, values, equations.poses(found.state), {}, {}, dimensions))
+    return RestingCurve(links, Configuration(structure, values, equations.poses(found.state), {}, {}, dimensions))

@@ -64,7 +64,7 @@ class Configuration(DisplaysHtml):
 
 
 @dataclass(frozen=True, eq=False)
-class ConfigurationCurve(DisplaysHtml):
+class RestingCurve(DisplaysHtml):
     """A curve of configurations: `links` move although all drivers stand still.
 
     `through` is one of them; its name says nothing, for the groups of those on a curve have no modes.
@@ -74,7 +74,7 @@ class ConfigurationCurve(DisplaysHtml):
     through: Configuration
 
     def __repr__(self) -> str:
-        return f"ConfigurationCurve({', '.join(self.links)})"
+        return f"RestingCurve({', '.join(self.links)})"
 
 
 def label(structure: Structure, k: int) -> str:
@@ -134,7 +134,7 @@ class Configurations(DisplaysHtml):
     values: Mapping[str, Number] = field(default_factory=dict)
     modes: tuple[Mapping[int, str], ...] = ()
     margins: Mapping[int, Number] = field(default_factory=dict)
-    curve: ConfigurationCurve | None = None
+    curve: RestingCurve | None = None
 
     @classmethod
     def of_closed_form(cls, bodies: Sequence[Pose], real: Number, shape: tuple[int, ...]) -> Configurations:

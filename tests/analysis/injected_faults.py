@@ -11,9 +11,9 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import run
-from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.geometry import FRAME
 
 # Other configurations nearer than this (of the size, or radians) are the same: the pose is next to where they meet.
@@ -24,7 +24,7 @@ APART = 1e-3
 class Flipped:
     """The motion's own configurations, but another one for one group: its other sign, or a state."""
 
-    tracker: Tracker
+    followed: FollowedPoses
     designs: np.ndarray
     s: np.ndarray
     index: int
@@ -34,13 +34,17 @@ class Flipped:
         if solver.index == self.index and self.state is not None:
             return self.state
         if solver.is_numbered:
-            return self.tracker.paths[solver.index].seeds(self.designs, self.s)
-        sign = self.tracker.sign(solver.index, self.designs, self.s)
+            return self.followed.curve.paths[solver.index].seeds(self.designs, self.places)
+        sign = self.followed.sign(solver.index, self.designs, self.s)
         return -sign if solver.index == self.index else sign
 
     def angle(self, solver: GroupSolver, link: str) -> np.ndarray | None:
-        turns = self.tracker.turns.get(link)
-        return None if turns is None else turns.near(self.designs, self.s, False)
+        turns = self.followed.curve.turns.get(link)
+        return None if turns is None else turns.near(self.designs, self.places)
+
+    @property
+    def places(self) -> np.ndarray:
+        return self.followed.places_on_path(self.designs, self.s)
 
 
 def flipped(motion: Motion, solver: GroupSolver, index: np.ndarray) -> tuple[np.ndarray, dict[str, Pose]]:
@@ -54,7 +58,7 @@ def flipped(motion: Motion, solver: GroupSolver, index: np.ndarray) -> tuple[np.
         own = motion.block(part, 0, s, designs)
         state = another(solver, own)
     with np.errstate(all="ignore"):
-        run(order, block, Flipped(motion.tracker, designs, s, solver.index, state))
+        run(order, block, Flipped(motion.followed, designs, s, solver.index, state))
     there = np.broadcast_to(block.failed == 0, (len(index), 1))[:, 0]
     for link in solver.group.links:
         for c in (*block.world[link].z.c, *block.world[link].u.c):

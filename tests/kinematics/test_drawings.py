@@ -199,8 +199,8 @@ def test_where_a_drawing_shows_both_modes_alike_the_mode_is_that_by_default() ->
             ck.drawn(O=0, A=4, B=4 + 1.5 * np.exp(1j * turn)),
         )
         motion = ck.solve(mechanism)
-        assert motion.tracker.chosen_by == {0: "default"}
-        assert float(motion.tracker.signs[0]) == 1.0
+        assert motion.followed.curve.chosen_by == {0: "default"}
+        assert float(motion.followed.curve.signs[0]) == 1.0
 
 
 @pytest.mark.parametrize("turns", [0, 1, -2])

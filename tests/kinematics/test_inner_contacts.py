@@ -158,8 +158,9 @@ def test_verifying_sees_that_an_inner_contact_is_meant() -> None:
     assert ck.verify(followed).passed
     motion = ck.solve(wave(Q=0.36j, P=np.sqrt(1.0 + np.sqrt(1.0 - 0.36))), values)
     assert ck.verify(motion).passed
-    tracker = motion.tracker
-    tracker.shown = replace(tracker.shown, points={**tracker.shown.points, "P": np.array([[inner + 0j]])})
+    curve = motion.followed.curve
+    shown = replace(curve.shown, points={**curve.shown.points, "P": np.array([[inner + 0j]])})
+    motion = replace(motion, followed=replace(motion.followed, curve=replace(curve, shown=shown)))
     assert [finding.name for finding in ck.verify(motion).findings if not finding.passed] == ["nearest to the drawing"]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.arrays import Number
-from compoundkin.kinematics.change_points import NEAR
+from compoundkin.kinematics.curve.change_points import NEAR
 from compoundkin.kinematics.groups import SOLVERS
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import owner_of, quantity

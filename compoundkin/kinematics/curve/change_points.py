@@ -24,7 +24,7 @@ from compoundkin.kinematics.block import (
     signed_root,
 )
 from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses
-from compoundkin.kinematics.curve.driver_path import CLOSE
+from compoundkin.kinematics.curve.driver_path import SAME
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.model.attributes import HIGHEST_ORDER
 
@@ -83,7 +83,7 @@ def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Numbe
     part = curve.path.pick(designs, places)
     groups, found = [n for n in curve.flips if n < k], []
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
-    spots = (places + CLOSE * sense)[:, None] if groups else places[:, None], designs[:, None]
+    spots = (places + SAME * sense)[:, None] if groups else places[:, None], designs[:, None]
     for name in part.drives:
         rates = {n: (v[0], curve.solving_order.unit(n) if n == name else 0.0) for n, v in part.drives.items()}
         along = part.driven(rates)
@@ -334,7 +334,7 @@ def solved_near(
     curve, (s, designs) = followed.curve, at
     places = np.broadcast_to(followed.places_on_path(designs, s), s.shape)
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
-    spots = (places + CLOSE * sense)[:, None], designs[:, None]
+    spots = (places + SAME * sense)[:, None], designs[:, None]
     course = straight_path(curve, part, onward)
     roots, near = roots_along(curve, course.part, spots, groups, onward)
     block = curve.run(course.part, order + EXTRA + 2 * len(roots), *spots, roots=roots)

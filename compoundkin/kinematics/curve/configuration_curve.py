@@ -17,7 +17,15 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import constant
 from compoundkin.kinematics.block import NEAREST, Block, Root
 from compoundkin.kinematics.configuration import ONLY
-from compoundkin.kinematics.curve.driver_path import CLOSE, DriverPath, PosePlaces, as_column, drawn_value, driver_path
+from compoundkin.kinematics.curve.driver_path import (
+    CLOSE,
+    SAME,
+    DriverPath,
+    PosePlaces,
+    as_column,
+    drawn_value,
+    driver_path,
+)
 from compoundkin.kinematics.curve.group_paths import GroupPath, followed_path, with_returns
 from compoundkin.kinematics.curve.modes import (
     StatedModes,
@@ -104,7 +112,7 @@ class ConfigurationCurve(ShortRepr):
     def with_flips(self, k: int, places: Number) -> ConfigurationCurve:
         """Return the curve on which a group also changes its sign at some places, (designs, count)."""
         home = self.path.home
-        places = np.where(np.abs(places - home) < CLOSE, home, places)
+        places = np.where(np.abs(places - home) < SAME, home, places)
         other = replace(self, flips={**self.flips, k: places})
         return other.chosen() if self.solving_order.numbered or self.turns else other
 
@@ -306,7 +314,7 @@ class FollowedPoses(ShortRepr):
         for k, flips in self.curve.flips.items() if self.given.poses > 1 else ():
             for d, row in enumerate(flips):
                 for f in row[np.isfinite(row)]:
-                    there = np.abs(places[d] - f) < CLOSE
+                    there = np.abs(places[d] - f) < SAME
                     both = np.flatnonzero(there[1:] & there[:-1])
                     found.setdefault(k, []).extend((d, int(i)) for i in both[:1])
         return found
@@ -342,7 +350,7 @@ class FollowedPoses(ShortRepr):
 
 def _passings(places: Number, flip: float) -> Iterator[float]:
     """Yield where a motion passes a place of its path, between poses too: twice where it turns back there."""
-    there = np.abs(places - flip) < CLOSE
+    there = np.abs(places - flip) < SAME
     last = len(places) - 1
     if there[0]:
         yield 0.0

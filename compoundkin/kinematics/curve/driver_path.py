@@ -26,6 +26,8 @@ SPACING = np.pi / 36.0
 MOST = 1000
 # Places nearer to each other than this are one: a double root is known to the square root of rounding.
 CLOSE = 1e-6
+# Places nearer to each other than this are one but for rounding, of the drivers' values and of the double root.
+SAME = 2e-12
 # Values of several drivers lie on a line if they are aside of it by no more than this part of its length.
 ASIDE = 1e-12
 # Where dimensions change along the motion a pose is at least so many places from the next one.
@@ -79,7 +81,7 @@ class DriverPath:
         """Return the inputs of all designs at places (n,). Speeds are by the place."""
         i, weight = self._interval(places, "right")
         here = partial(between_poses, i=i, weight=weight)
-        return self._made(here, lambda v: slope(v, i) / self._lengths(i)).of_poses(len(places))
+        return self._made(here, lambda v: _by_place(slope(v, i), self._lengths(i))).of_poses(len(places))
 
     def pick(self, designs: Number, places: Number) -> Inputs:
         """Return the inputs of some designs, each at its own place, as a column. The speeds are those of the way on."""
@@ -128,11 +130,16 @@ class DriverPath:
     def _picked(self, designs: Number, i: Number, weight: Number) -> Inputs:
         here = partial(picked, designs=designs, i=i, weight=weight)
         length = self._lengths(i)[:, None]
-        return self._made(here, lambda v: picked_slope(v, designs, i) / length)
+        return self._made(here, lambda v: _by_place(picked_slope(v, designs, i), length))
 
     def _made(self, here: Callable[[Number], Number], rate: Callable[[Number], Number]) -> Inputs:
         drives = {name: (here(v), rate(v)) for name, (v, *_) in self.knots.drives.items()}
         return self.knots.with_dimensions(here).driven(drives)
+
+
+def _by_place(change: Number, length: Number) -> Number:
+    """Return a change from knot to knot by the place; that of a driver that rests is a number."""
+    return change / length if np.ndim(change) else change
 
 
 def _speeds(solving_order: SolvingOrder, part: Inputs, count: int) -> Number:

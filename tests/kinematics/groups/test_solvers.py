@@ -43,8 +43,8 @@ def solved(kind: type[GroupSolver]) -> list[tuple[GroupSolver, Block, Block]]:
         for solver in motion.solving_order.solvers:
             if type(solver) is kind:
                 places = np.arange(motion.inputs.poses, dtype=float)[None], np.zeros((1, 1), dtype=int)
-                before = motion.tracker.run(motion.inputs, 2, *places, upto=solver.index)
-                after = motion.tracker.run(motion.inputs, 2, *places, upto=solver.index + 1)
+                before = motion.followed.run(motion.inputs, 2, *places, upto=solver.index)
+                after = motion.followed.run(motion.inputs, 2, *places, upto=solver.index + 1)
                 found.append((solver, before, after))
     return found
 
@@ -154,4 +154,4 @@ def test_one_line_in_the_registry_adds_a_way(name: str, monkeypatch: pytest.Monk
     expected = told(name)
     monkeypatch.setattr(groups, "SOLVERS", (Pinned, *SOLVERS))
     assert told(name) == expected
-    assert any(type(solver) is Pinned for solver in ck.solve(load(name)).tracker.solving_order.solvers)
+    assert any(type(solver) is Pinned for solver in ck.solve(load(name)).followed.solving_order.solvers)

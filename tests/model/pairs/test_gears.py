@@ -846,7 +846,7 @@ def test_a_train_agrees_with_newton_on_the_pairs_own_equations() -> None:
     solving_order = motion.solving_order
     (train,) = solving_order.solvers
     general = GeneralSolver(0, train.group, solving_order.size).equations
-    run = motion.tracker.run(motion.inputs, 3, np.arange(2.0)[None], np.zeros((1, 1), dtype=int))
+    run = motion.followed.run(motion.inputs, 3, np.arange(2.0)[None], np.zeros((1, 1), dtype=int))
     state = general.state([run.world[body.links[0]] for body in train.group.bodies])
     solution = general.newton(state + 0.05, run)
     assert solution.closed.all()
