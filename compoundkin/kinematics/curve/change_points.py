@@ -24,7 +24,7 @@ from compoundkin.kinematics.block import (
     signed_root,
 )
 from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses
-from compoundkin.kinematics.curve.driver_path import SAME
+from compoundkin.kinematics.curve.driver_path import CLOSE, SAME
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.model.attributes import HIGHEST_ORDER
 
@@ -72,10 +72,50 @@ class _Known(NamedTuple):
 def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> ConfigurationCurve | None:
     """Return the curve that passes the change points of the first group among `near` that has any. None without."""
     for k in sorted(k for k in near if k not in curve.flips and curve.solving_order.solvers[k].modes_may_meet):
-        places = [place for known in _known(curve, k) for place in _passed(curve, k, known)]
+        places = _together(curve, k, [place for known in _known(curve, k) for place in _passed(curve, k, known)])
         if places:
             return curve.with_flips(k, _padded(places, curve.path.designs))
     return None
+
+
+# What is smooth through a change point of an earlier group loses its digits beside it: it is interpolated from places
+# so far on both sides, by the weights of Lagrange's polynomial of fifth degree.
+BESIDE = 0.02 * np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
+MIDDLE = np.array([0.05, -0.3, 0.75, 0.75, -0.3, 0.05])
+# and is zero there below this part of the size, or of the discriminant's scale: rounding by the distance of the places.
+INTERPOLATED = 1e-11
+
+
+def _together(curve: ConfigurationCurve, k: int, found: list[tuple[int, float]]) -> list[tuple[int, float]]:
+    """Return the change points of a group, with those that it has in common with earlier groups."""
+    earlier = sorted({(d, float(f)) for n, rows in curve.flips.items() if n < k
+                      for d, row in enumerate(rows) for f in row[np.isfinite(row)]})  # fmt: skip
+    first, last = curve.path.ends
+    inside = [(d, f) for d, f in earlier if first < f + BESIDE[0] and f + BESIDE[-1] < last]
+    if not inside:
+        return found
+    designs, places = np.array([d for d, _ in inside]), np.array([f for _, f in inside])
+    rows, at = np.repeat(designs, len(BESIDE)), (places[:, None] + BESIDE).ravel()
+    notes: list[Series] = []
+    part = curve.path.pick(rows, at)
+    block = curve.run(part, 0, at[:, None], rows[:, None], k + 1, {k: recorded_root(notes)})
+    line = block.meetings.get(k)
+    squares, middle = _beside(notes[0].c[0], len(places))
+    # a square of an odd power: at three times the distance it is nine times, of an even one 81 times as large
+    passes = (np.abs(middle) < INTERPOLATED) & np.all(squares > 0.0, axis=1) & (squares[:, 0] < 27.0 * squares[:, 2])
+    if line is not None:
+        lines, middle = _beside(line.c[0] / curve.solving_order.size, len(places))
+        opposite = (lines[:, 2] * lines[:, 3].conj()).real < 0.0
+        passes |= (np.abs(middle) < INTERPOLATED) & opposite
+    common = [(d, f) for (d, f), here in zip(inside, passes, strict=True) if here]
+    away = [(d, f) for d, f in found if all(d != other or abs(f - g) > CLOSE for other, g in common)]
+    return [*away, *common]
+
+
+def _beside(values: Number, count: int) -> tuple[Number, Number]:
+    """Return values beside some places, a row for each, and what is interpolated between them."""
+    rows = np.broadcast_to(values, (count * len(BESIDE), 1)).reshape(count, len(BESIDE))
+    return rows, rows @ MIDDLE
 
 
 def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Number) -> list[_Slopes]:
@@ -240,9 +280,10 @@ def squares(
         padded = [*c, *[0.0] * (order + 1 - len(c))]
         return [np.broadcast_to(np.reshape(x, (-1,)) if np.ndim(x) else x, (len(places),)) for x in padded]
 
-    line2 = block.meetings.get(k)
+    line = block.meetings.get(k)
     size = curve.solving_order.size
-    return Squares(column(notes[0].c), None if line2 is None else column(tuple(c / size**2 for c in line2.c)))
+    meeting = None if line is None else column(tuple(c / size**2 for c in line.abs2().c))
+    return Squares(column(notes[0].c), meeting)
 
 
 def roots_along(

@@ -38,7 +38,7 @@ class Closed(NamedTuple):
     """A group solved. The poses of its two bodies, and the margin, negative where it cannot be assembled.
 
     For a group of two modes the margin is the squared sine of the angle in which the modes differ. `meeting`
-    is a squared length whose zero leaves the pose undetermined, for groups that have such a place, with its rates.
+    is a vector whose zero leaves the pose undetermined, for groups that have such a place, with its rates.
     """
 
     poses: tuple[Pose, Pose]
@@ -143,7 +143,7 @@ class DyadSolver(GroupSolver):
         poses, margin, meeting = self.assemble(*self.arguments(block), mode, block.root(self.index))
         if meeting is not None:
             block.meetings[self.index] = meeting
-            margin = np.fmin(margin, np.sqrt(meeting.c[0]) / self.size - COINCIDENT)
+            margin = np.fmin(margin, np.sqrt(meeting.abs2().c[0]) / self.size - COINCIDENT)
         block.margins[self.index] = margin
         block.fail(margin >= 0, self.index)
         for body, pose in zip(self.bodies, poses, strict=True):

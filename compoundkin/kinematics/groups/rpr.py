@@ -42,7 +42,7 @@ class RPR(DyadSolver):
         u, v = guide * inner[0].along.conj(), guide * inner[1].along.conj()
         first_pose = placed_at(as_series(first.world.point), u, first.local.point)
         second_pose = placed_at(as_series(second.world.point), v, second.local.point)
-        return Closed((first_pose, second_pose), margin, line2)
+        return Closed((first_pose, second_pose), margin, line)
 
     @staticmethod
     def transmitted(first: End, inner: End, second: End) -> Number:

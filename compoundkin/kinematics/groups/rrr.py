@@ -43,7 +43,7 @@ class RRR(DyadSolver):
         u = line * a.conj() / planar_series(foot, height * sign)
         v = (u * a - line) / b
         first_pose = placed_at(_point(first), u, first.local.point)
-        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2)
+        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line)
 
     @staticmethod
     def transmitted(first: End, inner: End, second: End) -> Number:

@@ -256,7 +256,7 @@ class DyadData(NamedTuple):
             poses, margin, meeting = kind.assemble(first, inner, second, self.mode)
             if meeting is not None:
                 reach = np.abs(as_series(first.world.point).c[0]) + np.abs(as_series(second.world.point).c[0])
-                margin = np.where(np.sqrt(meeting.c[0]) > COINCIDENT * reach, margin, np.nan)
+                margin = np.where(np.abs(meeting.c[0]) > COINCIDENT * reach, margin, np.nan)
             margin = np.where(self.known, margin, np.nan)
         found = DyadSolution(poses, margin >= 0, margin, self.shape)
         if missing := np.argwhere(self.known & ~found.assembled).tolist():

@@ -89,7 +89,7 @@ class RecordedLimits(ShortRepr):
         for k in self.watched:
             yield from self.mechanism.notes[k]
             if k in self.mechanism.block.meetings:
-                yield self.mechanism.block.meetings[k] * (1.0 / size**2)
+                yield self.mechanism.block.meetings[k].abs2() * (1.0 / size**2)
 
     def _clear(self) -> Iterator[RecordedNumber]:
         """Yield whether groups of one mode are away from their limits, and silent ones slow."""
