@@ -74,7 +74,10 @@ class DriverPath:
         return np.append(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in pieces]), knots[-1])
 
     def at_home(self) -> Inputs:
-        """Return the inputs of the drawn pose."""
+        """Return the inputs of the drawn pose, which is a knot or lies between two."""
+        k = int(np.searchsorted(self.places, self.home))
+        if self.places[k] == self.home:
+            return self.knots.cut(slice(None), slice(k, k + 1)).of_poses(1)
         return self.at(np.array([self.home])).of_poses(1)
 
     def at(self, places: Number) -> Inputs:
@@ -211,33 +214,38 @@ def _varies(value: Number) -> bool:
 def _of_one_driver(solving_order: SolvingOrder, given: Inputs, name: str, drawn: Number | None) -> PathOfPoses:
     """Return the path of the only driver that moves: from its least value to its greatest, with the drawn one."""
     value = given.drives[name][0]
-    rows, columns = np.arange(len(value)), value.shape[1]
     low, high = value.min(axis=1, keepdims=True), value.max(axis=1, keepdims=True)
     is_angle = solving_order.structure.driven_angles[name]
-    home = value[:, :1] if drawn is None else np.broadcast_to(drawn, (max(len(value), np.size(drawn)), 1))
+    home = value[:, :1] if drawn is None else drawn + np.zeros_like(low)
     if drawn is not None and is_angle:
         home = home + _turns_into(home, low, high)
-    first = np.argmax(value != value[:, :1], axis=1)
-    going = np.where(value[:, -1] != value[:, 0], value[:, -1] - value[:, 0], value[rows, first] - value[:, 0])[:, None]
-    sense = np.where(going < 0.0, -1.0, 1.0)
-    unit = SPACING * solving_order.unit(name)
-    away = (value - home) * sense / unit
-    begin, end = np.minimum(away.min(axis=1, keepdims=True), 0.0), np.maximum(away.max(axis=1, keepdims=True), 0.0)
+    unit = SPACING * solving_order.unit(name) * np.where(_falls(value), -1.0, 1.0)[:, None]
+    away = (value - home) / unit
+    one, two = (low - home) / unit, (high - home) / unit
+    begin, end = np.minimum(np.minimum(one, two), 0.0), np.maximum(np.maximum(one, two), 0.0)
     far = (-float(begin.min()), float(end.max()))
     if is_angle:
-        ends = [(-far[0], home - sense * unit * far[0]), (0.0, home), (far[1], home + sense * unit * far[1])]
+        ends = [(-far[0], home - unit * far[0]), (0.0, home), (far[1], home + unit * far[1])]
     else:
         # lengths of each design go their own way, each in as many places
         far = (min(far[0], MOST), min(far[1], MOST))
-        ends = [(-far[0], home + sense * unit * begin), (0.0, home), (far[1], home + sense * unit * end)]
+        ends = [(-far[0], home + unit * begin), (0.0, home), (far[1], home + unit * end)]
         one, two = (np.divide(a, b, out=np.zeros_like(b), where=b != 0.0) for a, b in ((-far[0], begin), (far[1], end)))
         away = away * np.where(away < 0.0, one, two)
     kept = [knot for k, knot in enumerate(ends) if k == 1 or knot[0] != 0.0]
-    at = np.concatenate([np.broadcast_to(v, (len(away), 1)) for _, v in kept], axis=1)
-    knots = _first(given).driven({**_first_drives(given), name: (at,)}).of_poses(len(kept))
-    wraps = is_angle and not solving_order.turning
-    path = DriverPath(knots, np.array([place for place, _ in kept]), 0.0, wraps)
-    return path, PosePlaces(away if columns == given.poses else np.broadcast_to(away, (len(away), given.poses)))
+    knots = _first(given).driven({**_first_drives(given), name: (np.concatenate([v for _, v in kept], axis=1),)})
+    places = np.array([place for place, _ in kept])
+    path = DriverPath(knots.of_poses(len(kept)), places, 0.0, is_angle and not solving_order.turning)
+    return path, PosePlaces(away)
+
+
+def _falls(value: Number) -> Number:
+    """Return for which designs a driver's values fall, from the first to the last, or else to the first other one."""
+    change = value[:, -1] - value[:, 0]
+    if np.all(change != 0.0):
+        return change < 0.0
+    first = np.argmax(value != value[:, :1], axis=1)
+    return np.where(change != 0.0, change, value[np.arange(len(value)), first] - value[:, 0]) < 0.0
 
 
 def _turns_into(home: Number, low: Number, high: Number) -> Number:
