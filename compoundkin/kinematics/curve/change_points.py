@@ -28,19 +28,21 @@ from compoundkin.kinematics.curve.driver_path import CLOSE, SAME
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.model.attributes import HIGHEST_ORDER
 
-# The discriminant's rate is searched for its zero so often, to this part of its values at the ends.
+# The discriminant's rate is searched for its zero so often: first coarsely, in parts of the way, then to rounding.
 TRIALS = 60
-
-
-FLAT = 1e-15
+COARSE, FLAT = 1e-4, 1e-15
+# A square that is zero between two samples is as far from there as its root says, but for the curvature of that, by
+# less than this factor; and where its rate is nearly zero, it is less than this part of what it is at the samples.
+CURVED, RISEN = 3.0, 1e-5
 
 
 class _Slopes(NamedTuple):
-    """The rates of a square by the drivers, (n, drivers), at samples.
+    """The values of a square, (n,), and its rates by the drivers that move, (n, drivers), at samples.
 
     `touching` is where the square is zero, `still` where its rates are too.
     """
 
+    values: Number
     rates: Number
     touching: Number
     still: Number
@@ -54,7 +56,7 @@ def _slopes(columns: Sequence[Sequence[Number]], bound: float) -> _Slopes:
     """Return the slopes from coefficients by each driver; a square is zero below a bound."""
     first, second = (np.stack([c[i] for c in columns], axis=-1) for i in (1, 2))
     touching = np.abs(columns[0][0]) < bound
-    return _Slopes(first, touching, slope_is_zero(first, second).all(axis=-1) & touching)
+    return _Slopes(columns[0][0], first, touching, slope_is_zero(first, second).all(axis=-1) & touching)
 
 
 class _Known(NamedTuple):
@@ -70,12 +72,19 @@ class _Known(NamedTuple):
 
 
 def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> ConfigurationCurve | None:
-    """Return the curve that passes the change points of the first group among `near` that has any. None without."""
-    for k in sorted(k for k in near if k not in curve.flips and curve.solving_order.solvers[k].modes_may_meet):
-        places = _together(curve, k, [place for known in _known(curve, k) for place in _passed(curve, k, known)])
+    """Return the curve that passes the change points of groups among `near`. None where they have none."""
+    if len(curve.path.places) == 1:
+        return None
+    todo = sorted(k for k in near if k not in curve.flips and curve.solving_order.solvers[k].modes_may_meet)
+    found, samples = curve, dict[int, Number]()
+    for n, k in enumerate(todo):
+        samples = samples or _near_samples(found, todo[n:])
+        places = [place for known in _known(found, k, samples[k]) for place in _passed(found, k, known)]
+        places = _together(found, k, places)
         if places:
-            return curve.with_flips(k, _padded(places, curve.path.designs))
-    return None
+            # groups after this one are elsewhere from there on
+            found, samples = found.with_flips(k, _padded(places, curve.path.designs)), {}
+    return None if found is curve else found
 
 
 # What is smooth through a change point of an earlier group loses its digits beside it: it is interpolated from places
@@ -124,7 +133,7 @@ def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Numbe
     groups, found = [n for n in curve.flips if n < k], []
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
     spots = (places + SAME * sense)[:, None] if groups else places[:, None], designs[:, None]
-    for name in part.drives:
+    for name in (name for name, (value, *_) in curve.path.knots.drives.items() if np.shape(value)[1:] > (1,)):
         rates = {n: (v[0], curve.solving_order.unit(n) if n == name else 0.0) for n, v in part.drives.items()}
         along = part.driven(rates)
         roots, _ = roots_along(curve, along, spots, groups, onward)
@@ -134,20 +143,27 @@ def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Numbe
     return [_slopes(columns, bound) for columns, bound in zip(map(list, both), bounds, strict=True) if columns]
 
 
-def _known(curve: ConfigurationCurve, k: int) -> list[_Known]:
-    """Return what is known of a group's squares at samples at or beside which its margin is near zero."""
+def _near_samples(curve: ConfigurationCurve, groups: Sequence[int]) -> dict[int, Number]:
+    """Return at which samples, (designs, samples), groups come near a limit position, or are beside such."""
     path = curve.path
-    near: Number = np.zeros((path.designs, len(path.samples)), dtype=bool)
-    for d, m, margins in _margins(curve, k + 1):
-        near[d, m] = np.abs(margins[k]) < NEAR
-    beside = near.copy()
-    beside[:, 1:] |= near[:, :-1]
-    beside[:, :-1] |= near[:, 1:]
-    designs, samples = np.nonzero(beside)
+    found = {k: np.zeros((path.designs, len(path.samples)), dtype=bool) for k in groups}
+    for d, m, margins in _margins(curve, max(groups) + 1):
+        for k in groups:
+            found[k][d, m] = np.abs(margins[k]) < NEAR
+    for near in found.values():
+        before = near.copy()
+        near[:, 1:] |= before[:, :-1]
+        near[:, :-1] |= before[:, 1:]
+    return found
+
+
+def _known(curve: ConfigurationCurve, k: int, near: Number) -> list[_Known]:
+    """Return what is known of a group's squares at some samples, (designs, samples)."""
+    designs, samples = np.nonzero(near)
     if not len(designs):
         return []
     parts = (slice(i, i + POSES_OF_A_SWEEP) for i in range(0, len(designs), POSES_OF_A_SWEEP))
-    found = [_slopes_at(curve, k, designs[part], path.samples[samples[part]]) for part in parts]
+    found = [_slopes_at(curve, k, designs[part], curve.path.samples[samples[part]]) for part in parts]
     slopes = (reduce(_Slopes.joined, each) for each in zip(*found, strict=True))
     return [_Known(designs, samples, each, square) for square, each in enumerate(slopes)]
 
@@ -184,26 +200,57 @@ def _passed(curve: ConfigurationCurve, k: int, known: _Known) -> list[tuple[int,
 
 def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> list[tuple[int, float]]:
     """Return designs and places of zeros between some samples and those after them. They are change points."""
-    if not len(a):
+    samples, every = curve.path.samples, known.slopes
+    # what the rates are along the path there, which is straight from sample to sample
+    ahead, _ = curve.path.onward(curve.solving_order, known.designs[a], samples[known.samples[a]])
+    ahead = ahead[:, [np.shape(value)[1:] > (1,) for value, *_ in curve.path.knots.drives.values()]]
+    length = samples[known.samples[a] + 1] - samples[known.samples[a]]
+    falls, rises = (np.sum(every.rates[i] * ahead, axis=-1) * length for i in (a, a + 1))
+    least = np.minimum(every.values[a], every.values[a + 1])
+    far = 2.0 * (every.values[a] / np.abs(falls) + every.values[a + 1] / np.abs(rises))
+    may = (falls < 0.0) & (rises > 0.0) & (far < CURVED)
+    zeros = _Bracket(curve, k, known.square, known.designs[a], samples[known.samples[a]], length, ahead)
+    zeros, falls, rises, least = zeros.some(may), falls[may], rises[may], least[may]
+    if not len(falls):
         return []
-    designs, rates = known.designs[a], known.slopes.rates
-    low, high = (curve.path.samples[known.samples[a] + i] for i in (0, 1))
-    # the rates by the drivers are all multiples of the root: of one direction, which changes to the opposite
-    across = rates[a + 1] - rates[a]
-    across = across / np.sum(across**2, axis=-1, keepdims=True)
+    # most come near a limit and turn back
+    share = false_position(
+        zeros.rates, np.ones(len(falls)), falls, rises, COARSE * float(np.min(rises - falls)), TRIALS
+    )
+    low = zeros.slopes(share).values < RISEN * least
+    zeros, falls, rises = zeros.some(low), falls[low], rises[low]
+    if not len(falls):
+        return []
+    share = false_position(zeros.rates, np.ones(len(falls)), falls, rises, FLAT, TRIALS)
+    touching = zeros.slopes(share).touching
+    found = (zeros.low + share * zeros.length)[touching]
+    return [(int(d), float(s)) for d, s in zip(zeros.designs[touching], found, strict=True)]
 
-    def slopes(share: Number) -> _Slopes:
-        return _slopes_at(curve, k, designs, low + share * (high - low))[known.square]
 
-    def rate(share: Number) -> Number:
-        found: Number = np.sum(slopes(share).rates * across, axis=-1)
+class _Bracket(NamedTuple):
+    """Pieces of a path, from the places `low` on, in which a group's square may be zero."""
+
+    curve: ConfigurationCurve
+    k: int
+    square: int
+    designs: Number
+    low: Number
+    length: Number
+    ahead: Number
+
+    def some(self, which: Number) -> _Bracket:
+        """Return some of the pieces."""
+        designs, low, length, ahead = (each[which] for each in self[3:])
+        return self._replace(designs=designs, low=low, length=length, ahead=ahead)
+
+    def slopes(self, share: Number) -> _Slopes:
+        """Return the slopes at shares of the pieces."""
+        return _slopes_at(self.curve, self.k, self.designs, self.low + share * self.length)[self.square]
+
+    def rates(self, share: Number) -> Number:
+        """Return the square's rates by the share."""
+        found: Number = np.sum(self.slopes(share).rates * self.ahead, axis=-1) * self.length
         return found
-
-    begin, end = (np.sum(rates[i] * across, axis=-1) for i in (a, a + 1))
-    share = false_position(rate, np.ones(len(a)), begin, end, FLAT, TRIALS)
-    touching = slopes(share).touching
-    places = low + share * (high - low)
-    return [(int(d), float(s)) for d, s in zip(designs[touching], places[touching], strict=True)]
 
 
 def _padded(found: Sequence[tuple[int, float]], count: int) -> Number:

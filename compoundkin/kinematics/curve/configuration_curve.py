@@ -26,7 +26,7 @@ from compoundkin.kinematics.curve.driver_path import (
     drawn_value,
     driver_path,
 )
-from compoundkin.kinematics.curve.group_paths import GroupPath, followed_path, with_returns
+from compoundkin.kinematics.curve.group_paths import GroupPath, Surroundings, followed_path, with_returns
 from compoundkin.kinematics.curve.modes import (
     StatedModes,
     default_sign,
@@ -37,7 +37,7 @@ from compoundkin.kinematics.curve.modes import (
 )
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.solving_order import SolvingOrder, run
+from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
 from compoundkin.model.pairs.contract import as_turn_counting
 
 
@@ -78,6 +78,11 @@ class ConfigurationCurve(ShortRepr):
         """
         return _solved(self, part, order, _Configured(self, designs, places), upto, roots)
 
+    def begun(self, part: Inputs, order: int, places: Number, designs: Number) -> tuple[Block, Choice]:
+        """Return a block of inputs in which no group is solved, and what chooses their configurations."""
+        choice = _Configured(self, designs, places)
+        return self.solving_order.start(part.ends, part.series(order), order, choice.shape), choice
+
     def sign(self, k: int, designs: Number, places: Number) -> Number:
         """Return the sign of a dyad's mode at places. It changes wherever the dyad passes a change point."""
         sign = self.signs[k]
@@ -114,40 +119,51 @@ class ConfigurationCurve(ShortRepr):
         home = self.path.home
         places = np.where(np.abs(places - home) < SAME, home, places)
         other = replace(self, flips={**self.flips, k: places})
-        return other.chosen() if self.solving_order.numbered or self.turns else other
+        return other.chosen(k) if self.solving_order.numbered or self.turns else other
 
     def with_returns(self) -> ConfigurationCurve:
         """Return the curve with what comes back after gaps, also after a whole turn."""
         path = self.path.around() if self.path.wraps else self.path
         return replace(self, path=path, has_returns=True, flips={}).chosen()
 
-    def chosen(self) -> ConfigurationCurve:
-        """Return the curve with all modes chosen at home, and followed from there."""
-        # the dictionaries are filled group by group: later groups need the earlier ones along the whole path
-        found = replace(self, signs={}, paths={}, turns={}, chosen_by={})
+    def chosen(self, since: int = 0) -> ConfigurationCurve:
+        """Return the curve with all modes chosen at home, and followed from there. Groups before one stay as they are.
+
+        The dictionaries are filled group by group: later groups need the earlier ones along the whole path.
+        """
         order, shown = self.solving_order, self.shown
+        before = {link for solver in order.solvers[:since] for link in solver.group.links}
+        found = replace(
+            self,
+            signs={k: sign for k, sign in self.signs.items() if k < since},
+            paths={k: path for k, path in self.paths.items() if k < since},
+            turns={link: turns for link, turns in self.turns.items() if link in before},
+            chosen_by={k: by for k, by in self.chosen_by.items() if k < since},
+        )
         if shown.points or order.numbered or order.turning:
-            return _choose(found)
+            return _choose(found, since)
         for k, solver in enumerate(order.solvers):
             found.signs[k] = self.fixed.get(k, 1)
             found.chosen_by[k] = "sign" if k in self.fixed else ONLY if solver.modes == 1 else "default"
         open_loops = order.four_bars.keys() - self.fixed
-        return _choose(found, max(open_loops)) if open_loops else found
+        return _choose(found, last=max(open_loops)) if open_loops else found
 
 
-def _choose(curve: ConfigurationCurve, last: int | None = None) -> ConfigurationCurve:
-    """Pass through the groups at home, choosing, all or up to one, and follow those without a closed form."""
+def _choose(curve: ConfigurationCurve, since: int = 0, last: int | None = None) -> ConfigurationCurve:
+    """Pass through the groups at home, choosing from one on, all or up to one; follow those without a closed form."""
     first = curve.path.at_home()
     block = curve.solving_order.start(first.ends, first.series(0), 0, (curve.path.designs, 1), NEAREST)
-    since = 0
-    for k in sorted(curve.solving_order.followable - curve.fixed.keys()):
-        run(curve.solving_order, block, _First(curve), k, since)
-        since = k
+    begin, ways = 0, (Surroundings(curve, backward=False), Surroundings(curve, backward=True))
+    for k in sorted(k for k in curve.solving_order.followable - curve.fixed.keys() if k >= since):
+        run(curve.solving_order, block, _First(curve, since, ways), k, begin)
+        begin = k
         if shows_inner(curve.solving_order, curve.solving_order.solvers[k], block, curve.shown):
             curve = replace(curve, solving_order=curve.solving_order.following(k))
-    run(curve.solving_order, block, _First(curve), last, since)
+            for way in ways:
+                way.curve = curve
+    run(curve.solving_order, block, _First(curve, since, ways), last, begin)
     if last is not None:
-        _First(curve).mode(block, curve.solving_order.solvers[last])
+        _First(curve, since, ways).mode(block, curve.solving_order.solvers[last])
     return curve
 
 
@@ -215,24 +231,31 @@ class _First:
     """The choice at home: by number or sign, else the nearest to the drawing; paths begin there."""
 
     curve: ConfigurationCurve
+    since: int
+    ways: tuple[Surroundings, Surroundings]
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the chosen mode, and note it."""
         curve, k = self.curve, solver.index
+        if k < self.since:
+            designs, home = np.arange(curve.path.designs)[:, None], np.full((1, 1), curve.path.home)
+            return curve.paths[k].seeds(designs, home) if solver.is_numbered else curve.signs[k]
         if not solver.is_numbered:
             curve.signs[k], curve.chosen_by[k] = self._sign(block, solver)
             return curve.signs[k]
         number = curve.fixed.get(k)
         state, by = first_state(curve.solving_order, solver, block, curve.shown, number)
         curve.chosen_by[k] = curve.shown.source if by == "drawing" else by
-        path = followed_path(curve, k, state, np.full(len(state), curve.path.home))
+        path = followed_path(curve, k, state, np.full(len(state), curve.path.home), self.ways)
         curve.paths[k] = with_returns(curve, k, path) if curve.has_returns else path
         return state
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Count the turns of a link from here on."""
-        turns = self.curve.turns[link] = turns_of(self.curve, solver.index, link)
-        return turns.first
+        turns = self.curve.turns
+        if link not in turns:
+            turns[link] = turns_of(self.curve, solver.index, link)
+        return turns[link].first
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
         """Return the mode whose points lie nearest to the drawn ones, and what chose it."""

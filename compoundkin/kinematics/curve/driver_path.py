@@ -80,9 +80,9 @@ class DriverPath:
             return self.knots.cut(slice(None), slice(k, k + 1)).of_poses(1)
         return self.at(np.array([self.home])).of_poses(1)
 
-    def at(self, places: Number) -> Inputs:
-        """Return the inputs of all designs at places (n,). Speeds are by the place."""
-        i, weight = self._interval(places, "right")
+    def at(self, places: Number, backward: bool = False) -> Inputs:
+        """Return the inputs of all designs at places (n,). Speeds are by the place, of the way on or of that to it."""
+        i, weight = self._interval(places, "left" if backward else "right")
         here = partial(between_poses, i=i, weight=weight)
         return self._made(here, lambda v: _by_place(slope(v, i), self._lengths(i))).of_poses(len(places))
 

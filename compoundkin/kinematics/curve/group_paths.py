@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -12,13 +12,13 @@ import numpy as np
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, poses_at
 from compoundkin.kinematics.curve.driver_path import CLOSE, DriverPath, as_column, first_of
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at, known_configurations
 from compoundkin.kinematics.groups.group_equations import GroupEquations, surroundings
-from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
 from compoundkin.model.mechanism import poses_from_drawing
 
 # No step takes more places than this of the drivers (of five degrees each), even where nothing moves.
@@ -102,29 +102,86 @@ class Followed(Protocol):
     def path(self) -> DriverPath:
         """The drivers' path."""
 
+    @property
+    def paths(self) -> Mapping[int, GroupPath]:
+        """The groups that are followed already."""
+
     def run(self, part: Inputs, order: int, places: Number, designs: Number, upto: int | None = None) -> Block:
         """Solve a block of inputs, up to a group."""
 
+    def begun(self, part: Inputs, order: int, places: Number, designs: Number) -> tuple[Block, Choice]:
+        """Return a block of inputs in which no group is solved, and what chooses their configurations."""
 
-def followed_path(curve: Followed, k: int, state: Number, at: Number) -> GroupPath:
-    """Follow a group from its states, each at its own place, to both ends of the path."""
+
+# What surrounds groups is kept at the samples of a path up to so many designs x samples.
+MOST_KEPT = 20_000
+
+
+class Surroundings:
+    """What is known before a group at the samples of a path, with derivatives by the place: solved group by group.
+
+    One group after another is added as it is followed, so that a chain of groups costs as much as its groups.
+    `backward` takes the derivatives of the way to a sample, which differ at knots.
+    """
+
+    def __init__(self, curve: Followed, backward: bool) -> None:
+        self.curve, self.backward, self.since = curve, backward, 0
+
+    @cached_property
+    def known(self) -> tuple[Block, Choice] | None:
+        """The block of all samples, as far as it is solved; None where they are too many."""
+        path = self.curve.path
+        if path.designs * len(path.samples) > MOST_KEPT:
+            return None
+        part, designs = path.at(path.samples, self.backward), np.arange(path.designs)[:, None]
+        return self.curve.begun(part, TERMS, path.samples[None], designs)
+
+    def around(self, k: int, designs: Number, places: Number) -> Block:
+        """Return what surrounds a group of some designs, each at its own place, as a column."""
+        path = self.curve.path
+        part = (path.behind if self.backward else path.pick)(designs, places)
+        at = np.minimum(np.searchsorted(path.samples, places), len(path.samples) - 1)
+        if self.known is None or np.any(path.samples[at] != places):
+            return self.curve.run(part, TERMS, places[:, None], designs[:, None], k)
+        block, choice = self.known
+        if k > self.since:
+            run(self.curve.solving_order, block, choice, k, self.since)
+            self.since = k
+        group = self.curve.solving_order.solvers[k].group
+        world = {link: block.world[link] for link in group.uses}
+        local = {link: block.local[link] for link in group.links if link in block.local}
+        picked = [poses_at(poses, block.shape, designs, at) for poses in (world, local)]
+        return Block((len(designs), 1), part.ends, picked[0], picked[1], TERMS)
+
+
+def followed_path(
+    curve: Followed, k: int, state: Number, at: Number, ways: tuple[Surroundings, Surroundings] | None = None
+) -> GroupPath:
+    """Follow a group from its states, each at its own place, to both ends of the path, or of what earlier groups reach.
+
+    `ways` are what surrounds it on the way ahead and back.
+    """
     path = curve.path
     first, last = path.ends
-    ahead = _march(curve, k, path.pick, state).go(at, path.samples)
-    back = _march(curve, k, path.behind, state).go(at, path.samples[::-1])
+    reaches = [each.reach for n, each in curve.paths.items() if n < k and not each.returns]
+    low = max((float(np.nanmin(each[:, 0], initial=np.inf)) for each in reaches), default=-np.inf)
+    high = min((float(np.nanmax(each[:, 1], initial=-np.inf)) for each in reaches), default=np.inf)
+    stops = path.samples
+    if low > first or high < last:
+        low, high = max(low, first), min(high, last)
+        stops = np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
+    way_on, way_back = ways or (Surroundings(curve, False), Surroundings(curve, True))
+    ahead, back = _march(way_on, k, state).go(at, stops), _march(way_back, k, state).go(at, stops[::-1])
     # a change point at an end of the path is solved just beyond it
     reach = np.stack([_beyond(back.reached, first, -CLOSE), _beyond(ahead.reached, last, CLOSE)], axis=1)
     # both begin with the same
     return _joined(reach, ahead.first_side, [*ahead.nodes, *back.nodes[1:]])
 
 
-def _march(curve: Followed, k: int, along: Callable[[Number, Number], Inputs], state: Number) -> GroupMarch:
+def _march(surroundings: Surroundings, k: int, state: Number) -> GroupMarch:
     """Return a continuation of a group from a state, (designs, 1, width), NaN for designs that have none."""
-
-    def around(designs: Number, s: Number) -> Block:
-        return curve.run(along(designs, s), TERMS, s[:, None], designs[:, None], k)
-
-    return GroupMarch(equations_of(curve.solving_order.solvers[k]), around, LONGEST, state)
+    equations = equations_of(surroundings.curve.solving_order.solvers[k])
+    return GroupMarch(equations, partial(surroundings.around, k), LONGEST, state)
 
 
 def _joined(reach: Number, side: Number, nodes: Sequence[Node]) -> GroupPath:
