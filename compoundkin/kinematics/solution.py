@@ -31,7 +31,7 @@ from compoundkin.base.series import Series
 from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.curve.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
-from compoundkin.kinematics.curve.configuration_curve import FollowedPoses, follow
+from compoundkin.kinematics.curve.configuration_curve import FollowedPoses, follow, leaping_groups
 from compoundkin.kinematics.curve.driver_path import drawn_value
 from compoundkin.kinematics.curve.modes import StatedModes, signs_of, stated_by
 from compoundkin.kinematics.driver_values import Inputs, by_name, inputs, times_of
@@ -235,6 +235,9 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
         found = _solved_along(followed, order)
         near = found.near if followed.is_dense else found.near | near_groups(followed.curve)
         curve = pass_through(followed.curve, near) if near else None
+        leaping = leaping_groups(followed) if curve is None else []
+        if leaping:
+            curve = followed.curve.with_followed(leaping)
         if curve is None and followed.lost and not followed.curve.has_returns:
             curve = followed.curve.with_returns()
         if curve is not None:

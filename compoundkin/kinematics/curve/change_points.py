@@ -206,18 +206,18 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> lis
     ahead = ahead[:, [np.shape(value)[1:] > (1,) for value, *_ in curve.path.knots.drives.values()]]
     length = samples[known.samples[a] + 1] - samples[known.samples[a]]
     falls, rises = (np.sum(every.rates[i] * ahead, axis=-1) * length for i in (a, a + 1))
-    least = np.minimum(every.values[a], every.values[a + 1])
+    most = np.maximum(every.values[a], every.values[a + 1])
     far = 2.0 * (every.values[a] / np.abs(falls) + every.values[a + 1] / np.abs(rises))
     may = (falls < 0.0) & (rises > 0.0) & (far < CURVED)
     zeros = _Bracket(curve, k, known.square, known.designs[a], samples[known.samples[a]], length, ahead)
-    zeros, falls, rises, least = zeros.some(may), falls[may], rises[may], least[may]
+    zeros, falls, rises, most = zeros.some(may), falls[may], rises[may], most[may]
     if not len(falls):
         return []
     # most come near a limit and turn back
     share = false_position(
         zeros.rates, np.ones(len(falls)), falls, rises, COARSE * float(np.min(rises - falls)), TRIALS
     )
-    low = zeros.slopes(share).values < RISEN * least
+    low = zeros.slopes(share).values < RISEN * most
     zeros, falls, rises = zeros.some(low), falls[low], rises[low]
     if not len(falls):
         return []

@@ -13,6 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, cross, whole_turns, wrapped
+from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import constant
 from compoundkin.kinematics.block import NEAREST, Block, Root
@@ -26,7 +27,7 @@ from compoundkin.kinematics.curve.driver_path import (
     drawn_value,
     driver_path,
 )
-from compoundkin.kinematics.curve.group_paths import GroupPath, Surroundings, followed_path, with_returns
+from compoundkin.kinematics.curve.group_paths import GroupPath, KnownSurroundings, followed_path, with_returns
 from compoundkin.kinematics.curve.modes import (
     StatedModes,
     default_sign,
@@ -36,7 +37,7 @@ from compoundkin.kinematics.curve.modes import (
     shows_inner,
 )
 from compoundkin.kinematics.driver_values import Inputs
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
 from compoundkin.model.pairs.contract import as_turn_counting
 
@@ -46,8 +47,8 @@ class ConfigurationCurve(ShortRepr):
     """The configuration of every group along a path of the drivers.
 
     `signs` are those of dyads at home, (designs, 1) or a number; they change at the places `flips`, (designs, count),
-    padded with infinity. `paths` are the states of the other groups, `turns` the angles of links that pairs count with
-    full turns. `chosen_by` tells what chose each group's mode.
+    padded with infinity. `paths` are the states of the other groups, of which those in `states` are known at home,
+    `turns` the angles of links that pairs count with full turns. `chosen_by` tells what chose each group's mode.
     """
 
     solving_order: SolvingOrder
@@ -56,6 +57,7 @@ class ConfigurationCurve(ShortRepr):
     shown: StatedModes
     pose_at_home: int = 0
     has_returns: bool = False
+    states: Mapping[int, Number] = field(default_factory=dict)
     flips: Mapping[int, Number] = field(default_factory=dict)
     signs: dict[int, Number] = field(default_factory=dict)
     paths: dict[int, GroupPath] = field(default_factory=dict)
@@ -121,6 +123,20 @@ class ConfigurationCurve(ShortRepr):
         other = replace(self, flips={**self.flips, k: places})
         return other.chosen(k) if self.solving_order.numbered or self.turns else other
 
+    def with_followed(self, groups: Sequence[int]) -> ConfigurationCurve:
+        """Return the curve on which some groups with signs are followed from where they are at home."""
+        path, order, states = self.path, self.solving_order, dict(self.states)
+        block = self.run(path.at_home(), 0, np.full((1, 1), path.home), np.arange(path.designs)[:, None])
+        for k in groups:
+            order = order.following(k)
+            solver = order.solvers[k]
+            bodies = [block.world[body.links[0]] for body in solver.group.bodies]
+            states[k] = np.broadcast_to(equations_of(solver).state(bodies), (path.designs, 1, solver.width))
+        before = {k: by for k, by in self.chosen_by.items() if k in states}
+        found = replace(self, solving_order=order, states=states).chosen(min(groups))
+        found.chosen_by.update(before)
+        return found
+
     def with_returns(self) -> ConfigurationCurve:
         """Return the curve with what comes back after gaps, also after a whole turn."""
         path = self.path.around() if self.path.wraps else self.path
@@ -153,7 +169,7 @@ def _choose(curve: ConfigurationCurve, since: int = 0, last: int | None = None) 
     """Pass through the groups at home, choosing from one on, all or up to one; follow those without a closed form."""
     first = curve.path.at_home()
     block = curve.solving_order.start(first.ends, first.series(0), 0, (curve.path.designs, 1), NEAREST)
-    begin, ways = 0, (Surroundings(curve, backward=False), Surroundings(curve, backward=True))
+    begin, ways = 0, (KnownSurroundings(curve, backward=False), KnownSurroundings(curve, backward=True))
     for k in sorted(k for k in curve.solving_order.followable - curve.fixed.keys() if k >= since):
         run(curve.solving_order, block, _First(curve, since, ways), k, begin)
         begin = k
@@ -232,7 +248,7 @@ class _First:
 
     curve: ConfigurationCurve
     since: int
-    ways: tuple[Surroundings, Surroundings]
+    ways: tuple[KnownSurroundings, KnownSurroundings]
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the chosen mode, and note it."""
@@ -243,9 +259,10 @@ class _First:
         if not solver.is_numbered:
             curve.signs[k], curve.chosen_by[k] = self._sign(block, solver)
             return curve.signs[k]
-        number = curve.fixed.get(k)
-        state, by = first_state(curve.solving_order, solver, block, curve.shown, number)
-        curve.chosen_by[k] = curve.shown.source if by == "drawing" else by
+        state = curve.states.get(k)
+        if state is None:
+            state, by = first_state(curve.solving_order, solver, block, curve.shown, curve.fixed.get(k))
+            curve.chosen_by[k] = curve.shown.source if by == "drawing" else by
         path = followed_path(curve, k, state, np.full(len(state), curve.path.home), self.ways)
         curve.paths[k] = with_returns(curve, k, path) if curve.has_returns else path
         return state
@@ -369,6 +386,80 @@ class FollowedPoses(ShortRepr):
         widest = max(float(np.abs(steps).max(initial=0.0)), float(np.max(places.min(axis=1) - first)),
                      float(np.max(last - places.max(axis=1))))  # fmt: skip
         return widest <= 1.0 + CLOSE
+
+
+# Followers whose coordinates (parts of the size, or radians) change by more than this from one sample to the next, and
+# by so many times more than before and after it, may leap to another contact.
+LEAP, UNEVEN = 0.02, 3.0
+# Within so many halvings of the way between two samples it is a leap if this part of the change remains: at a limit
+# position a continuous change falls by the root of the distance at least.
+LEAP_HALVINGS, REMAINS = 20, 0.05
+# The beginning of a gap is known to this part of the way between two samples.
+EDGE_HALVINGS = 20
+
+
+def leaping_groups(followed: FollowedPoses) -> list[int]:
+    """Return the groups whose contact, found anew at each pose, leaps along the path to another one.
+
+    Those whose mode was chosen by its sign are to be at that contact, leaps or not.
+    """
+    curve = followed.curve
+    asked = sorted(curve.solving_order.followable - curve.fixed.keys())
+    if not asked or len(curve.path.places) == 1:
+        return []
+    samples, designs = curve.path.samples, np.arange(curve.path.designs)[:, None]
+    block = curve.run(curve.path.at(samples), 0, samples[None], designs, max(asked) + 1)
+    return [k for k in asked if _Contact(curve, curve.solving_order.solvers[k]).leaps(block)]
+
+
+@dataclass(frozen=True)
+class _Contact:
+    """The coordinate of a group of one body on a contact, as a pure number, along a path."""
+
+    curve: ConfigurationCurve
+    solver: GroupSolver
+
+    def leaps(self, block: Block) -> bool:
+        """Return whether it changes by leaps for any design, also beside gaps; the block is that of the samples."""
+        values, samples = self._of(block), self.curve.path.samples
+        known = np.isfinite(values)
+        steps = np.nan_to_num(self._change(values[:, :-1], values[:, 1:]))
+        beside = np.pad(steps, ((0, 0), (1, 1)))
+        uneven = (steps > LEAP) & (steps > UNEVEN * np.maximum(beside[:, :-2], beside[:, 2:]))
+        designs, i = np.nonzero(uneven)
+        if self._remains(designs, samples[i], samples[i + 1], values[designs, i], values[designs, i + 1]):
+            return True
+        # from a sample to where the gap beside it begins
+        designs, i = np.nonzero(known[:, :-1] != known[:, 1:])
+        inside, outside = (np.where(known[designs, i] == here, samples[i], samples[i + 1]) for here in (True, False))
+        edge, _ = bisect_brackets(lambda s: np.isfinite(self._at(designs, s)), inside, outside, EDGE_HALVINGS)
+        first = values[designs, np.where(known[designs, i], i, i + 1)]
+        return self._remains(designs, inside, edge, first, self._at(designs, edge))
+
+    def _remains(self, designs: Number, low: Number, high: Number, first: Number, last: Number) -> bool:
+        """Return whether a change remains however near to each other its places are."""
+        begin = self._change(first, last)
+        for _ in range(LEAP_HALVINGS if np.any(begin > LEAP) else 0):
+            middle = (low + high) / 2.0
+            here = self._at(designs, middle)
+            later = self._change(here, last) > self._change(first, here)
+            low, first = np.where(later, middle, low), np.where(later, here, first)
+            high, last = np.where(later, high, middle), np.where(later, last, here)
+        # what is not assembled in between is a gap
+        return bool(np.any((begin > LEAP) & (self._change(first, last) > REMAINS * begin)))
+
+    def _at(self, designs: Number, places: Number) -> Number:
+        part, spots = self.curve.path.pick(designs, places), (places[:, None], designs[:, None])
+        return self._of(self.curve.run(part, 0, *spots, self.solver.index + 1))[:, 0]
+
+    def _of(self, block: Block) -> Number:
+        scale = 1.0 if self.solver.is_angular else self.curve.solving_order.size
+        good = np.broadcast_to(block.failed == 0, block.shape)
+        return np.where(good, np.broadcast_to(self.solver.state(block)[0] / scale, block.shape), np.nan)
+
+    def _change(self, one: Number, other: Number) -> Number:
+        found: Number = np.abs(wrapped(other - one) if self.solver.is_angular else other - one)
+        return found
 
 
 def _passings(places: Number, flip: float) -> Iterator[float]:

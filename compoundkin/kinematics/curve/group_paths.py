@@ -117,7 +117,7 @@ class Followed(Protocol):
 MOST_KEPT = 20_000
 
 
-class Surroundings:
+class KnownSurroundings:
     """What is known before a group at the samples of a path, with derivatives by the place: solved group by group.
 
     One group after another is added as it is followed, so that a chain of groups costs as much as its groups.
@@ -155,7 +155,7 @@ class Surroundings:
 
 
 def followed_path(
-    curve: Followed, k: int, state: Number, at: Number, ways: tuple[Surroundings, Surroundings] | None = None
+    curve: Followed, k: int, state: Number, at: Number, ways: tuple[KnownSurroundings, KnownSurroundings] | None = None
 ) -> GroupPath:
     """Follow a group from its states, each at its own place, to both ends of the path, or of what earlier groups reach.
 
@@ -170,7 +170,7 @@ def followed_path(
     if low > first or high < last:
         low, high = max(low, first), min(high, last)
         stops = np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
-    way_on, way_back = ways or (Surroundings(curve, False), Surroundings(curve, True))
+    way_on, way_back = ways or (KnownSurroundings(curve, False), KnownSurroundings(curve, True))
     ahead, back = _march(way_on, k, state).go(at, stops), _march(way_back, k, state).go(at, stops[::-1])
     # a change point at an end of the path is solved just beyond it
     reach = np.stack([_beyond(back.reached, first, -CLOSE), _beyond(ahead.reached, last, CLOSE)], axis=1)
@@ -178,7 +178,7 @@ def followed_path(
     return _joined(reach, ahead.first_side, [*ahead.nodes, *back.nodes[1:]])
 
 
-def _march(surroundings: Surroundings, k: int, state: Number) -> GroupMarch:
+def _march(surroundings: KnownSurroundings, k: int, state: Number) -> GroupMarch:
     """Return a continuation of a group from a state, (designs, 1, width), NaN for designs that have none."""
     equations = equations_of(surroundings.curve.solving_order.solvers[k])
     return GroupMarch(equations, partial(surroundings.around, k), LONGEST, state)

@@ -118,6 +118,11 @@ class GroupSolver(ABC):
         """Return the solver that follows configurations which have no sign here. It is None where there are none."""
         return None
 
+    @property
+    def is_angular(self) -> bool:
+        """Whether the only number of its state is an angle."""
+        return False
+
     def from_state(self, steps: int = 0) -> GroupSolver | None:
         """Return the solver that closes it from a state nearby, in straight-line arithmetic.
 

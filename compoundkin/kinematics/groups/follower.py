@@ -84,6 +84,11 @@ class FollowerSolver(GroupSolver):
         block.fail(closed, self.index)
         self._published(block, found, slope)
 
+    @property
+    def is_angular(self) -> bool:
+        """Whether it hangs on a pin."""
+        return self.mounted.lower.free_is_angle
+
     def from_state(self, steps: int = 0) -> GroupSolver:
         """Return the solver that closes it from a coordinate nearby."""
         return FollowerFromState(self.index, self.group, self.size, self.mounted.lower, self.pair)
