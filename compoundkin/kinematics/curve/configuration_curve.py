@@ -27,7 +27,13 @@ from compoundkin.kinematics.curve.driver_path import (
     drawn_value,
     driver_path,
 )
-from compoundkin.kinematics.curve.group_paths import GroupPath, KnownSurroundings, followed_path, with_returns
+from compoundkin.kinematics.curve.group_paths import (
+    GroupPath,
+    KnownSurroundings,
+    both_ways,
+    followed_path,
+    with_returns,
+)
 from compoundkin.kinematics.curve.modes import (
     StatedModes,
     default_sign,
@@ -139,11 +145,14 @@ class ConfigurationCurve(ShortRepr):
 
     def with_returns(self) -> ConfigurationCurve:
         """Return the curve with what comes back after gaps, also after a whole turn."""
-        path = self.path.around() if self.path.wraps else self.path
-        return replace(self, path=path, has_returns=True, flips={}).chosen()
+        if not self.path.wraps:
+            return replace(self, has_returns=True).chosen(known=self.paths)
+        return replace(self, path=self.path.around(), has_returns=True, flips={}).chosen()
 
-    def chosen(self, since: int = 0) -> ConfigurationCurve:
-        """Return the curve with all modes chosen at home, and followed from there. Groups before one stay as they are.
+    def chosen(self, since: int = 0, known: Mapping[int, GroupPath] | None = None) -> ConfigurationCurve:
+        """Return the curve with all modes chosen at home, and followed from there but for the paths that are `known`.
+
+        Groups before one stay as they are.
 
         The dictionaries are filled group by group: later groups need the earlier ones along the whole path.
         """
@@ -157,7 +166,7 @@ class ConfigurationCurve(ShortRepr):
             chosen_by={k: by for k, by in self.chosen_by.items() if k < since},
         )
         if shown.points or order.numbered or order.turning:
-            return _choose(found, since)
+            return _choose(found, since, known=known)
         for k, solver in enumerate(order.solvers):
             found.signs[k] = self.fixed.get(k, 1)
             found.chosen_by[k] = "sign" if k in self.fixed else ONLY if solver.modes == 1 else "default"
@@ -165,21 +174,31 @@ class ConfigurationCurve(ShortRepr):
         return _choose(found, last=max(open_loops)) if open_loops else found
 
 
-def _choose(curve: ConfigurationCurve, since: int = 0, last: int | None = None) -> ConfigurationCurve:
-    """Pass through the groups at home, choosing from one on, all or up to one; follow those without a closed form."""
+def _choose(
+    curve: ConfigurationCurve,
+    since: int = 0,
+    last: int | None = None,
+    known: Mapping[int, GroupPath] | None = None,
+) -> ConfigurationCurve:
+    """Pass through the groups at home, choosing from one on, all or up to one; follow those without a closed form.
+
+    `known` are paths that need not be followed again.
+    """
     first = curve.path.at_home()
     block = curve.solving_order.start(first.ends, first.series(0), 0, (curve.path.designs, 1), NEAREST)
-    begin, ways = 0, (KnownSurroundings(curve, backward=False), KnownSurroundings(curve, backward=True))
+    begin, samples = 0, curve.path.samples
+    between = np.union1d(samples, (samples[1:] + samples[:-1]) / 2.0)
+    ways = (*both_ways(curve), KnownSurroundings(curve, between, order=1))
     for k in sorted(k for k in curve.solving_order.followable - curve.fixed.keys() if k >= since):
-        run(curve.solving_order, block, _First(curve, since, ways), k, begin)
+        run(curve.solving_order, block, _First(curve, since, ways, known or {}), k, begin)
         begin = k
         if shows_inner(curve.solving_order, curve.solving_order.solvers[k], block, curve.shown):
             curve = replace(curve, solving_order=curve.solving_order.following(k))
             for way in ways:
                 way.curve = curve
-    run(curve.solving_order, block, _First(curve, since, ways), last, begin)
+    run(curve.solving_order, block, _First(curve, since, ways, known or {}), last, begin)
     if last is not None:
-        _First(curve, since, ways).mode(block, curve.solving_order.solvers[last])
+        _First(curve, since, ways, known or {}).mode(block, curve.solving_order.solvers[last])
     return curve
 
 
@@ -248,7 +267,8 @@ class _First:
 
     curve: ConfigurationCurve
     since: int
-    ways: tuple[KnownSurroundings, KnownSurroundings]
+    ways: tuple[KnownSurroundings, KnownSurroundings, KnownSurroundings]
+    known: Mapping[int, GroupPath]
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the chosen mode, and note it."""
@@ -263,15 +283,21 @@ class _First:
         if state is None:
             state, by = first_state(curve.solving_order, solver, block, curve.shown, curve.fixed.get(k))
             curve.chosen_by[k] = curve.shown.source if by == "drawing" else by
-        path = followed_path(curve, k, state, np.full(len(state), curve.path.home), self.ways)
+        path = self.known.get(k)
+        if path is None:
+            path = followed_path(curve, k, state, np.full(len(state), curve.path.home), self.ways[:2])
         curve.paths[k] = with_returns(curve, k, path) if curve.has_returns else path
         return state
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Count the turns of a link from here on."""
-        turns = self.curve.turns
+        turns, between = self.curve.turns, self.ways[2]
         if link not in turns:
-            turns[link] = turns_of(self.curve, solver.index, link)
+            block = between.upto(solver.index + 1)
+            turns[link] = turns_of(self.curve, solver.index, link, None if block is None else (between.places, block))
+            if block is not None:
+                designs = np.arange(self.curve.path.designs)[:, None]
+                block.world[link] = block.world[link].counted(turns[link].near(designs, between.places[None]))
         return turns[link].first
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
@@ -389,7 +415,7 @@ class FollowedPoses(ShortRepr):
 
 
 # Followers whose coordinates (parts of the size, or radians) change by more than this from one sample to the next, and
-# by so many times more than before and after it, may leap to another contact.
+# by so many times more than before or after it, may leap to another contact.
 LEAP, UNEVEN = 0.02, 3.0
 # Within so many halvings of the way between two samples it is a leap if this part of the change remains: at a limit
 # position a continuous change falls by the root of the distance at least.
@@ -424,13 +450,14 @@ class _Contact:
         values, samples = self._of(block), self.curve.path.samples
         known = np.isfinite(values)
         steps = np.nan_to_num(self._change(values[:, :-1], values[:, 1:]))
-        beside = np.pad(steps, ((0, 0), (1, 1)))
-        uneven = (steps > LEAP) & (steps > UNEVEN * np.maximum(beside[:, :-2], beside[:, 2:]))
+        beside = np.pad(steps, ((0, 0), (1, 1)), mode="edge")
+        uneven = (steps > LEAP) & (steps > UNEVEN * np.minimum(beside[:, :-2], beside[:, 2:]))
         designs, i = np.nonzero(uneven)
         if self._remains(designs, samples[i], samples[i + 1], values[designs, i], values[designs, i + 1]):
             return True
         # from a sample to where the gap beside it begins
-        designs, i = np.nonzero(known[:, :-1] != known[:, 1:])
+        own = known | (np.broadcast_to(block.failed, block.shape) == self.solver.index + 1)
+        designs, i = np.nonzero((known[:, :-1] != known[:, 1:]) & own[:, :-1] & own[:, 1:])
         inside, outside = (np.where(known[designs, i] == here, samples[i], samples[i + 1]) for here in (True, False))
         edge, _ = bisect_brackets(lambda s: np.isfinite(self._at(designs, s)), inside, outside, EDGE_HALVINGS)
         first = values[designs, np.where(known[designs, i], i, i + 1)]
@@ -533,9 +560,12 @@ class Turns:
         return self.angles[designs, np.where(nearer, before, after)]
 
 
-def turns_of(curve: ConfigurationCurve, k: int, link: str) -> Turns:
-    """Follow the angle of a link of group `k` from home. There it is nearest to the drawn one or to zero."""
-    places, angles = _Orientation(curve, k, link).samples()
+def turns_of(curve: ConfigurationCurve, k: int, link: str, known: tuple[Number, Block] | None = None) -> Turns:
+    """Follow the angle of a link of group `k` from home. There it is nearest to the drawn one or to zero.
+
+    `known` is what is solved already at the samples of the path, with others half way between.
+    """
+    places, angles = _Orientation(curve, k, link, known).samples()
     drawn = curve.solving_order.structure.mechanism.drawn_poses.get(link)
     start = int(np.argmin(np.abs(places - curve.path.home)))
     first = angles[:, start] if drawn is None else np.ravel(as_column(drawn).angle.c[0])
@@ -550,23 +580,31 @@ class _Orientation:
     k: int
     link: str
 
+    known: tuple[Number, Block] | None = None
+
     def samples(self) -> tuple[Number, Number]:
         """Return places and orientations there (radians), the places so near to each other that no turn is missed."""
         at = self.curve.path.samples
-        found, _ = self._at(at, 0)
-        known = [(at, found)]
-        low, high = (at[:-1], found[:, :-1]), (at[1:], found[:, 1:])
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low[0] + high[0])
-            if not len(middle):
-                break
+        if self.known is None:
+            low, found, middle = at, self._at(at, 0)[0], (at[1:] + at[:-1]) / 2.0
             there, speed = self._at(middle, 1)
+        else:
+            every, (angles, speeds) = self.known[0], self._turning(self.known[1])
+            low, found, middle, there, speed = every[::2], angles[:, ::2], every[1::2], angles[:, 1::2], speeds[:, 1::2]
+        known = [(low, found)]
+        low, high = (low[:-1], found[:, :-1]), (low[1:], found[:, 1:])
+        for k in range(HALVINGS):
+            if k:
+                middle = 0.5 * (low[0] + high[0])
+                there, speed = self._at(middle, 1)
             known.append((middle, there))
             halves = wrapped(there - low[1]), wrapped(high[1] - there)
             uneven = np.abs(halves[0] + halves[1] - speed * (high[0] - low[0])) > EVEN
             far = np.maximum(np.abs(halves[0]), np.abs(halves[1])) > FARTHEST / 2.0
             # where an end is not assembled there is nothing to be followed
             rough = np.any((uneven | far) & np.isfinite(halves[0] + halves[1]), axis=0)
+            if not rough.any():
+                break
             parts = ((low, (middle, there)), ((middle, there), high))
             low, high = (_joined([(s[rough], v[:, rough]) for s, v in side]) for side in zip(*parts, strict=True))
         return _in_order(_joined(known))
@@ -578,11 +616,13 @@ class _Orientation:
         for start in range(0, len(at), BLOCK):
             here = slice(start, start + BLOCK)
             block = self.curve.run(self.curve.path.at(at[here]), order, at[here][None], designs, self.k + 1)
-            u = block.world[self.link].u.c
-            found[:, here] = np.angle(u[0])
-            if order and len(u) > 1:
-                speed[:, here] = cross(u[0], u[1])
+            found[:, here], speed[:, here] = self._turning(block)
         return found, speed
+
+    def _turning(self, block: Block) -> tuple[Number, Number]:
+        u = block.world[self.link].u.c
+        speed = cross(u[0], u[1]) if len(u) > 1 else 0.0
+        return np.broadcast_to(np.angle(u[0]), block.shape), np.broadcast_to(speed, block.shape)
 
 
 def _joined(parts: Sequence[tuple[Number, Number]]) -> tuple[Number, Number]:

@@ -113,45 +113,79 @@ class Followed(Protocol):
         """Return a block of inputs in which no group is solved, and what chooses their configurations."""
 
 
+# What the terms of the prediction, first to third, may move at most (parts of the size, or radians) in one step: what
+# is left out is then below a hundredth, from which Newton converges unless a limit position is near.
+MOVES = (0.5, 0.2, 0.02)
+TERMS = len(MOVES)
+
+
 # What surrounds groups is kept at the samples of a path up to so many designs x samples.
 MOST_KEPT = 20_000
 
 
 class KnownSurroundings:
-    """What is known before a group at the samples of a path, with derivatives by the place: solved group by group.
+    """What is known before a group at places of a path, with derivatives by the place: solved group by group.
 
     One group after another is added as it is followed, so that a chain of groups costs as much as its groups.
-    `backward` takes the derivatives of the way to a sample, which differ at knots.
+    `backward` takes the derivatives of the way to a place, which differ at knots.
     """
 
-    def __init__(self, curve: Followed, backward: bool) -> None:
-        self.curve, self.backward, self.since = curve, backward, 0
+    def __init__(self, curve: Followed, places: Number, order: int = TERMS, backward: bool = False) -> None:
+        self.curve, self.places, self.order, self.backward, self.since = curve, places, order, backward, 0
+        # single poses between the places: where one group ends all later ones are asked for too
+        self.single: dict[tuple[int, float], tuple[Block, Choice, int]] = {}
 
     @cached_property
     def known(self) -> tuple[Block, Choice] | None:
-        """The block of all samples, as far as it is solved; None where they are too many."""
+        """The block of all places, as far as it is solved; None where they are too many."""
         path = self.curve.path
-        if path.designs * len(path.samples) > MOST_KEPT:
+        if path.designs * len(self.places) > MOST_KEPT:
             return None
-        part, designs = path.at(path.samples, self.backward), np.arange(path.designs)[:, None]
-        return self.curve.begun(part, TERMS, path.samples[None], designs)
+        part, designs = path.at(self.places, self.backward), np.arange(path.designs)[:, None]
+        return self.curve.begun(part, self.order, self.places[None], designs)
+
+    def upto(self, k: int) -> Block | None:
+        """Return the block of all places with the groups before one solved; None where they are too many."""
+        if self.known is None:
+            return None
+        block, choice = self.known
+        if k > self.since:
+            run(self.curve.solving_order, block, choice, k, self.since)
+            self.since = k
+        return block
 
     def around(self, k: int, designs: Number, places: Number) -> Block:
         """Return what surrounds a group of some designs, each at its own place, as a column."""
         path = self.curve.path
         part = (path.behind if self.backward else path.pick)(designs, places)
-        at = np.minimum(np.searchsorted(path.samples, places), len(path.samples) - 1)
-        if self.known is None or np.any(path.samples[at] != places):
-            return self.curve.run(part, TERMS, places[:, None], designs[:, None], k)
-        block, choice = self.known
-        if k > self.since:
-            run(self.curve.solving_order, block, choice, k, self.since)
-            self.since = k
+        at = np.minimum(np.searchsorted(self.places, places), len(self.places) - 1)
+        block = None if np.any(self.places[at] != places) else self.upto(k)
+        if block is not None:
+            return self._picked(k, block, part, designs, at)
+        if len(designs) > 1 or len(self.single) >= MOST_KEPT:
+            return self.curve.run(part, self.order, places[:, None], designs[:, None], k)
+        key = int(designs[0]), float(places[0])
+        if key not in self.single:
+            self.single[key] = (*self.curve.begun(part, self.order, places[:, None], designs[:, None]), 0)
+        block, choice, since = self.single[key]
+        if k > since:
+            run(self.curve.solving_order, block, choice, k, since)
+            self.single[key] = block, choice, k
+        return self._picked(k, block, part, np.zeros_like(designs), np.zeros_like(at))
+
+    def _picked(self, k: int, block: Block, part: Inputs, rows: Number, columns: Number) -> Block:
+        """Return what a group needs of a block at some poses, as a column."""
         group = self.curve.solving_order.solvers[k].group
         world = {link: block.world[link] for link in group.uses}
         local = {link: block.local[link] for link in group.links if link in block.local}
-        picked = [poses_at(poses, block.shape, designs, at) for poses in (world, local)]
-        return Block((len(designs), 1), part.ends, picked[0], picked[1], TERMS)
+        picked = [poses_at(poses, block.shape, rows, columns) for poses in (world, local)]
+        return Block((len(rows), 1), part.ends, picked[0], picked[1], self.order)
+
+
+def both_ways(curve: Followed) -> tuple[KnownSurroundings, KnownSurroundings]:
+    """Return what surrounds groups at the samples of a path, on the way ahead and back."""
+    samples = curve.path.samples
+    return KnownSurroundings(curve, samples), KnownSurroundings(curve, samples, backward=True)
 
 
 def followed_path(
@@ -170,7 +204,7 @@ def followed_path(
     if low > first or high < last:
         low, high = max(low, first), min(high, last)
         stops = np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
-    way_on, way_back = ways or (KnownSurroundings(curve, False), KnownSurroundings(curve, True))
+    way_on, way_back = ways or both_ways(curve)
     ahead, back = _march(way_on, k, state).go(at, stops), _march(way_back, k, state).go(at, stops[::-1])
     # a change point at an end of the path is solved just beyond it
     reach = np.stack([_beyond(back.reached, first, -CLOSE), _beyond(ahead.reached, last, CLOSE)], axis=1)
@@ -199,11 +233,6 @@ def _joined(reach: Number, side: Number, nodes: Sequence[Node]) -> GroupPath:
 
 def _beyond(reached: Number, end: float, little: float) -> Number:
     return np.where(reached == end, reached + 4.0 * little, reached)
-
-
-# What the terms of the prediction, first to third, may move at most (parts of the size, or radians) in one step: what
-# is left out is then below a hundredth, from which Newton converges unless a limit position is near.
-MOVES = (0.5, 0.2, 0.02)
 
 
 # A step goes at most this part of the way to a limit position: a longer one would have to be tried again.
@@ -237,10 +266,6 @@ FARTHEST = 1e3
 
 # The other lengths are those of the prediction; a step that fails is halved.
 LENGTHS = StepLengths(first=np.inf, longest=np.inf, shortest=0.0, easy=1, most=1_000_000_000)
-
-
-# The terms of the prediction, first to third.
-TERMS = len(MOVES)
 
 
 class Node(NamedTuple):

@@ -19,7 +19,7 @@ from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.force_transmission import contact_transmission
 from compoundkin.kinematics.groups.general import GeneralSolver
-from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
+from compoundkin.kinematics.groups.group_equations import CLOSED
 from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, alone
 from compoundkin.model.pairs.contract import Drivable, Ends, Poses, as_drivable, lower_equivalent
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
@@ -29,8 +29,9 @@ from compoundkin.structure.mobility_count import Group
 Placing: TypeAlias = Callable[[Series], Poses]
 
 # Newton's steps: three or four from between two samples; at a limit position, where the two contacts of a path meet,
-# every step but halves the error.
+# every step but halves the error. A contact that does not come nearer by half after so many steps is none.
 HALVINGS = 40
+APPROACH = 5
 
 
 class FollowerSolver(GroupSolver):
@@ -120,7 +121,7 @@ class FollowerSolver(GroupSolver):
             gap, slope = self._gap(ends, placing, coordinate)
             coordinate = coordinate - gap / slope
             size = np.abs(gap)
-            nearing = (size > CLOSED * self.size) & ((size < 0.5 * before) | (k < STEPS))
+            nearing = (size > CLOSED * self.size) & ((size < 0.5 * before) | (k < APPROACH))
             if not np.any(nearing):
                 break
             before = size
