@@ -23,9 +23,10 @@ from compoundkin.kinematics.block import (
     root_of_square,
     signed_root,
 )
-from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses
+from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses, configured
 from compoundkin.kinematics.curve.driver_path import CLOSE, SAME
 from compoundkin.kinematics.driver_values import Inputs
+from compoundkin.kinematics.solving_order import run
 from compoundkin.model.attributes import HIGHEST_ORDER
 
 # The discriminant's rate is searched for its zero so often: first coarsely, in parts of the way, then to rounding.
@@ -72,15 +73,21 @@ class _Known(NamedTuple):
 
 
 def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> ConfigurationCurve | None:
-    """Return the curve that passes the change points of groups among `near`. None where they have none."""
+    """Return the curve that passes the change points of groups among `near`, and those that others have in common.
+
+    None where there are none.
+    """
     if len(curve.path.places) == 1:
         return None
-    todo = sorted(k for k in near if k not in curve.flips and curve.solving_order.solvers[k].modes_may_meet)
-    found, samples = curve, dict[int, Number]()
-    for n, k in enumerate(todo):
-        samples = samples or _near_samples(found, todo[n:])
-        places = [place for known in _known(found, k, samples[k]) for place in _passed(found, k, known)]
-        places = _together(found, k, places)
+    asked, todo = set(near), [solver.index for solver in curve.solving_order.solvers if solver.modes_may_meet]
+    found, samples, beside = curve, dict[int, Number](), _BesideChangePoints()
+    for k in (k for k in todo if k not in curve.flips):
+        places: list[tuple[int, float]] = []
+        common = beside.common(found, k)
+        if k in asked:
+            samples = samples or _near_samples(found, sorted(n for n in asked if n in todo and n >= k))
+            places = [place for known in _known(found, k, samples[k]) for place in _passed(found, k, known, common)]
+        places += common
         if places:
             # groups after this one are elsewhere from there on
             found, samples = found.with_flips(k, _padded(places, curve.path.designs)), {}
@@ -95,30 +102,42 @@ MIDDLE = np.array([0.05, -0.3, 0.75, 0.75, -0.3, 0.05])
 INTERPOLATED = 1e-11
 
 
-def _together(curve: ConfigurationCurve, k: int, found: list[tuple[int, float]]) -> list[tuple[int, float]]:
-    """Return the change points of a group, with those that it has in common with earlier groups."""
-    earlier = sorted({(d, float(f)) for n, rows in curve.flips.items() if n < k
-                      for d, row in enumerate(rows) for f in row[np.isfinite(row)]})  # fmt: skip
-    first, last = curve.path.ends
-    inside = [(d, f) for d, f in earlier if first < f + BESIDE[0] and f + BESIDE[-1] < last]
-    if not inside:
-        return found
-    designs, places = np.array([d for d, _ in inside]), np.array([f for _, f in inside])
-    rows, at = np.repeat(designs, len(BESIDE)), (places[:, None] + BESIDE).ravel()
-    notes: list[Series] = []
-    part = curve.path.pick(rows, at)
-    block = curve.run(part, 0, at[:, None], rows[:, None], k + 1, {k: recorded_root(notes)})
-    line = block.meetings.get(k)
-    squares, middle = _beside(notes[0].c[0], len(places))
-    # a square of an odd power: at three times the distance it is nine times, of an even one 81 times as large
-    passes = (np.abs(middle) < INTERPOLATED) & np.all(squares > 0.0, axis=1) & (squares[:, 0] < 27.0 * squares[:, 2])
-    if line is not None:
-        lines, middle = _beside(line.c[0] / curve.solving_order.size, len(places))
-        opposite = (lines[:, 2] * lines[:, 3].conj()).real < 0.0
-        passes |= (np.abs(middle) < INTERPOLATED) & opposite
-    common = [(d, f) for (d, f), here in zip(inside, passes, strict=True) if here]
-    away = [(d, f) for d, f in found if all(d != other or abs(f - g) > CLOSE for other, g in common)]
-    return [*away, *common]
+class _BesideChangePoints:
+    """Poses beside the change points that are known so far, solved group by group."""
+
+    def __init__(self) -> None:
+        self.places: list[tuple[int, float]] = []
+
+    def common(self, curve: ConfigurationCurve, k: int) -> list[tuple[int, float]]:
+        """Return the change points that a group has in common with earlier groups."""
+        first, last = curve.path.ends
+        every = sorted({(d, float(f)) for rows in curve.flips.values() for d, row in enumerate(rows)
+                        for f in row[np.isfinite(row)] if first < f + BESIDE[0] and f + BESIDE[-1] < last})  # fmt: skip
+        if not every:
+            return []
+        rows = np.repeat(np.array([d for d, _ in every]), len(BESIDE))
+        at = (np.array([f for _, f in every])[:, None] + BESIDE).ravel()
+        if every != self.places:
+            self.places, self.since = every, 0
+            self.block, _ = curve.begun(curve.path.pick(rows, at), 0, at[:, None], rows[:, None])
+        choice = configured(curve, rows[:, None], at[:, None])
+        run(curve.solving_order, self.block, choice, k, self.since)
+        self.since = k
+        notes: list[Series] = []
+        trial = self.block.copy()
+        trial.roots = {k: recorded_root(notes)}
+        run(curve.solving_order, trial, choice, k + 1, k)
+        squares, middle = _beside(notes[0].c[0], len(every))
+        # a square of an odd power: at three times the distance it is nine times, of an even one 81 times as large
+        passes = (
+            (np.abs(middle) < INTERPOLATED) & np.all(squares > 0.0, axis=1) & (squares[:, 0] < 27.0 * squares[:, 2])
+        )
+        line = trial.meetings.get(k)
+        if line is not None:
+            lines, middle = _beside(line.c[0] / curve.solving_order.size, len(every))
+            opposite = (lines[:, 2] * lines[:, 3].conj()).real < 0.0
+            passes |= (np.abs(middle) < INTERPOLATED) & opposite
+        return [place for place, here in zip(every, passes, strict=True) if here]
 
 
 def _beside(values: Number, count: int) -> tuple[Number, Number]:
@@ -127,10 +146,28 @@ def _beside(values: Number, count: int) -> tuple[Number, Number]:
     return rows, rows @ MIDDLE
 
 
+# Farther from the change points of earlier groups than this, in places, their plain roots have digits enough.
+FAR = 0.2
+
+
 def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Number) -> list[_Slopes]:
     """Return the slopes of a group's squares at places."""
+    beside: Number = np.zeros(len(places), dtype=bool)
+    for n, flips in curve.flips.items():
+        if n < k:
+            beside |= np.any(np.abs(flips[designs] - places[:, None]) < FAR, axis=1)
+    parts = [np.flatnonzero(which) for which in (beside, ~beside) if which.any()]
+    found = [_some_slopes(curve, k, designs[part], places[part], bool(beside[part[0]])) for part in parts]
+    if len(parts) == 1:
+        return found[0]
+    order = np.argsort(np.concatenate(parts))
+    joined = [one.joined(other) for one, other in zip(*found, strict=True)]
+    return [_Slopes(*(column[order] for column in each)) for each in joined]
+
+
+def _some_slopes(curve: ConfigurationCurve, k: int, designs: Number, places: Number, has_roots: bool) -> list[_Slopes]:
     part = curve.path.pick(designs, places)
-    groups, found = [n for n in curve.flips if n < k], []
+    groups, found = [n for n in curve.flips if n < k and has_roots], []
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
     spots = (places + SAME * sense)[:, None] if groups else places[:, None], designs[:, None]
     for name in (name for name, (value, *_) in curve.path.knots.drives.items() if np.shape(value)[1:] > (1,)):
@@ -177,8 +214,13 @@ def _margins(curve: ConfigurationCurve, upto: int) -> Iterator[tuple[slice, slic
         yield d, m, block.margins
 
 
-def _passed(curve: ConfigurationCurve, k: int, known: _Known) -> list[tuple[int, float]]:
-    """Return where a group passes between samples whose rates are opposite, or is at samples that are change points."""
+def _passed(
+    curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[tuple[int, float]]
+) -> list[tuple[int, float]]:
+    """Return where a group passes between samples whose rates are opposite, or is at samples that are change points.
+
+    Those that it has in `common` with earlier groups are left out.
+    """
     designs, samples, slopes = known.designs, known.samples, known.slopes
     places = curve.path.samples
     moving = np.flatnonzero(~slopes.still)
@@ -186,6 +228,9 @@ def _passed(curve: ConfigurationCurve, k: int, known: _Known) -> list[tuple[int,
     # samples that are not near lie between some
     joined = (designs[a] == designs[b]) & (samples[b] - samples[a] == b - a)
     opposite = np.sum(slopes.rates[a] * slopes.rates[b], axis=-1) < 0.0
+    for d, f in common:
+        beside = (designs[a] == d) & (places[samples[a]] <= f + CLOSE) & (places[samples[b]] >= f - CLOSE)
+        opposite &= ~beside
     found = _between(curve, k, known, a[joined & opposite & (b - a == 1)])
     for one in a[joined & opposite & (b - a > 1)]:
         found.append((int(designs[one]), float(places[samples[one + 1]])))

@@ -88,7 +88,7 @@ class ConfigurationCurve(ShortRepr):
 
     def begun(self, part: Inputs, order: int, places: Number, designs: Number) -> tuple[Block, Choice]:
         """Return a block of inputs in which no group is solved, and what chooses their configurations."""
-        choice = _Configured(self, designs, places)
+        choice = configured(self, designs, places)
         return self.solving_order.start(part.ends, part.series(order), order, choice.shape), choice
 
     def sign(self, k: int, designs: Number, places: Number) -> Number:
@@ -231,6 +231,11 @@ class _Configured:
         """Return what was counted along the way."""
         turns = self.curve.turns.get(link)
         return None if turns is None else turns.near(self.designs, self.reached)
+
+
+def configured(curve: ConfigurationCurve, designs: Number, places: Number) -> _Configured:
+    """Return the choice at places of a curve."""
+    return _Configured(curve, designs, places)
 
 
 _NOWHERE = np.zeros((1, 1))
