@@ -13,8 +13,8 @@ import numpy as np
 from compoundkin.analysis.characteristics.figures import PlacedFigure, Range, moving_drivers, scalar_quantity
 from compoundkin.analysis.characteristics.outputs import Output
 from compoundkin.base.arrays import Number
+from compoundkin.base.extremes import ROUNDING
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes.stretches import ROUNDING
 from compoundkin.kinematics.quantities import Quantity, owner_of
 from compoundkin.model.attributes import (
     ADVANTAGE,

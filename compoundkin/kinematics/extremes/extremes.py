@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,22 +13,17 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, Offers, SoughtPeaks, Windows, best_of, peaks
 from compoundkin.kinematics.extremes.stretches import (
-    FINE,
-    ROUNDING,
     SAME,
-    SAMPLES,
+    Course,
+    CourseParts,
     Measure,
     Places,
     Stretches,
-    Windows,
     closed_cycles,
     measures_of,
-    sampled,
-    solved,
     stretches_of,
-    values_at_poses,
-    vertices,
 )
 from compoundkin.kinematics.motion import Motion
 
@@ -148,7 +143,7 @@ def _extremes(
     motion: Motion, quantities: tuple[str | Measure, ...], stretches: Stretches, group: Number, designs: Number
 ) -> tuple[Extremes, ...]:
     measures = measures_of(motion, quantities)
-    search = ExtremeSearch(motion, measures, stretches, group, len(designs))
+    search = ExtremeSearch(motion, measures, stretches, group, designs)
     found = search.peaks()
     constant = found.value[:, 1] - found.value[:, 0] <= found.slack
     made = []
@@ -176,21 +171,8 @@ def _within_window(values: Number, value: Number, at: Places, slack: Number) -> 
     return until
 
 
-# What a curve may rise beyond a pose, in second differences there. The vertex of a parabola whose middle sample is the
-# highest adds an eighth.
-MOST_ADDED = 0.5
-
-
-# Peaks nearer to each other than this part of the range are equally high: the first is taken.
-ALIKE = 1e-9
-
-
 # A window is narrowed so often at most: to 1e-8 of a stretch, at a kink or where only rounding is left.
 NARROWINGS = 14
-
-
-# What is so many times the median of the values is on its way through infinity, as the reciprocal of a rate.
-POLE = 1e6
 
 
 # So near to a limit position (in the square root of the distance) rates are compared; where they grow so many times,
@@ -199,17 +181,14 @@ NEAR_LIMIT, GROWTH = np.array([1e-3, 1e-4]), 3.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ExtremeSearch(ShortRepr):
-    """What is searched: quantities over groups of the smooth stretches of a motion.
+class ExtremeSearch(Course):
+    """A search for the extremes of quantities over groups of the smooth stretches of a motion.
 
-    `group` (n,) numbers them from 0.
+    `group` (n,) numbers them from 0; `designs` are those of the groups.
     """
 
-    motion: Motion
-    measures: tuple[Measure, ...]
-    stretches: Stretches
     group: Number
-    count: int
+    designs: Number
 
     def peaks(self) -> Peaks:
         """Return the least and the greatest values."""
@@ -217,32 +196,35 @@ class ExtremeSearch(ShortRepr):
             return self._peaks()
 
     def _peaks(self) -> Peaks:
-        if not self.measures or not len(self.stretches):
-            nothing = np.full((len(self.measures), len(SIGNS), self.count), np.nan)
+        s, shape = self.stretches, (len(self.measures), len(SIGNS), len(self.designs))
+        if not self.measures or not len(s):
+            nothing = np.full(shape, np.nan)
             return Peaks(nothing, nothing, nothing[:, 0])
         which = np.flatnonzero(self._candidates.any(axis=(0, 1)))
-        s = self.stretches
         offers = [self._offered(self.ends, np.stack([s.low, s.high], axis=-1), np.arange(len(s)))]
         if len(which):
             offers += self._looked_at(which)
-        return best_of([*offers, *self._without_limit()], self._slack)
+        offers += self._without_limit()
+        slack = np.repeat(self._slack[:, None], len(SIGNS), axis=1)
+        best, place, vertex = (v.reshape(shape) for v in best_of(offers, slack.ravel()))
+        known, place = np.isfinite(place), self._through_seam(place, vertex)
+        # both sides of a jump at a pose are that pose
+        place = np.where(np.abs(place - np.round(place)) <= SAME, np.round(place), place)
+        return Peaks(np.where(known, BOTH[..., 0] * best, np.nan), np.where(known, place, np.nan), self._slack)
 
-    @cached_property
-    def values(self) -> Number:
-        """The values at all poses, (quantities, designs, poses)."""
-        return values_at_poses(self.motion, self.measures)
-
-    @cached_property
-    def ends(self) -> Number:
-        """The values at the ends of stretches that are poses, (quantities, stretches, 2)."""
-        return self.stretches.at_ends(self.values)
+    def _through_seam(self, place: Number, vertex: Number) -> Number:
+        """Return places, of vertices next to the seam of a closed cycle those at its end."""
+        last = self.motion.inputs.poses - 1.0
+        seam = (place == 0.0) & (vertex >= last - 0.5) & (vertex < last)
+        return np.where(seam & closed_cycles(self.motion)[self.designs], vertex, place) if seam.any() else place
 
     @cached_property
     def _candidates(self) -> Number:
         """The stretches that may have the greatest value, (quantities, 2, stretches)."""
-        high, low = (BOTH * self.ends[:, None]).max(axis=-1), (BOTH * self.ends[:, None]).min(axis=-1)
+        ends = BOTH * self.ends[:, None]
+        high, low = ends.max(axis=-1), ends.min(axis=-1)
         best, slack = self._by_group(high)[..., self.group], self._slack[:, None, self.group]
-        bound = high + self._added[:, None]
+        bound = high + MOST_ADDED * self.stretches.bends(self.values)[:, None]
         # a stretch that is level with the best is part of a plateau
         level = (bound <= best + slack) & (low >= best - slack)
         return np.isnan(bound) | ((bound >= best) & ~level & ~self._constant(best, slack))
@@ -252,30 +234,42 @@ class ExtremeSearch(ShortRepr):
         """Return what varies by no more than rounding, (quantities, 1, ...), from both greatest values."""
         return best.sum(axis=1, keepdims=True) <= slack
 
-    @property
-    def _added(self) -> Number:
-        """How far stretches may rise beyond their ends, (quantities, stretches); not known where an end is no pose."""
-        return MOST_ADDED * self.stretches.bends(self.values)
+    @cached_property
+    def _known(self) -> Number:
+        """How large values are at the ends of stretches, (quantities, stretches, 2)."""
+        return np.where(np.isfinite(self.ends), np.abs(self.ends), np.nan)
 
     @cached_property
+    def _largest(self) -> Number:
+        """How large values are, (quantities, groups)."""
+        scale = np.array([one.scale for one in self.measures])[:, None]
+        return np.maximum(self._by_group(np.fmax.reduce(self._known, axis=-1)), np.maximum(scale, 0.0))
+
+    @property
     def _slack(self) -> Number:
         """What is rounding of the values, (quantities, groups)."""
-        known = np.where(np.isfinite(self.ends), np.abs(self.ends), np.nan)
-        largest = np.maximum(self._by_group(np.fmax.reduce(known, axis=-1)), 0.0)
-        return ROUNDING * np.maximum(largest, np.array([one.scale for one in self.measures])[:, None])
+        return ROUNDING * self._largest
+
+    @property
+    def _range(self) -> Number:
+        """How much values vary away from limit positions, (quantities, groups)."""
+        limited = (self.stretches.limits.any(axis=-1)[:, None] | np.isinf(self.ends))[:, None]
+        best = self._by_group(np.fmax.reduce(np.where(limited, np.nan, BOTH * self.ends[:, None]), axis=-1))
+        return np.maximum(best.sum(axis=1), 0.0)
 
     def _by_group(self, rows: Number) -> Number:
         """Return the greatest of rows (..., stretches) in each group, -inf where nothing is known."""
         in_order = np.argsort(self.group, kind="stable")
         group = self.group[in_order]
         starts = np.flatnonzero(np.append(True, np.diff(group) != 0))
-        out = np.full((*rows.shape[:-1], self.count), -np.inf)
+        out = np.full((*rows.shape[:-1], len(self.designs)), -np.inf)
         found = np.fmax.reduceat(rows[..., in_order], starts, axis=-1)
         out[..., group[starts]] = np.where(np.isnan(found), -np.inf, found)
         return out
 
     def _kinds(self, m: Number, s: Number, which: Number) -> Number:
-        return (m * len(SIGNS) + s) * self.count + self.group[which]
+        """Return quantity, sign and group in one number."""
+        return (m * len(SIGNS) + s) * len(self.designs) + self.group[which]
 
     def _offered(self, values: Number, places: Number, which: Number) -> Offers:
         """Offer values (quantities, stretches, k) at places (stretches, k) in both senses."""
@@ -287,74 +281,45 @@ class ExtremeSearch(ShortRepr):
     def _looked_at(self, which: Number) -> Iterator[Offers]:
         """Offer what windows over whole stretches show, and the vertices of their peaks."""
         whole = np.ones(len(which))
-        windows = sampled(self.motion, self.measures, self.stretches, which, -whole, whole)
-        yield self._offered(windows.values[..., [0, -1]], windows.places[:, [0, -1]], which)
-        yield self._offered(windows.values, windows.places, which)._replace(is_exact=False)
-        m, s, index = self._peaked(windows)
-        items = PeakItems(m, s, which[index], -whole[index], whole[index])
-        vertex = []
-        for _ in range(NARROWINGS):
-            good = windows.trusted[m, index]
-            vertex.append(trusted_vertices(windows, items, index, good))
-            items = narrowed(windows, items.some(~good), index[~good])
-            if not len(items.m):
-                break
-            windows = sampled(self.motion, self.measures, self.stretches, *items[2:])
-            m, index = items.m, np.arange(len(items.m))
-            yield self._of_items(items, self._through_poles(windows.values[m, index], m), windows.places)._replace(
-                is_exact=False
-            )
-        items, t = (PeakItems(*map(np.concatenate, zip(*(one for one, _ in vertex), strict=True))),
-                    np.concatenate([t for _, t in vertex]))  # fmt: skip
-        places = self.stretches.places(t[:, None], items.which)[:, 0]
-        if len(places):
-            found = solved(self.motion, self.measures, self.stretches.design[items.which], places)
-            offered = self._of_items(items, found[items.m, np.arange(len(places))][:, None], places[:, None])
-            yield offered
+        windows, places = self.windows(which, -whole, whole)
+        yield self._offered(windows.values[..., [0, -1]], places[:, [0, -1]], which)
+        best, group = self._best(windows, which), self.group[which]
+        varies = ~self._constant(best[..., group], self._slack[:, None, group])
+        m, s, w = np.nonzero(
+            varies & (np.stack([windows.most(sign) for sign in SIGNS[:, None]], axis=1) >= best[..., group])
+        )
+        kind, group = self._kinds(m, s, which[w]), group[w]
+        sought = SoughtPeaks(kind, SIGNS[s], self._largest[m, group], self._range[m, group])
+        parts = CourseParts(self, m, which[w])
+        last = self.motion.inputs.poses - 1
+        for one in peaks(parts, sought, windows.some(m, w), places[w], best.ravel(), last, NARROWINGS):
+            yield one if one.exact else one._replace(value=self._through_poles(one))
 
-    def _through_poles(self, values: Number, m: Number) -> Number:
-        """Return samples (n, k) of quantities, infinite where they are so large that they pass through infinity."""
-        known = np.where(np.isfinite(self.ends), np.abs(self.ends), np.nan)
-        typical = [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.inf for row in known]
-        typical = np.fmax(typical, self._slack.max(axis=1))
-        return np.where(np.abs(values) > POLE * typical[m, None], np.sign(values) * np.inf, values)
+    def _best(self, windows: Windows, which: Number) -> Number:
+        """Return the greatest values of ends and samples, (quantities, 2, groups)."""
+        rows = np.fmax.reduce(BOTH * self.ends[:, None], axis=-1)
+        rows[..., which] = np.fmax(rows[..., which], np.fmax.reduce(BOTH * windows.values[:, None], axis=-1))
+        return self._by_group(rows)
 
-    def _peaked(self, windows: Windows) -> tuple[Number, Number, Number]:
-        """Return the windows that hold the greatest values, or may: quantities, signs, windows."""
-        samples = np.fmax.reduce(BOTH * windows.values[:, None], axis=-1)
-        high = np.fmax((BOTH * windows.fine[:, None]).max(axis=-1), samples)
-        rows = np.full((*high.shape[:2], len(self.stretches)), -np.inf)
-        # what a polynomial tells that is not right is no value to be reached
-        sure = np.where(windows.trusted[:, None], high, samples)
-        rows[..., windows.which] = sure
-        group = self.group[windows.which]
-        best = self._by_group(np.fmax(rows, (BOTH * self.ends[:, None]).max(axis=-1)))[..., group]
-        varies = ~self._constant(best, self._slack[:, None, group])
-        m, s, w = np.nonzero(varies & (sure >= best - ALIKE * windows.span[:, None]))
-        _, earliest = np.unique(self._kinds(m, s, windows.which[w]), return_index=True)
-        chosen = varies & ~windows.trusted[:, None] & (high + windows.doubt[:, None] >= best)
-        chosen[m[earliest], s[earliest], w[earliest]] = True
-        return np.nonzero(chosen)  # type: ignore[return-value]
-
-    def _of_items(self, items: PeakItems, values: Number, places: Number) -> Offers:
-        """Offer values (n, k) of items."""
-        kind = np.broadcast_to(self._kinds(items.m, items.s, items.which)[:, None], values.shape)
-        return Offers(kind.ravel(), (SIGNS[items.s][:, None] * values).ravel(), places.ravel())
+    def _through_poles(self, offers: Offers) -> Number:
+        """Return samples, infinite where they are so large that they pass through infinity."""
+        typical = [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.inf for row in self._known]
+        typical = np.fmax(typical, self._slack.max(axis=1))[offers.kind // (len(SIGNS) * len(self.designs))]
+        return np.where(np.abs(offers.value) > POLE * typical, np.sign(offers.value) * np.inf, offers.value)
 
     def _without_limit(self) -> Iterator[Offers]:
         """Offer infinity where rates grow without limit next to a limit position, or a pole at a pose."""
-        which, end = np.nonzero(self.stretches.limits | np.isinf(self.ends).any(axis=0))
+        s = self.stretches
+        which, end = np.nonzero(s.limits | np.isinf(self.ends).any(axis=0))
         rates = np.array([one.order > 0 for one in self.measures], dtype=bool)
         if not len(which) or not rates.any():
             return
         t = np.where(end[:, None] == 1, 1.0 - 2.0 * NEAR_LIMIT, 2.0 * NEAR_LIMIT - 1.0)
-        places = self.stretches.places(t, which)
-        found = solved(self.motion, self.measures, np.repeat(self.stretches.design[which], 2), places.ravel())
-        first, second = np.moveaxis(found.reshape(len(self.measures), -1, 2), -1, 0)
+        first, second = np.moveaxis(self.solved(which, s.places(t, which)), -1, 0)
         m, k = np.nonzero(
             rates[:, None] & (np.abs(second) > GROWTH * np.abs(first) + self._slack[:, self.group[which]])
         )
-        at = np.where(end == 1, self.stretches.high[which], self.stretches.low[which])[k]
+        at = np.where(end == 1, s.high[which], s.low[which])[k]
         sign = (second[m, k] > 0).astype(int)
         yield Offers(self._kinds(m, sign, which[k]), np.full(len(k), np.inf), at)
 
@@ -376,72 +341,3 @@ class Peaks(NamedTuple):
     value: Number
     place: Number
     slack: Number
-
-
-class Offers(NamedTuple):
-    """Values that may be the greatest of their kind, times their sign.
-
-    `kind` is quantity, sign and group in one number.
-    """
-
-    kind: Number
-    value: Number
-    place: Number
-    is_exact: bool = True
-
-
-def best_of(offers: Sequence[Offers], slack: Number) -> Peaks:
-    """Return the greatest value of each kind, and where it is first taken.
-
-    Poses and vertices come before samples. `slack` (quantities, groups) is what rounding makes of one value.
-    """
-    shape = len(slack), len(SIGNS), slack.shape[1]
-    best = np.full(np.prod(shape), -np.inf)
-    for one in offers:
-        np.fmax.at(best, one.kind, one.value)
-    least = best - np.repeat(slack[:, None], len(SIGNS), axis=1).ravel()
-    place = np.full(best.shape, np.inf)
-    for among in ([one for one in offers if one.is_exact], offers):
-        first = np.full(best.shape, np.inf)
-        for one in among:
-            near = one.value >= least[one.kind]
-            np.fmin.at(first, one.kind[near], one.place[near])
-        place = np.where(np.isfinite(place), place, first)
-    known = np.isfinite(place)
-    # both sides of a jump at a pose are that pose
-    place = np.where(np.abs(place - np.round(place)) <= SAME, np.round(place), place)
-    value = np.where(known, np.broadcast_to(BOTH[:, 0], shape).ravel() * best, np.nan)
-    return Peaks(value.reshape(shape), np.where(known, place, np.nan).reshape(shape), slack)
-
-
-class PeakItems(NamedTuple):
-    """Windows in which a quantity is searched in one sense.
-
-    Quantity, sign, stretch, and from where to where in t.
-    """
-
-    m: Number
-    s: Number
-    which: Number
-    low: Number
-    high: Number
-
-    def some(self, index: Number) -> PeakItems:
-        """Return some of them."""
-        return PeakItems(*(v[index] for v in self))
-
-
-def trusted_vertices(windows: Windows, items: PeakItems, index: Number, good: Number) -> tuple[PeakItems, Number]:
-    """Return the items whose windows are trusted, and the t of the vertices there."""
-    some, index = items.some(good), index[good]
-    signed = SIGNS[some.s][:, None] * windows.fine[some.m, index]
-    inside = vertices(windows.polynomials[some.m, index], FINE[np.argmax(signed, axis=-1)])
-    return some, windows.t(inside, index)
-
-
-def narrowed(windows: Windows, items: PeakItems, index: Number) -> PeakItems:
-    """Return items narrowed to the samples beside their greatest one."""
-    signed = SIGNS[items.s][:, None] * windows.values[items.m, index]
-    k = np.argmax(np.where(np.isnan(signed), -np.inf, signed), axis=-1)
-    ends = (SAMPLES[np.clip(k + step, 0, len(SAMPLES) - 1)] for step in (-1, 1))
-    return items._replace(**dict(zip(("low", "high"), (windows.t(end, index) for end in ends), strict=True)))

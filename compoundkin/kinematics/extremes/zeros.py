@@ -7,27 +7,22 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.bracketing import false_position
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.extremes import ROUNDING, SAMPLES, crossings
 from compoundkin.kinematics.extremes.stretches import (
     ASIDE,
-    ROUNDING,
     SAME_PLACE,
-    SAMPLES,
+    Course,
+    CourseParts,
     Measure,
     Places,
-    Stretches,
-    Windows,
     closed_cycles,
     measures_of,
-    sampled,
     stretches_of,
-    values_at_poses,
 )
 from compoundkin.kinematics.motion import Motion
 
@@ -69,7 +64,7 @@ def zeros(motion: Motion, quantity: str | Measure, level: float = 0.0) -> Zeros:
     (measure,) = measures_of(motion, [quantity])
     if level:
         measure = replace(measure, of=lambda at, of=measure.of: of(at) - level, squared=False)  # type: ignore[misc]
-    found = _once(motion, ZeroSearch(motion, measure, stretches_of(motion)).zeros())
+    found = _once(motion, ZeroSearch(motion, (measure,), stretches_of(motion)).zeros())
     return Zeros(measure.name, Places(motion, found.design, found.place), found.until, found.sense)
 
 
@@ -98,14 +93,6 @@ def _once(motion: Motion, found: ZeroPlaces) -> ZeroPlaces:
 NEAR_ZERO = 0.5
 
 
-# A bracket is narrowed so often at most: to 1e-13 of a stretch.
-NARROWINGS = 14
-
-
-# Zeros of polynomials are found to this part of the window, in so many trials at most.
-FLAT, TRIALS = 1e-14, 60
-
-
 class ZeroPlaces(NamedTuple):
     """The zeros of a quantity, (n,).
 
@@ -129,12 +116,8 @@ class _SampledValues(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ZeroSearch(ShortRepr):
-    """What is searched for zeros: a quantity over the smooth stretches of a motion."""
-
-    motion: Motion
-    measure: Measure
-    stretches: Stretches
+class ZeroSearch(Course):
+    """A search for the zeros of a quantity over the smooth stretches of a motion."""
 
     def zeros(self) -> ZeroPlaces:
         """Return the zeros, in order along each design."""
@@ -150,18 +133,22 @@ class ZeroSearch(ShortRepr):
         order = np.lexsort((place, design))
         return ZeroPlaces(design[order].astype(int), place[order], until[order], sense[order])
 
-    @cached_property
+    @property
     def _values(self) -> Number:
-        return values_at_poses(self.motion, (self.measure,))[0]
+        return self.values[0]
 
-    @cached_property
+    @property
     def _ends(self) -> Number:
-        return self.stretches.at_ends(self._values)
+        return self.ends[0]
+
+    @property
+    def _tiny(self) -> float:
+        return ROUNDING * self._largest
 
     @cached_property
-    def _tiny(self) -> float:
+    def _largest(self) -> float:
         largest = np.max(np.abs(self._values), initial=0.0, where=np.isfinite(self._values))
-        return ROUNDING * max(float(largest), self.measure.scale)
+        return max(float(largest), self.measures[0].scale)
 
     def _candidates(self) -> Number:
         """Return the stretches that may have zeros inside."""
@@ -177,7 +164,7 @@ class ZeroSearch(ShortRepr):
         plain = np.setdiff1d(np.arange(len(self.stretches)), which)
         rows = [np.stack([np.repeat(plain, 2), np.tile([-1.0, 1.0], len(plain)), self._ends[plain].ravel()])]
         if len(which):
-            values = self._windows(which, -np.ones(len(which)), np.ones(len(which))).values[0]
+            values = self.windows(which, -np.ones(len(which)), np.ones(len(which)))[0].values[0]
             # poses themselves are right also where rates are only known there
             values[:, [0, -1]] = np.where(np.isnan(self._ends[which]), values[:, [0, -1]], self._ends[which])
             rows.append(np.stack([np.repeat(which, len(SAMPLES)), np.tile(SAMPLES, len(which)), values.ravel()]))
@@ -198,13 +185,10 @@ class ZeroSearch(ShortRepr):
         outer = (s.first < 0) & (s.low <= 2.0 * ASIDE), (s.last < 0) & (s.high >= last - 2.0 * ASIDE)
         rows = [np.empty((3, 0))]
         for side, (odd, pose) in enumerate(zip(outer, (0, last), strict=True)):
-            zero = odd & (np.abs(self._values[s.design, pose]) <= self._tiny) & (self.measure.order < 2)
+            zero = odd & (np.abs(self._values[s.design, pose]) <= self._tiny) & (self.measures[0].order < 2)
             which = np.flatnonzero(zero & ~s.limits[:, side])
             rows.append(np.stack([which, np.full(len(which), (2.0 * side - 1.0) * (1.0 + 2.0 * ASIDE)), 0.0 * which]))
         return np.concatenate(rows, axis=1)
-
-    def _windows(self, which: Number, low: Number, high: Number) -> Windows:
-        return sampled(self.motion, (self.measure,), self.stretches, which, low, high)
 
     def _of_runs(self, samples: _SampledValues) -> list[tuple[float, ...]]:
         """Return the zeros at samples, and where the quantity stays zero."""
@@ -229,35 +213,8 @@ class ZeroSearch(ShortRepr):
         # at a jump from one sign to the other it is zero on neither side
         place = 0.5 * (samples.place[k] + samples.place[k + 1])
         within = k[inside]
-        place[inside] = self._narrowed(samples.which[within], samples.t[within], samples.t[within + 1])
+        parts = CourseParts(self, np.zeros(len(within), dtype=int), samples.which[within])
+        t = crossings(parts, samples.t[within], samples.t[within + 1], self._largest)
+        place[inside] = parts.places(np.arange(len(within)), t)
         design = self.stretches.design[samples.which[k]]
         return list(zip(design, place, place, sign[k + 1], strict=True))
-
-    def _narrowed(self, which: Number, low: Number, high: Number) -> Number:
-        """Return the places of zeros between t on stretches."""
-        t, going = 0.5 * (low + high), np.arange(len(which))
-        for _ in range(NARROWINGS if len(which) else 0):
-            windows = self._windows(which[going], low[going], high[going])
-            values = windows.values[0]
-            good = windows.trusted[0] & np.isfinite(values[:, 1:-1]).all(axis=-1)
-            t[going[good]] = windows.t(_root(windows, good), np.flatnonzero(good))
-            k = np.argmax(values[:, :-1] * values[:, 1:] <= 0, axis=-1)
-            index = np.arange(len(going))
-            low[going], high[going] = windows.t(SAMPLES[k], index), windows.t(SAMPLES[k + 1], index)
-            t[going[~good]] = 0.5 * (low + high)[going[~good]]
-            going = going[~good]
-            if not len(going):
-                break
-        return self.stretches.places(t[:, None], which)[:, 0]
-
-
-def _root(windows: Windows, good: Number) -> Number:
-    """Return the zeros of trusted polynomials of opposite signs at their ends, from -1 to 1."""
-    c = windows.polynomials[0, good].T
-    ends = chebyshev.chebval(np.array([[-1.0], [1.0]]), c[:, None], tensor=False)
-    with np.errstate(all="ignore"):
-        found = false_position(
-            lambda part: chebyshev.chebval(2.0 * part - 1.0, c, tensor=False),
-            np.ones(c.shape[1]), ends[0], ends[1], FLAT, TRIALS,
-        ) if c.shape[1] else np.empty(0)  # fmt: skip
-    return np.clip(2.0 * np.nan_to_num(found, nan=0.5) - 1.0, -1.0, 1.0)

@@ -9,8 +9,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.studies.responses.course_extremes import refined_samples
-from compoundkin.studies.responses.designs import Designs
+from compoundkin.studies.responses.designs import Designs, refined_samples
 from compoundkin.studies.responses.response import Response
 
 

@@ -280,3 +280,21 @@ def name_freeing_argument(argument: str) -> Iterator[None]:
 def _placed(problem: Problem, argument: str) -> Problem:
     first, dot, name = problem.where.partition(".")
     return replace(problem, where=f"{argument}.{name}") if dot and first == FREE else problem
+
+
+# The least number of steps in which a motion is searched between its poses: ten degrees of a turn.
+FINE_SAMPLES = 36
+
+
+def refinement_parts(poses: int) -> int:
+    """Return the number of parts into which steps between poses are divided.
+
+    >>> refinement_parts(4), refinement_parts(361), refinement_parts(1)
+    (12, 1, 1)
+    """
+    return -(-FINE_SAMPLES // (poses - 1)) if poses > 1 else 1
+
+
+def refined_samples(poses: int) -> Number:
+    """Return the poses, and places between those of a motion that has few."""
+    return np.linspace(0.0, poses - 1.0, refinement_parts(poses) * (poses - 1) + 1)

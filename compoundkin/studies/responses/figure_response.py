@@ -7,15 +7,134 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.extremes import (
+    MOST_ADDED,
+    POLE,
+    ROUNDING,
+    Offers,
+    SoughtPeaks,
+    Windows,
+    best_of,
+    peaks,
+)
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE, TIME_RATIO
 from compoundkin.studies.responses.assembled_range import assembled_range
-from compoundkin.studies.responses.course_extremes import CourseExtreme, CourseSearch
-from compoundkin.studies.responses.designs import Designs
+from compoundkin.studies.responses.designs import Designs, refined_samples, refinement_parts
 from compoundkin.studies.responses.response import Response
+
+# A window is narrowed so often at most: at a kink to 1e-10 of it.
+NARROWINGS = 20
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CourseExtreme(ShortRepr):
+    """The greatest value of a course of each design, and its place.
+
+    With the sign -1 it is the least. Both are (designs,), NaN where a design is not assembled over the whole motion.
+    """
+
+    value: Number
+    place: Number
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CourseSearch(ShortRepr):
+    """A search for the greatest values of a course times a `sign`, between the poses too.
+
+    The length of a vector is `squared`, so that it is smooth where it passes zero.
+    """
+
+    designs: Designs
+    name: str
+    sign: float
+    is_angle: bool = False
+    squared: bool = False
+
+    def extreme(self) -> CourseExtreme:
+        """Return the greatest values, times the sign."""
+        with np.errstate(all="ignore"):
+            value, place = self._searched(*self._course())
+        value = np.where(assembled_range(self.designs).assembled, self.sign * value, np.nan)
+        return CourseExtreme(value, np.where(np.isnan(value), np.nan, place))
+
+    def _course(self) -> tuple[int, Number]:
+        """Return the course, and in how many parts the steps between poses are cut for it."""
+        number, poses = self.designs.number, self.designs.poses
+        parts = refinement_parts(poses)
+        if parts == 1:
+            return 1, self.sign * np.broadcast_to(self.designs.outputs[self.name], (number, poses))
+        places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
+        return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
+
+    def _searched(self, parts: int, course: Number) -> tuple[Number, Number]:
+        """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
+        every, k = np.arange(len(course)), course.argmax(axis=1)
+        best, largest = course[every, k], np.abs(course).max(axis=1)
+        offers = [Offers(every, best, k / parts)]
+        rows, k = np.nonzero(_peaks(course))
+        if len(rows):
+            sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest[rows], np.ptp(course, axis=1)[rows])
+            f = DesignCourses(self, rows)
+            low, high = np.maximum(k - 1.0, 0.0) / parts, np.minimum(k + 1.0, course.shape[1] - 1.0) / parts
+            found = peaks(
+                f, sought, *f.windows(np.arange(len(rows)), low, high), best, self.designs.poses - 1, NARROWINGS
+            )
+            offers += found
+        value, place, _ = best_of(offers, ROUNDING * largest)
+        narrowed = np.zeros(len(every), dtype=bool)
+        for one in offers:
+            narrowed[one.kind] |= not one.exact
+        rows = np.flatnonzero(narrowed)
+        if len(rows):
+            # what is far beyond the median passes through infinity, as the reciprocal of a rate
+            low = POLE * np.abs(course[rows]) < value[rows, None]
+            value[rows[low.mean(axis=1) > 0.5]] = np.inf
+        return value, place
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DesignCourses(ShortRepr):
+    """A course of designs by index `rows` (n,), at places."""
+
+    search: CourseSearch
+    rows: Number
+
+    def windows(self, which: Number, low: Number, high: Number) -> tuple[Windows, Number]:
+        """Return windows with their samples, and the places of these."""
+        places = Windows.samples(low, high)
+        squared = np.broadcast_to(self.search.squared, len(which))
+        return Windows(low, high, self._at(which, places), squared), places
+
+    def places(self, which: Number, t: Number) -> Number:
+        """Return the places themselves."""
+        return t
+
+    def values(self, which: Number, places: Number) -> Number:
+        """Return the values at places, (n,)."""
+        return self._at(which, places[:, None])[:, 0]
+
+    def _at(self, which: Number, places: Number) -> Number:
+        return self.search.designs.values_at(self.search.name, self.rows[which], places, self.search.is_angle)
+
+
+def _peaks(course: Number) -> Number:
+    """Return the poses near which the greatest value may be: no neighbour is higher, and the bend is large enough."""
+    rising, poses = np.diff(course, axis=1), course.shape[1]
+    peak = np.ones(course.shape, dtype=bool)
+    peak[:, 1:] &= rising >= 0.0
+    peak[:, :-1] &= rising <= 0.0
+    if poses < 3:
+        return peak
+    bend = np.abs(np.diff(rising, axis=1))
+    added = MOST_ADDED * np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1)
+    best = course.max(axis=1, keepdims=True)
+    return peak & (course + added >= best) & (added > ROUNDING * np.abs(best))
+
 
 # A length that is found by its square is known to this part of the greatest: the square root of rounding.
 ZERO = 1e-8
