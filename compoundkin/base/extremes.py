@@ -33,10 +33,11 @@ NEWTON = 6
 DERIVATIVES = np.zeros((INNER - 1, 2, INNER))
 DERIVATIVES[:, 0] = chebyshev.chebder(np.eye(INNER))
 DERIVATIVES[:-1, 1] = chebyshev.chebder(np.eye(INNER), 2)
-# Slopes at the ends: the k-th polynomial of Chebyshev has k^2 at 1. So the slope of an error is at most this many times
-# the error. Source: A. A. Markov, 1889.
+# Slopes at the ends: the k-th polynomial of Chebyshev has k^2 at 1.
 SLOPES = np.arange(INNER) ** 2.0 * np.array([[1.0], [-1.0]]) ** np.arange(1, INNER + 1)
-MARKOV = (INNER - 1.0) ** 2
+# The error of a polynomial is nearly a multiple of Chebyshev's of degree 8, zero at the inner samples: its slope at an
+# end is 64 times what it is there. That of rounding is at most 49 times as large as it. Source: A. A. Markov, 1889.
+SLOPE_OF_ERROR, SLOPE_OF_ROUNDING = 2.0 * INNER**2, (INNER - 1.0) ** 2 * 8.0 * np.finfo(float).eps
 # A polynomial that is off by less than this part of what the function varies in its window is trusted: extremes are
 # right to its square.
 TRUSTED = 1e-8
@@ -44,6 +45,8 @@ TRUSTED = 1e-8
 TRUSTED_AT_ZERO = 1e-10
 # Values nearer than this part of what is natural for them differ by rounding.
 ROUNDING = 1e-12
+# A length that is found by its square is known to this part of the greatest: the square root of rounding.
+ZERO = 1e-8
 # The error of a polynomial at a kink is estimated by this factor times the sum of so many last coefficients.
 SURE, LAST = 8.0, 3
 # Sums of the sizes of coefficients: about how much polynomials vary, and how far they may be off at a kink.
@@ -102,9 +105,13 @@ class Windows(ShortRepr):
     @cached_property
     def off(self) -> Number:
         """About how far the polynomials are off, (..., n)."""
-        ends = np.abs(self.polynomials @ AT_ENDS - self.smooth_values[..., [0, -1]])
-        known = np.where(ends < np.inf, ends, 0.0)
-        return np.maximum(np.maximum(known[..., 0], known[..., 1]), self._sizes[..., -1])
+        return np.maximum(np.maximum(self._off_at_ends[..., 0], self._off_at_ends[..., 1]), self._sizes[..., -1])
+
+    @cached_property
+    def _off_at_ends(self) -> Number:
+        off = np.abs(self.polynomials @ AT_ENDS - self.smooth_values[..., [0, -1]])
+        # what is unknown or without limit at an end tells nothing
+        return np.where(off < np.inf, off, 0.0)
 
     @cached_property
     def _sizes(self) -> Number:
@@ -128,8 +135,8 @@ class Windows(ShortRepr):
         most = np.fmax(samples, top + MISSED * self._sums[..., 0] + self._sums[..., 1])
         return sign * self._unsquared(sign * most)
 
-    def vertices(self, sign: Number) -> tuple[Number, Number]:
-        """Return where polynomials are greatest, from -1 to 1, and their values there, times signs."""
+    def vertices(self, sign: Number) -> tuple[Number, Number, Number]:
+        """Return where polynomials are greatest, from -1 to 1, and between what their values are there, times signs."""
         c, start = self.polynomials.T, FINE[np.argmax(sign[:, None] * self.fine, axis=-1)]
         both = (DERIVATIVES.reshape(-1, INNER) @ c).reshape(INNER - 1, 2, -1)
         spacing = FINE[1] - FINE[0]
@@ -141,11 +148,13 @@ class Windows(ShortRepr):
                 step = first / second
                 t = np.minimum(np.maximum(np.where(np.isfinite(step), t - step, t), low), high)
         # a curve that runs into a plateau is level at the end, as nearly as the polynomial tells it
-        end = np.where(t < 0.0, 0, 1)
-        slope = np.abs(np.take_along_axis(self.polynomials @ SLOPES.T, 1 - end[:, None], axis=-1)[:, 0])
-        level = slope <= MARKOV * (self.off + np.finfo(float).eps * self._sizes.max(axis=-1))
+        end, index = np.where(t < 0.0, 0, 1), np.arange(len(t))
+        slope = np.abs((self.polynomials @ SLOPES.T)[index, 1 - end])
+        rounding = SLOPE_OF_ROUNDING * self._sizes.max(axis=-1)
+        level = slope <= SLOPE_OF_ERROR * self._off_at_ends[index, end] + rounding
         t = np.where(level & (np.abs(start) >= 1.0 - 1.5 * spacing), 2.0 * end - 1.0, t)
-        return t, sign * self._unsquared(chebyshev.chebval(t, c, tensor=False))
+        smooth, off = chebyshev.chebval(t, c, tensor=False), sign * self.off
+        return t, sign * self._unsquared(smooth - off), sign * self._unsquared(smooth + off)
 
     def roots(self) -> Number:
         """Return zeros of polynomials (n, degrees) of opposite signs at their ends, from -1 to 1."""
@@ -237,9 +246,9 @@ def peaks(
         good = windows.right(TRUSTED, largest) if left else np.zeros(len(which), dtype=bool)
         if good.any():
             some, index = windows.some(good), which[good]
-            inside, height = some.vertices(sign[good])
-            found.append((index, f.places(index, some.at(inside)), height, np.abs(inside) < 1.0))
-            np.fmax.at(best, kind[good], height)
+            inside, *height = some.vertices(sign[good])
+            found.append((index, f.places(index, some.at(inside)), *height, np.abs(inside) < 1.0))
+            np.fmax.at(best, kind[good], height[0])
             if len(index) == len(which):
                 break
             windows, places = windows.some(~good), places[~good]
@@ -262,29 +271,30 @@ def _vertices(
     f: ValuesAtPlaces, sought: SoughtPeaks, found: list[tuple[Number, ...]], best: Number, last: int
 ) -> Iterator[Offers]:
     """Yield the vertices that are highest, of equally high ones the first; with those less than a place beyond."""
-    which, place, height, inside = (np.concatenate(v) for v in zip(*found, strict=True))
-    kind = sought.kind[which]
-    high = height >= best[kind] - ALIKE * sought.range[which] - ROUNDING * sought.largest[which]
-    first = np.full(len(best), np.inf)
-    np.fmin.at(first, kind[high], place[high])
+    which, place, low, high, inside = (np.concatenate(v) for v in zip(*found, strict=True))
+    kind, alike = sought.kind[which], ALIKE * sought.range[which] + ROUNDING * sought.largest[which]
+    may, first = high >= best[kind] - alike, np.full(len(best), np.inf)
+    np.fmin.at(first, kind[may], place[may])
     # a vertex just before the end of a cycle is beside its beginning
-    near = (place <= first[kind] + 1.0) | ((first[kind] == 0.0) & (place >= last - 1.0))
-    which, place, kind, inside = (v[high & near] for v in (which, place, kind, inside))
+    near = (place <= first[kind] + 1.0) | ((first[kind] == 0.0) & (place >= last - 1.0)) | (high - low > alike)
+    which, place, kind, inside = (v[may & near] for v in (which, place, kind, inside))
     if len(which):
         value, ends = sought.sign[which] * f.values(which, place), ~inside
         yield Offers(kind[inside], value[inside], place[inside], vertex=True)
         yield Offers(kind[ends], value[ends], place[ends])
 
 
-def best_of(offers: Sequence[Offers], slack: Number) -> tuple[Number, Number, Number]:
+def best_of(offers: Sequence[Offers], largest: Number, squared: Number) -> tuple[Number, Number, Number]:
     """Return the greatest value of each kind, where it is first taken, and where at a vertex first.
 
-    Poses and vertices come before samples. Values nearer than `slack` (kinds,) are equal.
+    Poses and vertices come before samples. Values are equal that differ by rounding of what is `largest` (kinds,);
+    lengths that are found by their squares are zero to the square root of it.
     """
-    best = np.full(len(slack), -np.inf)
+    best = np.full(len(largest), -np.inf)
     for one in offers:
         np.fmax.at(best, one.kind, one.value)
-    sample, place, vertex = (np.full(len(slack), np.inf) for _ in range(3))
+    slack = np.where(squared & (np.abs(best) <= ZERO * largest), ZERO, ROUNDING) * largest
+    sample, place, vertex = (np.full(len(largest), np.inf) for _ in range(3))
     for one in offers:
         near = one.value >= (best - slack)[one.kind]
         kind, at = one.kind[near], one.place[near]

@@ -10,6 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import suppress_pose_warnings
+from compoundkin.kinematics.extremes import extremes
 from compoundkin.studies.responses import Designs, Response, studied_path
 from compoundkin.studies.responses.solved_response import SolvedResponse
 from compoundkin.studies.samples import sample_of
@@ -72,6 +73,29 @@ def test_figures_with_kinks_and_zeros_are_found() -> None:
     assert np.abs(response.values(designs) - np.pi / 2).max() < 1e-9
     designs, response = given("G.velocity.length.least", speed=2.0)
     assert response.values(designs).max() < 1e-8
+
+
+@pytest.mark.parametrize("beside", [-0.3, -0.004, -1e-5, 0.0, 1e-5, 0.004, 0.3])
+def test_figures_do_not_move_with_the_grid(beside: float) -> None:
+    """Extremes of designs beside their poses are those that `extremes` finds, and of another grid."""
+    crank = ck.load("slider-crank-offset")
+    dead = np.arcsin(-20.0 / 160.0)  # where the least design's rod is in line with its crank
+    radii = np.array([40.0, 40.0 + 1e-5, 40.01, 44.0])
+
+    def stroke(first: float) -> tuple[Designs, Response]:
+        values = first + np.deg2rad(5.0) * np.arange(73)
+        path, (response,) = studied_path(crank, ["crank.A.x"], ["B.x.stroke"], values)
+        return path.designs({"crank.A.x": radii}), response
+
+    designs, response = stroke(dead - np.deg2rad(5.0) * (7.0 + beside))
+    found = response.values(designs)
+    closed = np.subtract(*(np.sqrt((120.0 + sign * radii) ** 2 - 400.0) for sign in (1.0, -1.0)))
+    assert np.allclose(found, closed, rtol=1e-14)
+    (solved,) = extremes(designs.motion, "B.x")
+    assert np.allclose(found, solved.stroke, rtol=1e-14)
+    ends = [response.extreme(designs, sign).place for sign in (1.0, -1.0)]  # type: ignore[attr-defined]
+    for place, end in zip(ends, (solved.greatest, solved.least), strict=True):
+        assert np.abs(place - end.at.place).max() < 1e-8
 
 
 def test_figures_in_time_follow_the_laws_between_the_poses() -> None:

@@ -205,8 +205,9 @@ class ExtremeSearch(Course):
         if len(which):
             offers += self._looked_at(which)
         offers += self._without_limit()
-        slack = np.repeat(self._slack[:, None], len(SIGNS), axis=1)
-        best, place, vertex = (v.reshape(shape) for v in best_of(offers, slack.ravel()))
+        squared = np.array([one.squared for one in self.measures])[:, None, None]
+        kinds = (np.broadcast_to(v, shape).ravel() for v in (self._largest[:, None], squared))
+        best, place, vertex = (v.reshape(shape) for v in best_of(offers, *kinds))
         known, place = np.isfinite(place), self._through_seam(place, vertex)
         # both sides of a jump at a pose are that pose
         place = np.where(np.abs(place - np.round(place)) <= SAME, np.round(place), place)

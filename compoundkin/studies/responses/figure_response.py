@@ -13,6 +13,7 @@ from compoundkin.base.extremes import (
     MOST_ADDED,
     POLE,
     ROUNDING,
+    ZERO,
     Offers,
     SoughtPeaks,
     Windows,
@@ -85,7 +86,7 @@ class CourseSearch(ShortRepr):
                 f, sought, *f.windows(np.arange(len(rows)), low, high), best, self.designs.poses - 1, NARROWINGS
             )
             offers += found
-        value, place, _ = best_of(offers, ROUNDING * largest)
+        value, place, _ = best_of(offers, largest, np.asarray(self.squared))
         narrowed = np.zeros(len(every), dtype=bool)
         for one in offers:
             narrowed[one.kind] |= not one.exact
@@ -136,8 +137,6 @@ def _peaks(course: Number) -> Number:
     return peak & (course + added >= best) & (added > ROUNDING * np.abs(best))
 
 
-# A length that is found by its square is known to this part of the greatest: the square root of rounding.
-ZERO = 1e-8
 # By how much each figure counts the greatest and the least value.
 PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0), (-1.0, -1.0))}
 
