@@ -38,10 +38,10 @@ SLOPES = np.arange(INNER) ** 2.0 * np.array([[1.0], [-1.0]]) ** np.arange(1, INN
 # The error of a polynomial is nearly a multiple of Chebyshev's of degree 8, zero at the inner samples: its slope at an
 # end is 64 times what it is there. That of rounding is at most 49 times as large as it. Source: A. A. Markov, 1889.
 SLOPE_OF_ERROR, SLOPE_OF_ROUNDING = 2.0 * INNER**2, (INNER - 1.0) ** 2 * 8.0 * np.finfo(float).eps
-# A polynomial that is off by less than this part of what the function varies in its window is trusted: extremes are
-# right to its square.
+# A polynomial that is off by less than this part of what the function varies in its window is trusted: the places of
+# extremes are as wrong as it, their values by its square.
 TRUSTED = 1e-8
-# For zeros, which are as wrong as the polynomial.
+# Zeros are found by nothing but their places.
 TRUSTED_AT_ZERO = 1e-10
 # Values nearer than this part of what is natural for them differ by rounding.
 ROUNDING = 1e-12
@@ -121,11 +121,12 @@ class Windows(ShortRepr):
     def _sums(self) -> Number:
         return self._sizes @ SUMS
 
+    def _rounding(self, largest: Number) -> Number:
+        return ROUNDING * (np.where(self.squared, largest**2, largest) if self.squared.any() else largest)
+
     def right(self, part: float, largest: Number) -> Number:
         """Tell whose polynomials are off by less than a part of what they vary, or than rounding of `largest`."""
-        if self.squared.any():
-            largest = np.where(self.squared, largest**2, largest)
-        return self.off <= part * self._sums[..., 0] + ROUNDING * largest
+        return self.off <= part * self._sums[..., 0] + self._rounding(largest)
 
     def most(self, sign: Number) -> Number:
         """Return about the greatest value that there may be, times signs that fit to windows."""
@@ -135,8 +136,11 @@ class Windows(ShortRepr):
         most = np.fmax(samples, top + MISSED * self._sums[..., 0] + self._sums[..., 1])
         return sign * self._unsquared(sign * most)
 
-    def vertices(self, sign: Number) -> tuple[Number, Number, Number]:
-        """Return where polynomials are greatest, from -1 to 1, and between what their values are there, times signs."""
+    def vertices(self, sign: Number, largest: Number) -> tuple[Number, Number, Number]:
+        """Return where polynomials are greatest, from -1 to 1, and between what their values are there, times signs.
+
+        What varies by no more than rounding of `largest` is greatest from the beginning.
+        """
         c, start = self.polynomials.T, FINE[np.argmax(sign[:, None] * self.fine, axis=-1)]
         both = (DERIVATIVES.reshape(-1, INNER) @ c).reshape(INNER - 1, 2, -1)
         spacing = FINE[1] - FINE[0]
@@ -153,6 +157,7 @@ class Windows(ShortRepr):
         rounding = SLOPE_OF_ROUNDING * self._sizes.max(axis=-1)
         level = slope <= SLOPE_OF_ERROR * self._off_at_ends[index, end] + rounding
         t = np.where(level & (np.abs(start) >= 1.0 - 1.5 * spacing), 2.0 * end - 1.0, t)
+        t = np.where(self._sums[..., 0] <= self._rounding(largest), -1.0, t)
         smooth, off = chebyshev.chebval(t, c, tensor=False), sign * self.off
         return t, sign * self._unsquared(smooth - off), sign * self._unsquared(smooth + off)
 
@@ -246,7 +251,7 @@ def peaks(
         good = windows.right(TRUSTED, largest) if left else np.zeros(len(which), dtype=bool)
         if good.any():
             some, index = windows.some(good), which[good]
-            inside, *height = some.vertices(sign[good])
+            inside, *height = some.vertices(sign[good], largest[good])
             found.append((index, f.places(index, some.at(inside)), *height, np.abs(inside) < 1.0))
             np.fmax.at(best, kind[good], height[0])
             if len(index) == len(which):

@@ -1,4 +1,4 @@
-"""Smooth stretches of a motion: its breaks and places, and quantities sampled in windows with their polynomials."""
+"""Smooth stretches of a motion: its breaks and places, and quantities over them: their values at places."""
 
 from __future__ import annotations
 
