@@ -173,8 +173,6 @@ def _within_window(values: Number, value: Number, at: Places, slack: Number) -> 
 
 # A window is narrowed so often at most: to 1e-8 of a stretch, at a kink or where only rounding is left.
 NARROWINGS = 14
-
-
 # So near to a limit position (in the square root of the distance) rates are compared; where they grow so many times,
 # they grow without limit.
 NEAR_LIMIT, GROWTH = np.array([1e-3, 1e-4]), 3.0
@@ -327,8 +325,6 @@ class ExtremeSearch(Course):
 
 # The least values are the greatest of the opposite.
 SIGNS = np.array([-1.0, 1.0])
-
-
 BOTH = SIGNS[:, None, None]
 
 

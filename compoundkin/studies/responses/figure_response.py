@@ -9,17 +9,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.extremes import (
-    MOST_ADDED,
-    POLE,
-    ROUNDING,
-    ZERO,
-    Offers,
-    SoughtPeaks,
-    Windows,
-    best_of,
-    peaks,
-)
+from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, ZERO, Offers, SoughtPeaks, Windows, best_of, peaks
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE

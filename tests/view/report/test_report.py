@@ -136,13 +136,15 @@ def test_the_last_pose_is_in_the_table_whatever_the_step(six_bar: ck.results.Mot
 
 
 def test_extremes_are_those_between_the_poses_too(six_bar: ck.results.Motion) -> None:
-    """G stands still where its bar turns back; a fine motion comes near to it."""
+    """G stands still where its bar turns back, twice: the first place is told. A fine motion comes near to it."""
     found = table(report(six_bar), "outputs", 1)
     rows = {row[0]: row for row in found.rows}
     fine = ck.solve(six_bar.mechanism, {"crank": ck.deg(np.arange(0.0, 360.0, 0.02))})
     speed = np.abs(fine.points["G"].velocity)
+    still = np.flatnonzero(speed < 1e-3 * speed.max())
+    first = still[: np.flatnonzero(np.diff(still) > 1)[0] + 1]
     assert rows["|G.velocity|"][2:] == (
-        0.0, pytest.approx(0.02 * speed.argmin(), abs=0.02), pytest.approx(speed.max(), rel=1e-7),
+        0.0, pytest.approx(0.02 * first[speed[first].argmin()], abs=0.02), pytest.approx(speed.max(), rel=1e-7),
         pytest.approx(0.02 * speed.argmax(), abs=0.02),
     )  # fmt: skip
     angle = np.rad2deg(fine.links["bar"].angle)
