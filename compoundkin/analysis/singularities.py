@@ -1,0 +1,979 @@
+"""Singular poses along a motion: where they are, of which kind, what opens there and which branches meet.
+
+They are found and examined by the equations of all pairs in the poses of all links (a Jacobian with a column for x, y
+and the angle of each link), not by the closed forms of groups that solved the motion. In solving order this Jacobian is
+block triangular, so that a pose can be singular only where the block of some group is. A zero of its least singular
+value cannot hide between two places at which these are greater in sum than the block changes (H. Weyl's inequality):
+intervals are halved until that excludes them.
+
+At a singular pose the tangents of branches are the real zeros of quadratic forms, the second derivatives of the
+equations in the null space, projected on the left null space. With two null vectors and one left one that is a
+quadratic equation, of two, one or no real roots.
+Source: E. L. Allgower and K. Georg, Numerical Continuation Methods, Springer 1990, chapter 8.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple, overload
+
+import numpy as np
+
+from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number, degrees, wrapped
+from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase
+from compoundkin.base.errors import ChangePointWarning, InvalidInput, UnassembledPoses
+from compoundkin.base.newton import StoppingRule, gauss_newton
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.driver_values import fit, mapped
+from compoundkin.kinematics.extremes.dead_points import dead_points
+from compoundkin.kinematics.extremes.motion_between import between, inputs_between, times_between
+from compoundkin.kinematics.extremes.stretches import SAME_PLACE, closed_cycles, stretches_of
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure import Structure
+from compoundkin.structure.redundancy.constraint_equations import ConstraintEquations
+
+LIMIT, CHANGE, SHAKY = "limit position", "change point", "shaky pose"
+DEAD, ARCHITECTURE = "dead point", "architecture"
+
+# A block is singular where its least singular value is below this: dimensions that close to rounding, 1e-12 of the
+# size, leave its root where two branches meet.
+SINGULAR = 1e-6
+# There, singular values of the whole Jacobian below this are zero: a pose is known to no more than SINGULAR, which the
+# Jacobian's slope by the pose makes a few times larger.
+ZERO = 1e-5
+# An interval without a zero may change the block by so many times the distance of its ends: by more than a straight
+# line, as poses bend between.
+BENDS = 1.5
+# Intervals are halved to this part of the way between two poses: rounding of poses, next to change points 1e-11, is
+# less than what the block changes over it.
+FINEST = 2.0**-30
+# Singular places nearer than this (of a pose) are one.
+ONE = 1e-3
+PLACES_AT_ONCE = 512
+# Second derivatives (rows of length 1, unit vectors) below this are zero, and so are discriminants by this part of
+# theirs: poses, and with them null spaces, are known to some 1e-10.
+FLAT = 1e-7
+# A branch is confirmed by a step of this length (radians, parts of the size) both ways, corrected: it deviates from its
+# tangent by the square, so by a small part of the step.
+STEP, DEVIATES = 1e-3, 0.2
+# Forms of more than two unknowns are solved from so many random directions, so often corrected; two of the solutions
+# are one if they differ by less than ALIKE.
+STARTS, CORRECTIONS, ALIKE, SEED = 400, 60, 1e-4, 11
+# Beside the pose (of a pose) the motion shows which branch it takes: so near that it has not yet turned by 0.1.
+BESIDE, ALONG = 0.01, 0.9
+# Rates below this part of a tangent are zero.
+STILL = 1e-6
+REST = StoppingRule(exact=1e-15, rounding=1e-12, longest=0.3, patience=10, gain=0.9)
+
+
+class Twist(NamedTuple):
+    """The motion of a link: the velocity of its origin and its angular velocity."""
+
+    velocity: complex
+    angular_velocity: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PoseTangent(ShortRepr):
+    """A direction in which a mechanism can move from a pose: rates of drivers, twists of links, velocities of points.
+
+    The driver that moves has the rate 1 (rad/s, or one length/s), so that angular velocities are velocity ratios; where
+    none moves, the fastest link moves at 1 rad/s or one size/s. The opposite direction is the same branch. Branches are
+    numbered from 1, those `followed` by the motion first. `multiplicity` is 2 where two branches touch.
+    """
+
+    number: int
+    drivers: Mapping[str, float]
+    twists: Mapping[str, Twist]
+    velocities: Mapping[str, complex]
+    followed: bool = False
+    multiplicity: int = 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Singularity(ShortRepr):
+    """A singular pose of a motion, `number` in the order along it from 1.
+
+    `kind` is "limit position", where the driver goes no further and turns back; "change point", where branches meet;
+    "shaky pose", where more opens than branches are; "dead point", where an `output` rests while the driver moves; or
+    "architecture", singular from `place` to `until`.
+    `place` counts poses from 0, in between fractional; `drivers` are their values there, `poses` those of all links.
+    `groups` and `links` are those whose equations are singular. `openings` are motions for which the drivers would not
+    have to move, as far as velocities tell; at a dead point that of the mechanism while the output rests. `branches` are
+    the tangents of the motions through the pose. They are `finite` where second derivatives tell them apart; else there
+    is a family of directions besides, and only isolated ones and those along the motion are listed.
+    """
+
+    number: int
+    kind: str
+    design: tuple[int, ...]
+    place: float
+    until: float
+    drivers: Mapping[str, float]
+    time: float | None
+    groups: tuple[str, ...]
+    links: tuple[str, ...]
+    output: str
+    openings: tuple[PoseTangent, ...]
+    branches: tuple[PoseTangent, ...]
+    finite: bool
+    turns_back: bool
+    poses: Mapping[str, Pose] = field(repr=False)
+    motion: Motion = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """What it is called in reports and pictures."""
+        return f"{self.kind} {self.number}"
+
+    @property
+    def meeting(self) -> str:
+        """Which branches meet there, in words."""
+        count = len(self.branches)
+        if self.kind == DEAD:
+            return f"{self.output} turns back"
+        if not self.finite:
+            one = f"{count_phrase(count, 'branch', 'branches')}, and " if count else ""
+            return f"{one}a family of directions that second derivatives do not tell apart"
+        if self.kind == LIMIT:
+            return "one smooth branch, the driver turns back" if self.turns_back else "one smooth branch, the driver rests"
+        if not count:
+            return "no branch leaves: the pose is isolated"
+        if count == 1 and self.branches[0].multiplicity > 1:
+            return "two branches that touch"
+        return f"{count_phrase(count, 'branch', 'branches')} meet" if count > 1 else "one branch, others open in velocity only"
+
+    def text(self) -> str:
+        """Return it with its branches as text, angles in degrees."""
+        return "\n".join([f"{self.number} {self._where}: {self.kind}{self._of}; {self.meeting}", *self._branches()])
+
+    @property
+    def values(self) -> str:
+        """The drivers' values in words, angles in degrees."""
+        driven, size = self.motion.structure.driven_angles, self.motion.size
+        told = (f"{name} {np.round(degrees(v), 7) + 0.0:.7g} deg" if driven[name]
+                else f"{name} {np.round(v / size, 10) * size + 0.0:.7g}" for name, v in self.drivers.items())  # fmt: skip
+        return ", ".join(told)
+
+    @property
+    def _where(self) -> str:
+        onward = f" to {self.until:.6g}" if self.until > self.place else ""
+        return f"{self.values or 'without a driver'} (pose {self.place:.6g}{onward})"
+
+    @property
+    def _of(self) -> str:
+        return f" of {', '.join(self.links)}" if self.links else ""
+
+    def _branches(self) -> Iterator[str]:
+        for one in self.branches if self.kind != DEAD else ():
+            rates = (f"{name} {twist.angular_velocity:.6g}" for name, twist in rounded(one).items())
+            yield f"  branch {one.number}{' (followed)' if one.followed else ''}: angular velocities {', '.join(rates)}"
+
+
+def rounded(tangent: PoseTangent) -> dict[str, Twist]:
+    """Return the twists of moving links, what is rounding being zero."""
+    least = STILL * max((abs(twist.angular_velocity) for twist in tangent.twists.values()), default=0.0)
+    return {name: Twist(twist.velocity, twist.angular_velocity if abs(twist.angular_velocity) > least else 0.0)
+            for name, twist in tangent.twists.items()}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Singularities(Sequence[Singularity], DisplaysHtml, ShortRepr):
+    """The singular poses of a motion, in order along each design."""
+
+    motion: Motion
+    found: tuple[Singularity, ...]
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    @overload
+    def __getitem__(self, index: int) -> Singularity: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Singularity, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Singularity | tuple[Singularity, ...]:
+        """Return one of them, or some, by index from 0."""
+        return self.found[index]
+
+    def __iter__(self) -> Iterator[Singularity]:
+        return iter(self.found)
+
+    def of_kind(self, kind: str) -> tuple[Singularity, ...]:
+        """Return those of one kind."""
+        return tuple(one for one in self.found if one.kind == kind)
+
+    def text(self) -> str:
+        """Return them as text, angles in degrees."""
+        return "\n".join(one.text() for one in self.found) or "No pose along the motion is singular."
+
+
+@checked
+def singularities(what: Motion | Mechanism | Structure, outputs: Sequence[str] = ()) -> Singularities:
+    """Return the singular poses along a motion, between its poses too, and the branches that meet there.
+
+    A mechanism is solved over its drivers' own ranges. Dead points are those of `outputs` that are places, angles or
+    displacements by name; without any, of those that the mechanism names, else of its links without a driver. Poses of
+    several drivers are singular for the path on which they move. Raises UnknownName for an unknown output, and what
+    `solve` raises.
+
+    Source: C. Gosselin and J. Angeles, Singularity analysis of closed-loop kinematic chains, IEEE Trans. Robotics and
+    Automation 6 (1990); E. L. Allgower and K. Georg, Numerical Continuation Methods, Springer 1990, chapter 8.
+
+    >>> from compoundkin.files import load
+    >>> print(singularities(load("parallelogram"), ["follower.angle"]).text())
+    1 crank 0 deg (pose 0): change point of coupler, follower; 2 branches meet
+      branch 1 (followed): angular velocities crank 1, coupler 0, follower 1
+      branch 2: angular velocities crank 1, coupler -1, follower -1
+    2 crank 180 deg (pose 36): change point of coupler, follower; 2 branches meet
+      branch 1 (followed): angular velocities crank 1, coupler 0, follower 1
+      branch 2: angular velocities crank 1, coupler 0.333333, follower -0.333333
+    """
+    motion = what if isinstance(what, Motion) else _solved(what)
+    names = [one.coordinate for one in outputs_of(motion, chosen_outputs(motion, outputs)) if not one.is_point and one.rate]
+    found = [*_of_equations(motion), *_of_outputs(motion, names, bool(outputs))]
+    found.sort(key=lambda one: (one.design, one.place, one.kind == DEAD))
+    return Singularities(motion, tuple(replace(one, number=k) for k, one in enumerate(found, start=1)))
+
+
+@checked
+def singular_poses(motion: Motion) -> Singularities:
+    """Return the singular poses along a motion without the dead points of its outputs. See `singularities`."""
+    return Singularities(motion, tuple(replace(one, number=k) for k, one in enumerate(_of_equations(motion), start=1)))
+
+
+def _solved(what: Mechanism | Structure) -> Motion:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnassembledPoses)
+        warnings.simplefilter("ignore", ChangePointWarning)
+        return solve(what)
+
+
+def _of_equations(motion: Motion) -> list[Singularity]:
+    """Return limit positions, change points and stretches that are singular, in order."""
+    system, found = _Equations(motion), list[Singularity]()
+    with np.errstate(all="ignore"):
+        cyclic = closed_cycles(motion) if motion.inputs.poses > 1 else np.zeros(motion.inputs.designs, dtype=bool)
+        for design in range(motion.inputs.designs):
+            mine = []
+            for spot in _Search(system, design).spots():
+                one = _examined(system, design, spot)
+                if one is not None:
+                    mine.append(one)
+            last = motion.inputs.poses - 1.0
+            if len(mine) > 1 and cyclic[design] and mine[0].place < SAME_PLACE and mine[-1].until > last - SAME_PLACE:
+                # the end of a cycle is its beginning
+                mine = mine[:-1] if mine[-1].place > last - SAME_PLACE else mine
+            found += mine
+    return found
+
+
+# --- the equations ------------------------------------------------------------------------------------------
+
+
+class _Row(NamedTuple):
+    """A row of the Jacobian: which entry of which pair, and which driver prescribes it; None where it is held."""
+
+    pair: int
+    entry: int
+    driver: str | None
+    sign: float
+    level: int
+
+
+class _Block(NamedTuple):
+    """The rows and links of a group: a block on the diagonal. `kept` is the rank that it has where it is regular."""
+
+    rows: tuple[_Row, ...]
+    links: tuple[str, ...]
+    kept: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Equations:
+    """The equations of all pairs and drivers of a motion in the poses of all moving links, in solving order."""
+
+    motion: Motion
+
+    @cached_property
+    def _equations(self) -> ConstraintEquations:
+        return ConstraintEquations(self.motion.mechanism)
+
+    @cached_property
+    def level(self) -> Mapping[str, int]:
+        """When each link is known: 0 with the frame, k with the k-th group."""
+        structure = self.motion.structure
+        known = dict.fromkeys(structure.ground.links, 0)
+        for k, group in enumerate(structure.groups, start=1):
+            known.update(dict.fromkeys(group.links, k))
+        return {FRAME: 0, **known}
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """The moving links in solving order."""
+        return tuple(sorted(self._equations.links, key=lambda name: self.level[name]))
+
+    @cached_property
+    def column(self) -> Mapping[str, int]:
+        """The first column of every moving link."""
+        return {name: 3 * k for k, name in enumerate(self.links)}
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """All pairs, then that of each driver."""
+        return (*self._equations.pairs, *self._equations.driven)
+
+    @cached_property
+    def rows(self) -> tuple[_Row, ...]:
+        """All rows: what pairs hold, then the drivers' coordinates."""
+        free = len(self._equations.pairs)
+        held = [_Row(k, i, None, 1.0, self._last(pair)) for k, pair in enumerate(self.pairs[:free]) for i in range(pair.held)]
+        drives = zip(self.motion.mechanism.drives, self._equations.driven, strict=True)
+        return (*held, *(_Row(free + k, pair.held, drive.name, float(pair.driven_by(drive.link)), self._last(pair))
+                         for k, (drive, pair) in enumerate(drives)))  # fmt: skip
+
+    def _last(self, pair: Pair) -> int:
+        return max(self.level[name] for name in pair.members)
+
+    @cached_property
+    def blocks(self) -> tuple[_Block, ...]:
+        """The block of each group."""
+        found, idle = [], [one.link for one in self.motion.structure.passive]
+        for k, group in enumerate(self.motion.structure.groups, start=1):
+            links = tuple(name for name in self.links if self.level[name] == k)
+            rows = tuple(row for row in self.rows if row.level == k)
+            found.append(_Block(rows, links, 3 * len(links) - sum(name in idle for name in group.links)))
+        return tuple(found)
+
+    @cached_property
+    def ends(self) -> Mapping[str, Ends]:
+        """The sides of all pairs over designs and poses, by their index as a text."""
+        shape, geometry, found = fit(self.motion.shape), self.motion.mechanism.geometry, {}
+        for k, pair in enumerate(self.pairs):
+            own = self.motion.solving_order.pairs.get(pair.name)
+            # those that solved the motion count the turns of wheels
+            same = own is not None and type(own) is type(pair) and own.members == pair.members
+            found[str(k)] = (self.motion.inputs.ends[pair.name] if same
+                             else tuple(mapped(end, shape) for end in pair.ends(geometry)))  # fmt: skip
+        return found
+
+    def at(self, design: int, places: Number) -> _Poses:
+        """Return the poses and sides at places along one design, in arrays (n,)."""
+        designs = np.full(len(places), design)
+        there = between(self.motion, designs, places, 1)
+        part = replace(self.motion.inputs, ends=self.ends).pick(designs, places)
+        ends = tuple(tuple(mapped(end, np.ravel) for end in part.ends[str(k)]) for k in range(len(self.pairs)))
+        poses = {name: _leading(pose, len(places)) for name, pose in there.poses.items()}
+        return _Poses(poses, ends, there.failed.ravel() == 0)
+
+    def tables(self, poses: Mapping[str, Pose], ends: Sequence[Ends], count: int) -> list[Number]:
+        """Return the Jacobian of every pair, (count, rows, 3 members), x and y in parts of the size."""
+        size, found = self.motion.size, []
+        for pair, sides in zip(self.pairs, ends, strict=True):
+            own = pair.jacobian(sides, tuple(poses[name] for name in pair.members))
+            own = np.asarray(own) * np.tile([size, size, 1.0], len(pair.members))
+            found.append(np.broadcast_to(own, (count, *own.shape[-2:])))
+        return found
+
+    def matrix(self, rows: Sequence[_Row], links: Sequence[str], tables: Sequence[Number]) -> tuple[Number, Number]:
+        """Return rows by some links, (count, rows, 3 links), and their lengths over all links.
+
+        Rows of drivers are not scaled: they are radians, or parts of the size.
+        """
+        at = {name: 3 * k for k, name in enumerate(links)}
+        count = len(tables[0])
+        found, lengths = np.zeros((count, len(rows), 3 * len(links))), np.ones((count, len(rows)))
+        for i, row in enumerate(rows):
+            pair, entry = self.pairs[row.pair], tables[row.pair][:, row.entry] * row.sign
+            size = 1.0 if row.driver is None or pair.free_is_angle else self.motion.size
+            for side, name in enumerate(pair.members):
+                if name in at:
+                    found[:, i, at[name] : at[name] + 3] += entry[:, 3 * side : 3 * side + 3] / size
+            length = np.linalg.norm(entry, axis=1) if row.driver is None else np.full(count, size)
+            lengths[:, i] = np.where(length > 0.0, length, 1.0)
+            if row.driver is None:
+                found[:, i] /= lengths[:, i, None]
+        return found, lengths
+
+
+class _Poses(NamedTuple):
+    """Poses of all links and sides of all pairs at places, and which are assembled."""
+
+    links: Mapping[str, Pose]
+    ends: tuple[Ends, ...]
+    good: Number
+
+
+def _leading(pose: Pose, count: int) -> Pose:
+    """Return a pose at places, without rates."""
+    if pose is FIXED:
+        return pose
+    return pose.mapped(lambda series: Series((np.broadcast_to(series.c[0], (1, count))[0].copy(),)))
+
+
+# --- where blocks are singular ------------------------------------------------------------------------------
+
+
+class _Spot(NamedTuple):
+    """Where some blocks are singular: from a place to another."""
+
+    place: float
+    until: float
+
+
+@dataclass(eq=False)
+class _Search:
+    """The search of one design for places at which the block of a group is singular."""
+
+    system: _Equations
+    design: int
+    places: Number = field(default_factory=lambda: np.empty(0))
+    least: Number = field(default_factory=lambda: np.empty(0))
+    blocks: list[Number] = field(default_factory=list)
+
+    def spots(self) -> list[_Spot]:
+        """Return the places, in order, and stretches as such."""
+        if not self.system.blocks:
+            return []
+        motion = self.system.motion
+        if motion.inputs.poses < 2:
+            self._evaluate(np.zeros(1))
+            return [_Spot(0.0, 0.0)] if np.nanmin(self.least, initial=np.inf) < SINGULAR else []
+        s = stretches_of(motion)
+        mine = s.design == self.design
+        ends = np.stack([s.low[mine], s.high[mine]], axis=1)
+        if not len(ends):
+            return []
+        index = self._evaluate(ends.ravel()).reshape(ends.shape)
+        groups = range(len(self.system.blocks))
+        rows = np.concatenate([self._alive(np.column_stack([index, np.full(len(index), g)])) for g in groups])
+        whole = list[tuple[float, float]]()
+        while len(rows):
+            low, high = self.places[rows[:, 0]], self.places[rows[:, 1]]
+            rows, low, high = (part[high - low > FINEST] for part in (rows, low, high))
+            if not len(rows):
+                break
+            middle = self._evaluate(0.5 * (low + high))
+            flat = (high - low > ONE) & np.all(
+                [self.least[part, rows[:, 2]] < SINGULAR for part in (rows[:, 0], middle, rows[:, 1])], axis=0
+            )
+            whole += zip(low[flat].tolist(), high[flat].tolist(), strict=True)
+            halves = [np.column_stack(part)[~flat] for part in ((rows[:, 0], middle, rows[:, 2]),
+                                                                (middle, rows[:, 1], rows[:, 2]))]  # fmt: skip
+            rows = self._alive(np.concatenate(halves))
+        return self._joined(whole)
+
+    def _evaluate(self, places: Number) -> Number:
+        """Return the indices of places, the blocks there being known."""
+        distinct, back = np.unique(places, return_inverse=True)
+        start, system = len(self.places), self.system
+        least, blocks = [], list[list[Number]]()
+        for k in range(0, len(distinct), PLACES_AT_ONCE):
+            part = distinct[k : k + PLACES_AT_ONCE]
+            there = system.at(self.design, part)
+            tables = system.tables(there.links, there.ends, len(part))
+            own = [system.matrix(block.rows, block.links, tables)[0] for block in system.blocks]
+            least.append(np.stack([_least(m, block.kept, there.good) for m, block in zip(own, system.blocks, strict=True)],
+                                  axis=1))  # fmt: skip
+            blocks.append(own)
+        joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)]
+        self.blocks = [np.concatenate(both) for both in zip(self.blocks, joined, strict=True)] if start else joined
+        self.least = np.concatenate([self.least, *least]) if start else np.concatenate(least)
+        self.places = np.concatenate([self.places, distinct])
+        return start + back.ravel()
+
+    def _alive(self, rows: Number) -> Number:
+        """Return the intervals (index of both ends, group) in which the group's block may be singular."""
+        kept = np.zeros(len(rows), dtype=bool)
+        for g in np.unique(rows[:, 2]):
+            mine = np.flatnonzero(rows[:, 2] == g)
+            a, b = rows[mine, 0], rows[mine, 1]
+            change = np.linalg.norm(self.blocks[g][a] - self.blocks[g][b], axis=(1, 2))
+            values = self.least[a, g], self.least[b, g]
+            wide = self.places[b] - self.places[a] > ONE
+            flat = (values[0] < SINGULAR) & (values[1] < SINGULAR)
+            kept[mine] = np.where(wide & flat, True, values[0] + values[1] <= BENDS * change)
+        return rows[kept]
+
+    def _joined(self, whole: list[tuple[float, float]]) -> list[_Spot]:
+        """Return places that are singular, those next to each other as one, and stretches."""
+        best = np.min(np.where(np.isnan(self.least), np.inf, self.least), axis=1)
+        order = np.argsort(self.places)
+        order = order[best[order] < SINGULAR]
+        groups, spots = list[list[int]](), list[_Spot]()
+        for k in order.tolist():
+            if groups and (self.places[k] - self.places[groups[-1][-1]] < ONE or any(
+                a <= self.places[groups[-1][-1]] and self.places[k] <= b for a, b in whole
+            )):
+                groups[-1].append(k)
+            else:
+                groups.append([k])
+        for one in groups:
+            first, last = self.places[one[0]], self.places[one[-1]]
+            if last - first > ONE:
+                spots.append(_Spot(float(first), float(last)))
+            else:
+                place = self._known(float(self.places[one[int(np.argmin(best[one]))]]))
+                spots.append(_Spot(place, place))
+        return spots
+
+    def _known(self, place: float) -> float:
+        """Return the place of a change point of the motion nearby, which is right to rounding; else the place."""
+        for rows in self.system.motion.change_points.values():
+            row = rows[min(self.design, len(rows) - 1)]
+            near = row[np.abs(row - place) < ONE]
+            if len(near):
+                known = float(np.clip(near[0], 0.0, self.system.motion.inputs.poses - 1.0))
+                return known if self.system.at(self.design, np.array([known])).good[0] else place
+        return place
+
+
+def _least(matrix: Number, kept: int, good: Number) -> Number:
+    """Return the least singular value that ought not to be zero, (count,). NaN where not assembled."""
+    known = good & np.isfinite(matrix).all(axis=(1, 2))
+    if matrix.shape[1] < kept or not kept:
+        return np.where(known, 0.0 if kept else np.inf, np.nan)
+    values = np.linalg.svd(np.where(known[:, None, None], matrix, 0.0), compute_uv=False)
+    return np.where(known, values[:, kept - 1], np.nan)
+
+
+# --- one pose -----------------------------------------------------------------------------------------------
+
+
+class _Way(NamedTuple):
+    """How drivers go through a pose: a unit vector of their path (radians, parts of the size), and how it bends.
+
+    `across` are unit vectors in the other directions, in rows.
+    """
+
+    along: Number
+    bend: Number
+    across: Number
+
+
+@dataclass(frozen=True, eq=False)
+class _Pose:
+    """The equations about one pose. A state is by how much links are moved from there: x, y in sizes, and angles."""
+
+    system: _Equations
+    poses: Mapping[str, Pose]
+    ends: tuple[Ends, ...]
+    way: _Way
+
+    def moved(self, states: Number) -> dict[str, Pose]:
+        """Return the poses in states (n, 3 links) times t, up to t squared; of one state at t = 1."""
+        size, found = self.system.motion.size, {FRAME: FIXED}
+        series = states.ndim > 1
+        for name, k in self.system.column.items():
+            pose = self.poses[name]
+            z, u, theta = pose.z.c[0], pose.u.c[0], None if pose.theta is None else pose.theta.c[0]
+            shift, turn = (states[..., k] + 1j * states[..., k + 1]) * size, states[..., k + 2]
+            if series:
+                zero = 0.0 * turn
+                turned = Series((u + zero, 1j * u * turn, -0.5 * u * turn**2))
+                counted = None if theta is None else Series((theta + zero, turn, zero))
+                found[name] = Pose(Series((z + zero, shift, 0j * zero)), turned, counted)
+            else:
+                counted = None if theta is None else Series((theta + turn,))
+                found[name] = Pose(Series((z + shift,)), Series((u * np.exp(1j * turn),)), counted)
+        return found
+
+    def _values(self, states: Number, order: int) -> Number:
+        """Return coefficients of all rows, scaled as their Jacobian, (n, rows) or (rows,)."""
+        poses, found = self.moved(states), []
+        known: dict[int, tuple[Series, ...]] = {}
+        for row in self.system.rows:
+            pair = self.system.pairs[row.pair]
+            if row.pair not in known:
+                own = self.ends[row.pair], tuple(poses[name] for name in pair.members)
+                known[row.pair] = (pair.coordinate(*own),) if row.driver is not None else pair.closure(*own)
+            c = known[row.pair][0 if row.driver is not None else row.entry].c
+            value = np.real(c[order]) * row.sign if order < len(c) else 0.0
+            found.append(np.broadcast_to(value, states.shape[:-1]))
+        return np.stack(found, axis=-1) / self._lengths
+
+    @cached_property
+    def whole(self) -> tuple[Number, Number]:
+        """All rows by all links at the pose, and their lengths."""
+        tables = self.system.tables(self.poses, self.ends, 1)
+        matrix, lengths = self.system.matrix(self.system.rows, self.system.links, tables)
+        return matrix[0], lengths[0]
+
+    @property
+    def _lengths(self) -> Number:
+        return self.whole[1]
+
+    @cached_property
+    def _start(self) -> Number:
+        return self._values(np.zeros(len(self.system.links) * 3), 0)
+
+    def rows_at(self, state: Number) -> Number:
+        """Return all rows by all links in another state, scaled as at the pose."""
+        poses = self.moved(state)
+        tables = self.system.tables(poses, self.ends, 1)
+        matrix, lengths = self.system.matrix(self.system.rows, self.system.links, tables)
+        return matrix[0] * (lengths[0] / self._lengths)[:, None]
+
+    @cached_property
+    def _drivers(self) -> Number:
+        return np.array([row.driver is not None for row in self.system.rows], dtype=bool)
+
+    def with_free_driver(self, rows: Number) -> Number:
+        """Return what pairs hold and what drivers hold across their path, of rows or values of all."""
+        return np.concatenate([rows[~self._drivers], self.way.across @ rows[self._drivers]])
+
+    def pace(self, tangent: Number, rows: Number | None = None) -> float:
+        """Return how fast the drivers move along their path."""
+        matrix = self.whole[0] if rows is None else rows
+        return float(self.way.along @ (matrix[self._drivers] @ tangent))
+
+    def second(self, states: Number) -> Number:
+        """Return the second derivatives of the held rows along states (n, 3 links), (n, rows)."""
+        values = 2.0 * self._values(states, 2)
+        paces = self.whole[0][self._drivers] @ states.T
+        bent = (self.way.along @ paces)[:, None] ** 2 * self.way.bend
+        return np.concatenate([values[:, ~self._drivers], (values[:, self._drivers] - bent) @ self.way.across.T], axis=1)
+
+    def bending(self, state: Number) -> Number:
+        """Return the second derivatives of the drivers' coordinates along one state."""
+        return 2.0 * self._values(state[None], 2)[0, self._drivers]
+
+    def corrected(self, state: Number) -> Number | None:
+        """Return the nearest state that closes, drivers on their path. None where none is near."""
+        def system(x: Number) -> tuple[Number, Number]:
+            away = self._values(x, 0) - np.where(self._drivers, self._start, 0.0)
+            angles = np.array([r.driver is not None and self.system.pairs[r.pair].free_is_angle for r in self.system.rows])
+            away = np.where(angles, wrapped(away), away)
+            return self.with_free_driver(away), self.with_free_driver(self.rows_at(x))
+
+        found = gauss_newton(system, lambda m, r: np.linalg.lstsq(m, r, rcond=1e-12)[0], state, 40, REST)
+        return found.x if found.residual < 1e-9 else None
+
+
+def _way(motion: Motion, design: int, place: float) -> _Way:
+    """Return how the drivers go through a place; where they rest, as they do next."""
+    names = list(motion.drives)
+    units = np.array([motion.solving_order.unit(name) for name in names])
+    last = motion.inputs.poses - 1.0
+    if not names:
+        return _Way(np.zeros(0), np.zeros(0), np.zeros((0, 0)))
+    values = np.stack([np.broadcast_to(motion.inputs.drives[n][0], motion.failed.shape)[design] for n in names], axis=1)
+    moving = np.ptp(values, axis=0) > 0.0
+    bend = np.zeros(len(names))
+    if moving.sum() <= 1:
+        along = np.where(moving, 1.0, 0.0) if moving.any() else np.eye(len(names))[0]
+    else:
+        part = inputs_between(motion, np.array([design]), np.array([place]), 2, by_place=True)
+        rates = [np.array([float(np.ravel(part.drives[n][k])[0]) if k < len(part.drives[n]) else 0.0 for n in names]) / units
+                 for k in (1, 2)]  # fmt: skip
+        along = rates[0]
+        if np.linalg.norm(along) < STILL * np.linalg.norm(np.ptp(values, axis=0) / units) / max(last, 1.0):
+            away = (values - values[int(round(place))]) / units
+            far = np.flatnonzero(np.linalg.norm(away, axis=1) > 0.0)
+            along = away[far[int(np.argmin(np.abs(far - place)))]]
+        else:
+            bend = rates[1] / float(along @ along)
+    along = along / np.linalg.norm(along)
+    across = np.linalg.svd(along[None], full_matrices=True)[2][1:]
+    return _Way(along, bend, across)
+
+
+def _pose_at(system: _Equations, design: int, place: float) -> _Pose:
+    there = system.at(design, np.array([place]))
+    poses = {name: pose.entry((0,)) for name, pose in there.links.items()}
+    ends = tuple(tuple(mapped(end, _number) for end in sides) for sides in there.ends)
+    return _Pose(system, poses, ends, _way(system.motion, design, place))
+
+
+def _number(value: Number) -> Number:
+    return np.ravel(value)[0].item() if np.ndim(value) else value
+
+
+def _spaces(matrix: Number) -> tuple[Number, Number]:
+    """Return orthonormal bases of the null space and of the left one, in columns."""
+    left, values, right = np.linalg.svd(matrix)
+    rank = int(np.sum(values > ZERO))
+    return right[rank:].T, left[:, rank:]
+
+
+def _idle(pose: _Pose) -> Number:
+    """Return the turning of passive links, such as rollers, in columns."""
+    system, motion = pose.system, pose.system.motion
+    found = np.zeros((3 * len(system.links), len(motion.structure.passive)))
+    for k, one in enumerate(motion.structure.passive):
+        point = complex(np.ravel(motion.mechanism.geometry.points[one.link][one.at])[0])
+        arm = 1j * (pose.poses[one.link].z.c[0] - pose.poses[one.link].at(point).c[0]) / motion.size
+        first = system.column[one.link]
+        found[first : first + 3, k] = arm.real, arm.imag, 1.0
+    return np.linalg.qr(found)[0] if found.size else found
+
+
+def _without(basis: Number, idle: Number) -> Number:
+    """Return a basis of what is orthogonal to idle motions in the space of some orthonormal columns."""
+    if not idle.shape[1] or not basis.shape[1]:
+        return basis
+    _, values, right = np.linalg.svd(idle.T @ basis)
+    return np.asarray(basis @ right[int(np.sum(values > 0.5)) :].T)
+
+
+def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | None:
+    """Return what a pose is at which some block is singular. None where others hold it."""
+    middle = 0.5 * (spot.place + spot.until)
+    pose = _pose_at(system, design, middle)
+    idle = _idle(pose)
+    opened = _without(_spaces(pose.whole[0])[0], idle)
+    if not opened.shape[1]:
+        return None
+    null, left = _spaces(pose.with_free_driver(pose.whole[0]))
+    null = _without(null, idle)
+    kind, turns, finite, values = CHANGE, False, True, _drivers_at(system.motion, design, middle)
+    if null.shape[1] == 1:
+        pose, values = _at_limit(pose, values)
+        null = _without(_spaces(pose.with_free_driver(pose.whole[0]))[0], idle)[:, :1]
+        kind, turns = LIMIT, abs(_turning(pose, null[:, 0])) > FLAT
+        tangents = [(null[:, 0], 1)]
+    else:
+        forms = _forms(pose, null, left)
+        roots, finite = zeros_of_forms(forms)
+        tangents = [(null @ root, times) for root, times in roots if _leads_on(pose, null @ root)]
+        kind = CHANGE if sum(times for _, times in tangents) > 1 or not finite else SHAKY
+    if spot.until > spot.place and _drivers_at(system.motion, design, spot.until) != _drivers_at(system.motion, design, spot.place):
+        kind = ARCHITECTURE
+    ways = _ways_of_motion(pose, design, middle)
+    for way in ways if not finite else ():
+        if not any(_alike(way, other) for other, _ in tangents):
+            tangents.append((way, 1))
+    branches = [replace(_tangent(pose, t), multiplicity=times, followed=any(_alike(t, way) for way in ways))
+                for t, times in tangents]  # fmt: skip
+    branches.sort(key=lambda one: not one.followed)
+    which = [k for k, block in enumerate(system.blocks) if _is_singular(system, pose, block)]
+    groups = [system.motion.structure.groups[k] for k in which]
+    motion = system.motion
+    return Singularity(
+        0, kind, _design(motion, design), spot.place, spot.until, values, _time(motion, design, spot.place),
+        tuple(group.name for group in groups), tuple(link for group in groups for link in group.links), "",
+        tuple(_tangent(pose, opened[:, k], number=k + 1) for k in range(opened.shape[1])),
+        tuple(replace(one, number=k) for k, one in enumerate(branches, start=1)), finite, turns, pose.poses, motion,
+    )  # fmt: skip
+
+
+def _is_singular(system: _Equations, pose: _Pose, block: _Block) -> bool:
+    tables = system.tables(pose.poses, pose.ends, 1)
+    return bool(_least(system.matrix(block.rows, block.links, tables)[0], block.kept, np.ones(1, dtype=bool))[0] < ZERO)
+
+
+def _design(motion: Motion, design: int) -> tuple[int, ...]:
+    axes = motion.shape[:-1]
+    return tuple(int(i) for i in np.unravel_index(design, axes)) if axes else ()
+
+
+def _time(motion: Motion, design: int, place: float) -> float | None:
+    if motion.time is None:
+        return None
+    return float(times_between(motion, np.array([design]), np.array([place]))[0])
+
+
+def _drivers_at(motion: Motion, design: int, place: float) -> dict[str, float]:
+    part = inputs_between(motion, np.array([design]), np.array([place]))
+    return {name: float(np.ravel(values[0])[0]) for name, values in part.drives.items()}
+
+
+def _turning(pose: _Pose, tangent: Number) -> float:
+    """Return the second derivative of the drivers' path along a smooth branch."""
+    held = pose.with_free_driver(pose.whole[0])
+    bent = np.linalg.lstsq(held, -pose.second(tangent[None])[0], rcond=ZERO)[0]
+    return float(pose.way.along @ pose.bending(tangent)) + pose.pace(bent)
+
+
+def _at_limit(pose: _Pose, values: Mapping[str, float]) -> tuple[_Pose, dict[str, float]]:
+    """Return the pose at which the drivers stand still along a smooth branch, by Newton's method, and their values."""
+    motion = pose.system.motion
+    for _ in range(4):
+        tangent = _spaces(pose.with_free_driver(pose.whole[0]))[0][:, 0]
+        pace, bend = pose.pace(tangent), _turning(pose, tangent)
+        if abs(bend) < FLAT or abs(pace) < 1e-14:
+            break
+        state = pose.corrected(-pace / bend * tangent)
+        if state is None or np.linalg.norm(state) > ONE:
+            break
+        change = pose._values(state, 0) - pose._start
+        drives = [row for row in pose.system.rows if row.driver is not None]
+        gone = {row.driver: float(v) for row, v in zip(drives, change[pose._drivers], strict=True)}
+        values = {name: v + _gone(motion, name, gone[name]) for name, v in values.items()}
+        pose = replace(pose, poses=_settled(pose.moved(state)))
+    return pose, dict(values)
+
+
+def _gone(motion: Motion, name: str, away: float) -> float:
+    return float(wrapped(away)) if motion.drives[name].is_angle else away * motion.size
+
+
+def _settled(poses: Mapping[str, Pose]) -> dict[str, Pose]:
+    return {name: pose if pose is FIXED else pose.entry(()) for name, pose in poses.items()}
+
+
+def _forms(pose: _Pose, null: Number, left: Number) -> Number:
+    """Return the quadratic forms of the equations in the null space, (left null vectors, n, n)."""
+    n = null.shape[1]
+    i, j = np.triu_indices(n)
+    states = np.where((i == j)[:, None], null.T[i], null.T[i] + null.T[j])
+    values = pose.second(states) @ left
+    forms = np.zeros((left.shape[1], n, n))
+    own = {int(a): values[k] for k, (a, b) in enumerate(zip(i, j, strict=True)) if a == b}
+    for k, (a, b) in enumerate(zip(i.tolist(), j.tolist(), strict=True)):
+        forms[:, a, b] = forms[:, b, a] = own[a] if a == b else 0.5 * (values[k] - own[a] - own[b])
+    return forms
+
+
+def zeros_of_forms(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
+    """Return the real zeros that quadratic forms (count, n, n) have in common, and whether they are finite in number.
+
+    Each is a unit vector with its multiplicity, one of a pair of opposite ones.
+
+    >>> zeros_of_forms(np.array([[[1.0, 0.0], [0.0, -1.0]]]))[0][0][0].round(6).tolist()
+    [0.707107, 0.707107]
+    >>> zeros_of_forms(np.array([np.eye(2)])), zeros_of_forms(np.zeros((1, 2, 2)))
+    (([], True), ([], False))
+    """
+    n = forms.shape[-1]
+    left = np.reshape(forms, (len(forms), n * n))
+    _, values, right = np.linalg.svd(left, full_matrices=False)
+    own = right[values > FLAT * max(1.0, float(values[0]))].reshape(-1, n, n)
+    if not len(own):
+        return [], False
+    return _of_two(own) if n == 2 else _of_many(own)
+
+
+def _of_two(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
+    """Return the zeros of forms of two unknowns: those of the first that are zeros of all."""
+    a, b, c = forms[0, 0, 0], forms[0, 0, 1], forms[0, 1, 1]
+    apart = b * b - a * c
+    if apart < -FLAT:
+        return [], True
+    root = np.sqrt(max(apart, 0.0)) if apart > FLAT else 0.0
+    # the larger of both sums loses no digits
+    q = -(b + np.copysign(root, b))
+    found = [np.array([q, a]), np.array([c, q])] if root else [np.array([q, a]) if abs(a) > abs(c) else np.array([c, q])]
+    units = [v / np.linalg.norm(v) for v in found]
+    good = [v for v in units if np.all(np.abs(np.einsum("i,kij,j->k", v, forms, v)) < np.sqrt(FLAT))]
+    return [(v * np.sign(v[np.argmax(np.abs(v))]), 1 if root else 2) for v in good], True
+
+
+def _of_many(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
+    """Return the zeros of forms of three unknowns or more, by Newton's method from many directions.
+
+    They are not finite in number where they are not isolated and more than isolated ones could be.
+    """
+    n = forms.shape[-1]
+    rng = np.random.default_rng(SEED)
+    x = rng.standard_normal((STARTS, n))
+    for _ in range(CORRECTIONS):
+        x /= np.linalg.norm(x, axis=1, keepdims=True)
+        slopes = np.einsum("kij,sj->ski", forms, x)
+        values = np.einsum("ski,si->sk", slopes, x)
+        matrix = np.concatenate([2.0 * slopes, x[:, None]], axis=1)
+        right = np.concatenate([-values, np.zeros((STARTS, 1))], axis=1)
+        x = x + np.einsum("sij,sj->si", np.linalg.pinv(matrix, rcond=1e-10), right)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    worst = np.abs(np.einsum("si,kij,sj->sk", x, forms, x)).max(axis=1)
+    found, isolated = list[Number](), list[bool]()
+    for v in x[worst < FLAT**1.5]:
+        if not any(abs(abs(v @ other) - 1.0) < ALIKE**2 for other in found):
+            slopes = np.concatenate([2.0 * forms @ v, v[None]])
+            found.append(v * np.sign(v[np.argmax(np.abs(v))]))
+            isolated.append(bool(len(slopes) >= n and np.linalg.svd(slopes, compute_uv=False)[n - 1] > ALIKE))
+    finite = isolated.count(False) <= 2 ** (n - 1)
+    kept = [(v, 1 if single else 2) for v, single in zip(found, isolated, strict=True) if single or finite]
+    return sorted(kept, key=lambda one: tuple(one[0].round(6))), finite
+
+
+def _leads_on(pose: _Pose, tangent: Number) -> bool:
+    """Tell whether a corrected step along a tangent stays near it, in one sense at least."""
+    for sense in (1.0, -1.0):
+        state = pose.corrected(sense * STEP * tangent)
+        if state is not None and np.linalg.norm(state - sense * STEP * tangent) < DEVIATES * STEP:
+            return True
+    return False
+
+
+def _ways_of_motion(pose: _Pose, design: int, place: float) -> list[Number]:
+    """Return the directions in which the motion comes to a pose and goes on, unit vectors."""
+    system, last = pose.system, pose.system.motion.inputs.poses - 1.0
+    places = np.array([p for p in (place - BESIDE, place + BESIDE) if 0.0 <= p <= last])
+    if not len(places):
+        return []
+    there, found = system.at(design, places), []
+    for k in np.flatnonzero(there.good):
+        state = np.zeros(3 * len(system.links))
+        for name, first in system.column.items():
+            one, own = there.links[name].entry((int(k),)), pose.poses[name]
+            shift = (one.z.c[0] - own.z.c[0]) / system.motion.size
+            state[first : first + 3] = shift.real, shift.imag, float(np.angle(one.u.c[0] / own.u.c[0]))
+        state = state - (idle := _idle(pose)) @ (idle.T @ state)
+        if np.linalg.norm(state) > 0.0:
+            found.append(state / np.linalg.norm(state))
+    return found
+
+
+def _alike(one: Number, other: Number) -> bool:
+    return abs(float(one @ other)) > ALONG * float(np.linalg.norm(one) * np.linalg.norm(other))
+
+
+def _tangent(pose: _Pose, state: Number, number: int = 0) -> PoseTangent:
+    """Return a direction with its rates scaled."""
+    system, motion = pose.system, pose.system.motion
+    rates = pose.whole[0][pose._drivers] @ state
+    names = [row.driver for row in system.rows if row.driver is not None]
+    units = np.array([motion.solving_order.unit(name) for name in names])
+    fastest = int(np.argmax(np.abs(rates))) if len(rates) else 0
+    moves = bool(len(rates)) and abs(rates[fastest]) > STILL * float(np.max(np.abs(state)))
+    by = rates[fastest] * units[fastest] if moves else state[int(np.argmax(np.abs(state)))]
+    state = state / by
+    drivers = {name: float(v) + 0.0 if moves else 0.0 for name, v in zip(names, rates * units / by, strict=True)}
+    twists = {name: Twist(complex(state[k], state[k + 1]) * motion.size, float(state[k + 2]))
+              for name, k in sorted(system.column.items(), key=lambda one: list(motion.mechanism.links).index(one[0]))}  # fmt: skip
+    velocities = {}
+    for letter, links in motion.mechanism.carriers.items():
+        link = links[0]
+        if FRAME not in links:
+            point = complex(np.ravel(motion.mechanism.geometry.points[link][letter])[0])
+            own = pose.poses[link]
+            arm = own.at(point).c[0] - own.z.c[0]
+            velocities[letter] = complex(twists[link].velocity + 1j * twists[link].angular_velocity * arm)
+    return PoseTangent(number, drivers, twists, velocities)
+
+
+def _of_outputs(motion: Motion, names: Sequence[str], strict: bool) -> Iterator[Singularity]:
+    """Yield the dead points of outputs. Raises InvalidInput where given ones have none, unless it is not strict."""
+    system = _Equations(motion)
+    for name in names:
+        try:
+            found = dead_points(motion, name)
+        except InvalidInput:
+            if strict:
+                raise
+            continue
+        link = name.rpartition(".")[0]
+        links = (link,) if link in motion.mechanism.links else motion.pairs and motion.solving_order.pairs[link].members[1:2] \
+            if link in motion.solving_order.pairs else ()
+        for design, place, until in zip(found.at.design.tolist(), found.at.place.tolist(), found.until.tolist(), strict=True):
+            pose = _pose_at(system, design, place)
+            null = _without(_spaces(pose.with_free_driver(pose.whole[0]))[0], _idle(pose))
+            tangents = (_tangent(pose, null[:, 0], 1),) if null.shape[1] == 1 else ()
+            groups = tuple(g.name for g in motion.structure.groups if not set(g.links).isdisjoint(links))
+            yield Singularity(
+                0, DEAD, _design(motion, design), place, until, _drivers_at(motion, design, place),
+                _time(motion, design, place), groups, links, name, tangents,
+                tuple(replace(one, followed=True) for one in tangents), True, False, pose.poses, motion,
+            )  # fmt: skip
