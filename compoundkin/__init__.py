@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from compoundkin.analysis.checks import verify
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.analysis.interference import interference
+    from compoundkin.analysis.singularities import singularities
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.dynamics.force_analysis import force_analysis
@@ -114,6 +115,7 @@ __all__ = [
     "roll_around",
     "save",
     "simulate",
+    "singularities",
     "slide",
     "slot",
     "solve",
@@ -156,6 +158,7 @@ _LATE = {
     "report": "view.report",
     "save": "files",
     "simulate": "dynamics.simulation.forward_dynamics",
+    "singularities": "analysis.singularities",
     "solve": "kinematics",
     "study": "studies.study",
     "tolerance": "studies.tolerances.tolerance",

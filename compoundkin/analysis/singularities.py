@@ -27,10 +27,12 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, degrees, wrapped
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase
 from compoundkin.base.errors import ChangePointWarning, InvalidInput, UnassembledPoses
+from compoundkin.base.linear import zeros_of_forms
 from compoundkin.base.newton import StoppingRule, gauss_newton
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.configuration import dimensions_at
 from compoundkin.kinematics.driver_values import fit, mapped
 from compoundkin.kinematics.extremes.dead_points import dead_points
 from compoundkin.kinematics.extremes.motion_between import between, inputs_between, times_between
@@ -57,22 +59,25 @@ BENDS = 1.5
 # Intervals are halved to this part of the way between two poses: rounding of poses, next to change points 1e-11, is
 # less than what the block changes over it.
 FINEST = 2.0**-30
+# Not in the middle: a singular place is often a pose or halfway between two, where a group may have no direction.
+DIVIDED = 0.4871
 # Singular places nearer than this (of a pose) are one.
 ONE = 1e-3
+# A place where the least singular value is below this is resolved: rounding of poses.
+RESOLVED = 1e-10
 PLACES_AT_ONCE = 512
 # Second derivatives (rows of length 1, unit vectors) below this are zero, and so are discriminants by this part of
 # theirs: poses, and with them null spaces, are known to some 1e-10.
 FLAT = 1e-7
-# A branch is confirmed by a step of this length (radians, parts of the size) both ways, corrected: it deviates from its
+# A branch is confirmed by a step of this length (radians, parts of the unit) both ways, corrected: it deviates from its
 # tangent by the square, so by a small part of the step.
 STEP, DEVIATES = 1e-3, 0.2
-# Forms of more than two unknowns are solved from so many random directions, so often corrected; two of the solutions
-# are one if they differ by less than ALIKE.
-STARTS, CORRECTIONS, ALIKE, SEED = 400, 60, 1e-4, 11
 # Beside the pose (of a pose) the motion shows which branch it takes: so near that it has not yet turned by 0.1.
 BESIDE, ALONG = 0.01, 0.9
 # Rates below this part of a tangent are zero.
 STILL = 1e-6
+# Corrections take so many steps at most, and leave no more; limit positions are polished so often.
+STEPS, CLOSED, POLISHED = 40, 1e-9, 4
 REST = StoppingRule(exact=1e-15, rounding=1e-12, longest=0.3, patience=10, gain=0.9)
 
 
@@ -88,8 +93,9 @@ class PoseTangent(ShortRepr):
     """A direction in which a mechanism can move from a pose: rates of drivers, twists of links, velocities of points.
 
     The driver that moves has the rate 1 (rad/s, or one length/s), so that angular velocities are velocity ratios; where
-    none moves, the fastest link moves at 1 rad/s or one size/s. The opposite direction is the same branch. Branches are
-    numbered from 1, those `followed` by the motion first. `multiplicity` is 2 where two branches touch.
+    none moves, the fastest link turns at 1 rad/s or shifts by the longest link's length a second. The opposite
+    direction is the same branch. Branches are numbered from 1, those `followed` by the motion first; `multiplicity` is
+    2 where two branches touch.
     """
 
     number: int
@@ -98,6 +104,18 @@ class PoseTangent(ShortRepr):
     velocities: Mapping[str, complex]
     followed: bool = False
     multiplicity: int = 1
+
+    @property
+    def in_words(self) -> str:
+        """The angular velocities of links, and the speeds of those that do not turn."""
+        turning = STILL * max((abs(twist.angular_velocity) for twist in self.twists.values()), default=0.0)
+        speeds = (*map(abs, self.velocities.values()), *(abs(twist.velocity) for twist in self.twists.values()))
+        shifting = STILL * max(speeds, default=0.0)
+        return ", ".join(
+            f"{name} {twist.angular_velocity:.6g}" if abs(twist.angular_velocity) > turning
+            else f"{name} shifts {abs(twist.velocity):.6g}" if abs(twist.velocity) > shifting else f"{name} rests"
+            for name, twist in self.twists.items()
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,9 +127,9 @@ class Singularity(ShortRepr):
     "architecture", singular from `place` to `until`.
     `place` counts poses from 0, in between fractional; `drivers` are their values there, `poses` those of all links.
     `groups` and `links` are those whose equations are singular. `openings` are motions for which the drivers would not
-    have to move, as far as velocities tell; at a dead point that of the mechanism while the output rests. `branches` are
-    the tangents of the motions through the pose. They are `finite` where second derivatives tell them apart; else there
-    is a family of directions besides, and only isolated ones and those along the motion are listed.
+    have to move, as far as velocities tell; at a dead point that of the mechanism while the output rests. `branches`
+    are the tangents of the motions through the pose. They are `finite` where second derivatives tell them apart; else
+    there is a family of directions besides, and only isolated ones and those along the motion are listed.
     """
 
     number: int
@@ -142,16 +160,22 @@ class Singularity(ShortRepr):
         count = len(self.branches)
         if self.kind == DEAD:
             return f"{self.output} turns back"
+        if self.kind == ARCHITECTURE:
+            return "singular all along"
         if not self.finite:
             one = f"{count_phrase(count, 'branch', 'branches')}, and " if count else ""
             return f"{one}a family of directions that second derivatives do not tell apart"
         if self.kind == LIMIT:
-            return "one smooth branch, the driver turns back" if self.turns_back else "one smooth branch, the driver rests"
+            return f"one smooth branch, the driver {'turns back' if self.turns_back else 'rests'}"
         if not count:
             return "no branch leaves: the pose is isolated"
         if count == 1 and self.branches[0].multiplicity > 1:
             return "two branches that touch"
-        return f"{count_phrase(count, 'branch', 'branches')} meet" if count > 1 else "one branch, others open in velocity only"
+        return (
+            f"{count_phrase(count, 'branch', 'branches')} meet"
+            if count > 1
+            else "one branch, others open in velocity only"
+        )
 
     def text(self) -> str:
         """Return it with its branches as text, angles in degrees."""
@@ -161,9 +185,9 @@ class Singularity(ShortRepr):
     def values(self) -> str:
         """The drivers' values in words, angles in degrees."""
         driven, size = self.motion.structure.driven_angles, self.motion.size
-        told = (f"{name} {np.round(degrees(v), 7) + 0.0:.7g} deg" if driven[name]
-                else f"{name} {np.round(v / size, 10) * size + 0.0:.7g}" for name, v in self.drivers.items())  # fmt: skip
-        return ", ".join(told)
+        lengths = {name: f"{np.round(value / size, 10) * size + 0.0:.7g}" for name, value in self.drivers.items()}
+        angles = {name: f"{np.round(degrees(value), 7) + 0.0:.7g} deg" for name, value in self.drivers.items()}
+        return ", ".join(f"{name} {(angles if driven[name] else lengths)[name]}" for name in self.drivers)
 
     @property
     def _where(self) -> str:
@@ -176,15 +200,7 @@ class Singularity(ShortRepr):
 
     def _branches(self) -> Iterator[str]:
         for one in self.branches if self.kind != DEAD else ():
-            rates = (f"{name} {twist.angular_velocity:.6g}" for name, twist in rounded(one).items())
-            yield f"  branch {one.number}{' (followed)' if one.followed else ''}: angular velocities {', '.join(rates)}"
-
-
-def rounded(tangent: PoseTangent) -> dict[str, Twist]:
-    """Return the twists of moving links, what is rounding being zero."""
-    least = STILL * max((abs(twist.angular_velocity) for twist in tangent.twists.values()), default=0.0)
-    return {name: Twist(twist.velocity, twist.angular_velocity if abs(twist.angular_velocity) > least else 0.0)
-            for name, twist in tangent.twists.items()}  # fmt: skip
+            yield f"  branch {one.number}{' (followed)' if one.followed else ''}: {one.in_words}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -234,23 +250,27 @@ def singularities(what: Motion | Mechanism | Structure, outputs: Sequence[str] =
     >>> from compoundkin.files import load
     >>> print(singularities(load("parallelogram"), ["follower.angle"]).text())
     1 crank 0 deg (pose 0): change point of coupler, follower; 2 branches meet
-      branch 1 (followed): angular velocities crank 1, coupler 0, follower 1
-      branch 2: angular velocities crank 1, coupler -1, follower -1
+      branch 1 (followed): crank 1, coupler shifts 30, follower 1
+      branch 2: crank 1, coupler -2, follower -3
     2 crank 180 deg (pose 36): change point of coupler, follower; 2 branches meet
-      branch 1 (followed): angular velocities crank 1, coupler 0, follower 1
-      branch 2: angular velocities crank 1, coupler 0.333333, follower -0.333333
+      branch 1 (followed): crank 1, coupler shifts 30, follower 1
+      branch 2: crank 1, coupler 0.666667, follower -0.333333
     """
     motion = what if isinstance(what, Motion) else _solved(what)
-    names = [one.coordinate for one in outputs_of(motion, chosen_outputs(motion, outputs)) if not one.is_point and one.rate]
-    found = [*_of_equations(motion), *_of_outputs(motion, names, bool(outputs))]
-    found.sort(key=lambda one: (one.design, one.place, one.kind == DEAD))
-    return Singularities(motion, tuple(replace(one, number=k) for k, one in enumerate(found, start=1)))
+    own = outputs_of(motion, chosen_outputs(motion, outputs))
+    names = [one.coordinate for one in own if not one.is_point and one.rate]
+    return _numbered(motion, [*_of_equations(motion), *_of_outputs(motion, names, bool(outputs))])
 
 
 @checked
 def singular_poses(motion: Motion) -> Singularities:
     """Return the singular poses along a motion without the dead points of its outputs. See `singularities`."""
-    return Singularities(motion, tuple(replace(one, number=k) for k, one in enumerate(_of_equations(motion), start=1)))
+    return _numbered(motion, _of_equations(motion))
+
+
+def _numbered(motion: Motion, found: list[Singularity]) -> Singularities:
+    found.sort(key=lambda one: (one.design, one.place, one.kind == DEAD))
+    return Singularities(motion, tuple(replace(one, number=k) for k, one in enumerate(found, start=1)))
 
 
 def _solved(what: Mechanism | Structure) -> Motion:
@@ -320,6 +340,15 @@ class _Equations:
         return {FRAME: 0, **known}
 
     @cached_property
+    def unit(self) -> float:
+        """The unit of lengths: that of the longest moving link, so that turning and shifting it count alike."""
+        points = self.motion.mechanism.geometry.points
+        own = [
+            np.stack([np.ravel(p)[0] for p in points[name].values()]) for name in self.links if len(points[name]) > 1
+        ]
+        return max((float(np.abs(row[:, None] - row).max()) for row in own), default=0.0) or self.motion.size
+
+    @cached_property
     def links(self) -> tuple[str, ...]:
         """The moving links in solving order."""
         return tuple(sorted(self._equations.links, key=lambda name: self.level[name]))
@@ -338,7 +367,11 @@ class _Equations:
     def rows(self) -> tuple[_Row, ...]:
         """All rows: what pairs hold, then the drivers' coordinates."""
         free = len(self._equations.pairs)
-        held = [_Row(k, i, None, 1.0, self._last(pair)) for k, pair in enumerate(self.pairs[:free]) for i in range(pair.held)]
+        held = [
+            _Row(k, i, None, 1.0, self._last(pair))
+            for k, pair in enumerate(self.pairs[:free])
+            for i in range(pair.held)
+        ]
         drives = zip(self.motion.mechanism.drives, self._equations.driven, strict=True)
         return (*held, *(_Row(free + k, pair.held, drive.name, float(pair.driven_by(drive.link)), self._last(pair))
                          for k, (drive, pair) in enumerate(drives)))  # fmt: skip
@@ -378,8 +411,8 @@ class _Equations:
         return _Poses(poses, ends, there.failed.ravel() == 0)
 
     def tables(self, poses: Mapping[str, Pose], ends: Sequence[Ends], count: int) -> list[Number]:
-        """Return the Jacobian of every pair, (count, rows, 3 members), x and y in parts of the size."""
-        size, found = self.motion.size, []
+        """Return the Jacobian of every pair, (count, rows, 3 members), x and y in parts of the unit."""
+        size, found = self.unit, []
         for pair, sides in zip(self.pairs, ends, strict=True):
             own = pair.jacobian(sides, tuple(poses[name] for name in pair.members))
             own = np.asarray(own) * np.tile([size, size, 1.0], len(pair.members))
@@ -389,14 +422,14 @@ class _Equations:
     def matrix(self, rows: Sequence[_Row], links: Sequence[str], tables: Sequence[Number]) -> tuple[Number, Number]:
         """Return rows by some links, (count, rows, 3 links), and their lengths over all links.
 
-        Rows of drivers are not scaled: they are radians, or parts of the size.
+        Rows of drivers are not scaled: they are radians, or parts of the unit.
         """
         at = {name: 3 * k for k, name in enumerate(links)}
         count = len(tables[0])
         found, lengths = np.zeros((count, len(rows), 3 * len(links))), np.ones((count, len(rows)))
         for i, row in enumerate(rows):
             pair, entry = self.pairs[row.pair], tables[row.pair][:, row.entry] * row.sign
-            size = 1.0 if row.driver is None or pair.free_is_angle else self.motion.size
+            size = 1.0 if row.driver is None or pair.free_is_angle else self.unit
             for side, name in enumerate(pair.members):
                 if name in at:
                     found[:, i, at[name] : at[name] + 3] += entry[:, 3 * side : 3 * side + 3] / size
@@ -452,10 +485,12 @@ class _Search:
             return [_Spot(0.0, 0.0)] if np.nanmin(self.least, initial=np.inf) < SINGULAR else []
         s = stretches_of(motion)
         mine = s.design == self.design
-        ends = np.stack([s.low[mine], s.high[mine]], axis=1)
-        if not len(ends):
-            return []
-        index = self._evaluate(ends.ravel()).reshape(ends.shape)
+        ends = self._divided(np.stack([s.low[mine], s.high[mine]], axis=1))
+        # poses without an assembled neighbour are on no stretch
+        alone = np.flatnonzero(
+            np.broadcast_to(motion.failed, (motion.inputs.designs, motion.inputs.poses))[self.design] == 0
+        )
+        index = self._evaluate(np.concatenate([ends.ravel(), alone]))[: ends.size].reshape(ends.shape)
         groups = range(len(self.system.blocks))
         rows = np.concatenate([self._alive(np.column_stack([index, np.full(len(index), g)])) for g in groups])
         whole = list[tuple[float, float]]()
@@ -464,7 +499,7 @@ class _Search:
             rows, low, high = (part[high - low > FINEST] for part in (rows, low, high))
             if not len(rows):
                 break
-            middle = self._evaluate(0.5 * (low + high))
+            middle = self._evaluate(low + DIVIDED * (high - low))
             flat = (high - low > ONE) & np.all(
                 [self.least[part, rows[:, 2]] < SINGULAR for part in (rows[:, 0], middle, rows[:, 1])], axis=0
             )
@@ -474,9 +509,23 @@ class _Search:
             rows = self._alive(np.concatenate(halves))
         return self._joined(whole)
 
+    def _divided(self, ends: Number) -> Number:
+        """Return intervals divided next to the change points that the motion knows: their places are known at once."""
+        for row in self.system.motion.change_points.values():
+            known = row[min(self.design, len(row) - 1)]
+            for place in known[np.isfinite(known)]:
+                for cut in (place - FINEST, place + FINEST):
+                    within = (ends[:, 0] < cut) & (cut < ends[:, 1])
+                    after = np.stack([np.full(int(within.sum()), cut), ends[within, 1]], axis=1)
+                    ends[within, 1] = cut
+                    ends = np.concatenate([ends, after])
+        return ends
+
     def _evaluate(self, places: Number) -> Number:
         """Return the indices of places, the blocks there being known."""
         distinct, back = np.unique(places, return_inverse=True)
+        if not len(distinct):
+            return back
         start, system = len(self.places), self.system
         least, blocks = [], list[list[Number]]()
         for k in range(0, len(distinct), PLACES_AT_ONCE):
@@ -484,8 +533,8 @@ class _Search:
             there = system.at(self.design, part)
             tables = system.tables(there.links, there.ends, len(part))
             own = [system.matrix(block.rows, block.links, tables)[0] for block in system.blocks]
-            least.append(np.stack([_least(m, block.kept, there.good) for m, block in zip(own, system.blocks, strict=True)],
-                                  axis=1))  # fmt: skip
+            values = [_least(m, block.kept, there.good) for m, block in zip(own, system.blocks, strict=True)]
+            least.append(np.stack(values, axis=1))
             blocks.append(own)
         joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)]
         self.blocks = [np.concatenate(both) for both in zip(self.blocks, joined, strict=True)] if start else joined
@@ -503,7 +552,9 @@ class _Search:
             values = self.least[a, g], self.least[b, g]
             wide = self.places[b] - self.places[a] > ONE
             flat = (values[0] < SINGULAR) & (values[1] < SINGULAR)
-            kept[mine] = np.where(wide & flat, True, values[0] + values[1] <= BENDS * change)
+            # what is next to a singular place is that place
+            found = ~wide & (np.minimum(*values) < RESOLVED)
+            kept[mine] = (wide & flat) | (~found & (values[0] + values[1] <= BENDS * change))
         return rows[kept]
 
     def _joined(self, whole: list[tuple[float, float]]) -> list[_Spot]:
@@ -513,16 +564,18 @@ class _Search:
         order = order[best[order] < SINGULAR]
         groups, spots = list[list[int]](), list[_Spot]()
         for k in order.tolist():
-            if groups and (self.places[k] - self.places[groups[-1][-1]] < ONE or any(
-                a <= self.places[groups[-1][-1]] and self.places[k] <= b for a, b in whole
-            )):
+            if groups and (
+                self.places[k] - self.places[groups[-1][-1]] < ONE
+                or any(a <= self.places[groups[-1][-1]] and self.places[k] <= b for a, b in whole)
+            ):
                 groups[-1].append(k)
             else:
                 groups.append([k])
         for one in groups:
             first, last = self.places[one[0]], self.places[one[-1]]
-            if last - first > ONE:
-                spots.append(_Spot(float(first), float(last)))
+            if any(a < last and first < b for a, b in whole):
+                spots.append(_Spot(*(float(np.round(p)) if abs(p - np.round(p)) < SAME_PLACE else float(p)
+                                     for p in (first, last))))  # fmt: skip
             else:
                 place = self._known(float(self.places[one[int(np.argmin(best[one]))]]))
                 spots.append(_Spot(place, place))
@@ -552,7 +605,7 @@ def _least(matrix: Number, kept: int, good: Number) -> Number:
 
 
 class _Way(NamedTuple):
-    """How drivers go through a pose: a unit vector of their path (radians, parts of the size), and how it bends.
+    """How drivers go through a pose: a unit vector of their path (radians, parts of the unit), and how it bends.
 
     `across` are unit vectors in the other directions, in rows.
     """
@@ -564,16 +617,17 @@ class _Way(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Pose:
-    """The equations about one pose. A state is by how much links are moved from there: x, y in sizes, and angles."""
+    """The equations about one pose. A state is by how much links are moved from there: x, y in units, and angles."""
 
     system: _Equations
     poses: Mapping[str, Pose]
     ends: tuple[Ends, ...]
+    points: Mapping[str, Mapping[str, complex]]
     way: _Way
 
     def moved(self, states: Number) -> dict[str, Pose]:
         """Return the poses in states (n, 3 links) times t, up to t squared; of one state at t = 1."""
-        size, found = self.system.motion.size, {FRAME: FIXED}
+        size, found = self.system.unit, {FRAME: FIXED}
         series = states.ndim > 1
         for name, k in self.system.column.items():
             pose = self.poses[name]
@@ -643,7 +697,9 @@ class _Pose:
         values = 2.0 * self._values(states, 2)
         paces = self.whole[0][self._drivers] @ states.T
         bent = (self.way.along @ paces)[:, None] ** 2 * self.way.bend
-        return np.concatenate([values[:, ~self._drivers], (values[:, self._drivers] - bent) @ self.way.across.T], axis=1)
+        return np.concatenate(
+            [values[:, ~self._drivers], (values[:, self._drivers] - bent) @ self.way.across.T], axis=1
+        )
 
     def bending(self, state: Number) -> Number:
         """Return the second derivatives of the drivers' coordinates along one state."""
@@ -651,20 +707,23 @@ class _Pose:
 
     def corrected(self, state: Number) -> Number | None:
         """Return the nearest state that closes, drivers on their path. None where none is near."""
+
         def system(x: Number) -> tuple[Number, Number]:
             away = self._values(x, 0) - np.where(self._drivers, self._start, 0.0)
-            angles = np.array([r.driver is not None and self.system.pairs[r.pair].free_is_angle for r in self.system.rows])
+            angles = np.array(
+                [r.driver is not None and self.system.pairs[r.pair].free_is_angle for r in self.system.rows]
+            )
             away = np.where(angles, wrapped(away), away)
             return self.with_free_driver(away), self.with_free_driver(self.rows_at(x))
 
-        found = gauss_newton(system, lambda m, r: np.linalg.lstsq(m, r, rcond=1e-12)[0], state, 40, REST)
-        return found.x if found.residual < 1e-9 else None
+        found = gauss_newton(system, lambda m, r: np.linalg.lstsq(m, r, rcond=REST.rounding)[0], state, STEPS, REST)
+        return found.x if found.residual < CLOSED else None
 
 
-def _way(motion: Motion, design: int, place: float) -> _Way:
+def _way(system: _Equations, design: int, place: float) -> _Way:
     """Return how the drivers go through a place; where they rest, as they do next."""
-    names = list(motion.drives)
-    units = np.array([motion.solving_order.unit(name) for name in names])
+    motion, names = system.motion, list(system.motion.drives)
+    units = np.array([1.0 if drive.is_angle else system.unit for drive in motion.drives.values()])
     last = motion.inputs.poses - 1.0
     if not names:
         return _Way(np.zeros(0), np.zeros(0), np.zeros((0, 0)))
@@ -675,15 +734,14 @@ def _way(motion: Motion, design: int, place: float) -> _Way:
         along = np.where(moving, 1.0, 0.0) if moving.any() else np.eye(len(names))[0]
     else:
         part = inputs_between(motion, np.array([design]), np.array([place]), 2, by_place=True)
-        rates = [np.array([float(np.ravel(part.drives[n][k])[0]) if k < len(part.drives[n]) else 0.0 for n in names]) / units
-                 for k in (1, 2)]  # fmt: skip
-        along = rates[0]
+        rows = [[float(np.ravel(v)[0]) for v in (*part.drives[n], 0.0, 0.0)[1:3]] for n in names]
+        along, curved = np.array(rows).T / units
         if np.linalg.norm(along) < STILL * np.linalg.norm(np.ptp(values, axis=0) / units) / max(last, 1.0):
-            away = (values - values[int(round(place))]) / units
+            away = (values - values[round(place)]) / units
             far = np.flatnonzero(np.linalg.norm(away, axis=1) > 0.0)
             along = away[far[int(np.argmin(np.abs(far - place)))]]
         else:
-            bend = rates[1] / float(along @ along)
+            bend = curved / float(along @ along)
     along = along / np.linalg.norm(along)
     across = np.linalg.svd(along[None], full_matrices=True)[2][1:]
     return _Way(along, bend, across)
@@ -693,7 +751,8 @@ def _pose_at(system: _Equations, design: int, place: float) -> _Pose:
     there = system.at(design, np.array([place]))
     poses = {name: pose.entry((0,)) for name, pose in there.links.items()}
     ends = tuple(tuple(mapped(end, _number) for end in sides) for sides in there.ends)
-    return _Pose(system, poses, ends, _way(system.motion, design, place))
+    points = dimensions_at(system.motion.structure, design, round(place))
+    return _Pose(system, poses, ends, points, _way(system, design, place))
 
 
 def _number(value: Number) -> Number:
@@ -712,8 +771,8 @@ def _idle(pose: _Pose) -> Number:
     system, motion = pose.system, pose.system.motion
     found = np.zeros((3 * len(system.links), len(motion.structure.passive)))
     for k, one in enumerate(motion.structure.passive):
-        point = complex(np.ravel(motion.mechanism.geometry.points[one.link][one.at])[0])
-        arm = 1j * (pose.poses[one.link].z.c[0] - pose.poses[one.link].at(point).c[0]) / motion.size
+        own = pose.poses[one.link]
+        arm = 1j * (own.z.c[0] - own.at(pose.points[one.link][one.at]).c[0]) / system.unit
         first = system.column[one.link]
         found[first : first + 3, k] = arm.real, arm.imag, 1.0
     return np.linalg.qr(found)[0] if found.size else found
@@ -731,6 +790,8 @@ def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | Non
     """Return what a pose is at which some block is singular. None where others hold it."""
     middle = 0.5 * (spot.place + spot.until)
     pose = _pose_at(system, design, middle)
+    if not np.isfinite(pose.whole[0]).all():
+        return None
     idle = _idle(pose)
     opened = _without(_spaces(pose.whole[0])[0], idle)
     if not opened.shape[1]:
@@ -748,8 +809,10 @@ def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | Non
         roots, finite = zeros_of_forms(forms)
         tangents = [(null @ root, times) for root, times in roots if _leads_on(pose, null @ root)]
         kind = CHANGE if sum(times for _, times in tangents) > 1 or not finite else SHAKY
-    if spot.until > spot.place and _drivers_at(system.motion, design, spot.until) != _drivers_at(system.motion, design, spot.place):
-        kind = ARCHITECTURE
+    if spot.until > spot.place:
+        values = _drivers_at(system.motion, design, spot.place)
+        # else the drivers rest at a singular pose
+        kind = kind if values == _drivers_at(system.motion, design, spot.until) else ARCHITECTURE
     ways = _ways_of_motion(pose, design, middle)
     for way in ways if not finite else ():
         if not any(_alike(way, other) for other, _ in tangents):
@@ -798,11 +861,10 @@ def _turning(pose: _Pose, tangent: Number) -> float:
 
 def _at_limit(pose: _Pose, values: Mapping[str, float]) -> tuple[_Pose, dict[str, float]]:
     """Return the pose at which the drivers stand still along a smooth branch, by Newton's method, and their values."""
-    motion = pose.system.motion
-    for _ in range(4):
+    for _ in range(POLISHED):
         tangent = _spaces(pose.with_free_driver(pose.whole[0]))[0][:, 0]
         pace, bend = pose.pace(tangent), _turning(pose, tangent)
-        if abs(bend) < FLAT or abs(pace) < 1e-14:
+        if abs(bend) < FLAT or abs(pace) < REST.exact:
             break
         state = pose.corrected(-pace / bend * tangent)
         if state is None or np.linalg.norm(state) > ONE:
@@ -810,13 +872,13 @@ def _at_limit(pose: _Pose, values: Mapping[str, float]) -> tuple[_Pose, dict[str
         change = pose._values(state, 0) - pose._start
         drives = [row for row in pose.system.rows if row.driver is not None]
         gone = {row.driver: float(v) for row, v in zip(drives, change[pose._drivers], strict=True)}
-        values = {name: v + _gone(motion, name, gone[name]) for name, v in values.items()}
+        values = {name: v + _gone(pose.system, name, gone[name]) for name, v in values.items()}
         pose = replace(pose, poses=_settled(pose.moved(state)))
     return pose, dict(values)
 
 
-def _gone(motion: Motion, name: str, away: float) -> float:
-    return float(wrapped(away)) if motion.drives[name].is_angle else away * motion.size
+def _gone(system: _Equations, name: str, away: float) -> float:
+    return float(wrapped(away)) if system.motion.drives[name].is_angle else away * system.unit
 
 
 def _settled(poses: Mapping[str, Pose]) -> dict[str, Pose]:
@@ -834,68 +896,6 @@ def _forms(pose: _Pose, null: Number, left: Number) -> Number:
     for k, (a, b) in enumerate(zip(i.tolist(), j.tolist(), strict=True)):
         forms[:, a, b] = forms[:, b, a] = own[a] if a == b else 0.5 * (values[k] - own[a] - own[b])
     return forms
-
-
-def zeros_of_forms(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
-    """Return the real zeros that quadratic forms (count, n, n) have in common, and whether they are finite in number.
-
-    Each is a unit vector with its multiplicity, one of a pair of opposite ones.
-
-    >>> zeros_of_forms(np.array([[[1.0, 0.0], [0.0, -1.0]]]))[0][0][0].round(6).tolist()
-    [0.707107, 0.707107]
-    >>> zeros_of_forms(np.array([np.eye(2)])), zeros_of_forms(np.zeros((1, 2, 2)))
-    (([], True), ([], False))
-    """
-    n = forms.shape[-1]
-    left = np.reshape(forms, (len(forms), n * n))
-    _, values, right = np.linalg.svd(left, full_matrices=False)
-    own = right[values > FLAT * max(1.0, float(values[0]))].reshape(-1, n, n)
-    if not len(own):
-        return [], False
-    return _of_two(own) if n == 2 else _of_many(own)
-
-
-def _of_two(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
-    """Return the zeros of forms of two unknowns: those of the first that are zeros of all."""
-    a, b, c = forms[0, 0, 0], forms[0, 0, 1], forms[0, 1, 1]
-    apart = b * b - a * c
-    if apart < -FLAT:
-        return [], True
-    root = np.sqrt(max(apart, 0.0)) if apart > FLAT else 0.0
-    # the larger of both sums loses no digits
-    q = -(b + np.copysign(root, b))
-    found = [np.array([q, a]), np.array([c, q])] if root else [np.array([q, a]) if abs(a) > abs(c) else np.array([c, q])]
-    units = [v / np.linalg.norm(v) for v in found]
-    good = [v for v in units if np.all(np.abs(np.einsum("i,kij,j->k", v, forms, v)) < np.sqrt(FLAT))]
-    return [(v * np.sign(v[np.argmax(np.abs(v))]), 1 if root else 2) for v in good], True
-
-
-def _of_many(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
-    """Return the zeros of forms of three unknowns or more, by Newton's method from many directions.
-
-    They are not finite in number where they are not isolated and more than isolated ones could be.
-    """
-    n = forms.shape[-1]
-    rng = np.random.default_rng(SEED)
-    x = rng.standard_normal((STARTS, n))
-    for _ in range(CORRECTIONS):
-        x /= np.linalg.norm(x, axis=1, keepdims=True)
-        slopes = np.einsum("kij,sj->ski", forms, x)
-        values = np.einsum("ski,si->sk", slopes, x)
-        matrix = np.concatenate([2.0 * slopes, x[:, None]], axis=1)
-        right = np.concatenate([-values, np.zeros((STARTS, 1))], axis=1)
-        x = x + np.einsum("sij,sj->si", np.linalg.pinv(matrix, rcond=1e-10), right)
-    x /= np.linalg.norm(x, axis=1, keepdims=True)
-    worst = np.abs(np.einsum("si,kij,sj->sk", x, forms, x)).max(axis=1)
-    found, isolated = list[Number](), list[bool]()
-    for v in x[worst < FLAT**1.5]:
-        if not any(abs(abs(v @ other) - 1.0) < ALIKE**2 for other in found):
-            slopes = np.concatenate([2.0 * forms @ v, v[None]])
-            found.append(v * np.sign(v[np.argmax(np.abs(v))]))
-            isolated.append(bool(len(slopes) >= n and np.linalg.svd(slopes, compute_uv=False)[n - 1] > ALIKE))
-    finite = isolated.count(False) <= 2 ** (n - 1)
-    kept = [(v, 1 if single else 2) for v, single in zip(found, isolated, strict=True) if single or finite]
-    return sorted(kept, key=lambda one: tuple(one[0].round(6))), finite
 
 
 def _leads_on(pose: _Pose, tangent: Number) -> bool:
@@ -918,7 +918,7 @@ def _ways_of_motion(pose: _Pose, design: int, place: float) -> list[Number]:
         state = np.zeros(3 * len(system.links))
         for name, first in system.column.items():
             one, own = there.links[name].entry((int(k),)), pose.poses[name]
-            shift = (one.z.c[0] - own.z.c[0]) / system.motion.size
+            shift = (one.z.c[0] - own.z.c[0]) / system.unit
             state[first : first + 3] = shift.real, shift.imag, float(np.angle(one.u.c[0] / own.u.c[0]))
         state = state - (idle := _idle(pose)) @ (idle.T @ state)
         if np.linalg.norm(state) > 0.0:
@@ -935,21 +935,21 @@ def _tangent(pose: _Pose, state: Number, number: int = 0) -> PoseTangent:
     system, motion = pose.system, pose.system.motion
     rates = pose.whole[0][pose._drivers] @ state
     names = [row.driver for row in system.rows if row.driver is not None]
-    units = np.array([motion.solving_order.unit(name) for name in names])
+    units = np.array([1.0 if motion.drives[name].is_angle else system.unit for name in names])
     fastest = int(np.argmax(np.abs(rates))) if len(rates) else 0
     moves = bool(len(rates)) and abs(rates[fastest]) > STILL * float(np.max(np.abs(state)))
     by = rates[fastest] * units[fastest] if moves else state[int(np.argmax(np.abs(state)))]
     state = state / by
     drivers = {name: float(v) + 0.0 if moves else 0.0 for name, v in zip(names, rates * units / by, strict=True)}
-    twists = {name: Twist(complex(state[k], state[k + 1]) * motion.size, float(state[k + 2]))
-              for name, k in sorted(system.column.items(), key=lambda one: list(motion.mechanism.links).index(one[0]))}  # fmt: skip
+    first = {name: system.column[name] for name in motion.mechanism.links if name in system.column}
+    twists = {name: Twist(complex(state[k], state[k + 1]) * system.unit, float(state[k + 2]))
+              for name, k in first.items()}  # fmt: skip
     velocities = {}
     for letter, links in motion.mechanism.carriers.items():
         link = links[0]
         if FRAME not in links:
-            point = complex(np.ravel(motion.mechanism.geometry.points[link][letter])[0])
             own = pose.poses[link]
-            arm = own.at(point).c[0] - own.z.c[0]
+            arm = own.at(pose.points[link][letter]).c[0] - own.z.c[0]
             velocities[letter] = complex(twists[link].velocity + 1j * twists[link].angular_velocity * arm)
     return PoseTangent(number, drivers, twists, velocities)
 
@@ -964,10 +964,12 @@ def _of_outputs(motion: Motion, names: Sequence[str], strict: bool) -> Iterator[
             if strict:
                 raise
             continue
-        link = name.rpartition(".")[0]
-        links = (link,) if link in motion.mechanism.links else motion.pairs and motion.solving_order.pairs[link].members[1:2] \
-            if link in motion.solving_order.pairs else ()
-        for design, place, until in zip(found.at.design.tolist(), found.at.place.tolist(), found.until.tolist(), strict=True):
+        owner = name.rpartition(".")[0]
+        pair = motion.solving_order.pairs.get(owner)
+        links = (owner,) if pair is None or owner in motion.mechanism.links else pair.members[1:2]
+        for design, place, until in zip(
+            found.at.design.tolist(), found.at.place.tolist(), found.until.tolist(), strict=True
+        ):
             pose = _pose_at(system, design, place)
             null = _without(_spaces(pose.with_free_driver(pose.whole[0]))[0], _idle(pose))
             tangents = (_tangent(pose, null[:, 0], 1),) if null.shape[1] == 1 else ()

@@ -231,3 +231,83 @@ def _sum_of_products(one: Sequence[Number], other: Sequence[Number]) -> Number:
         if not (_is_zero(a) or _is_zero(c)):
             total = a * c if _is_zero(total) else total + a * c
     return total
+
+
+# Quadratic forms below this part of the largest, or of unity, are zero, and so are discriminants: what they are made of
+# is known to some 1e-10.
+FLAT = 1e-7
+
+
+# Forms of more than two unknowns are solved from so many random directions, so often corrected; two of the solutions
+# are one if they differ by less than ALIKE.
+STARTS, CORRECTIONS, ALIKE, SEED = 400, 60, 1e-4, 11
+
+
+# Beyond so many unknowns, of up to 64 zeros, they are not looked for.
+MOST_UNKNOWNS = 7
+
+
+def zeros_of_forms(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
+    """Return the real zeros that quadratic forms (count, n, n) have in common, and whether they are finite in number.
+
+    Each is a unit vector with its multiplicity, one of a pair of opposite ones.
+
+    >>> zeros_of_forms(np.array([[[1.0, 0.0], [0.0, -1.0]]]))[0][0][0].round(6).tolist()
+    [0.707107, 0.707107]
+    >>> zeros_of_forms(np.array([np.eye(2)])), zeros_of_forms(np.zeros((1, 2, 2)))
+    (([], True), ([], False))
+    """
+    n = forms.shape[-1]
+    left = np.reshape(forms, (len(forms), n * n))
+    _, values, right = np.linalg.svd(left, full_matrices=False)
+    own = right[values > FLAT * max(1.0, float(values[0]))].reshape(-1, n, n)
+    if not len(own):
+        return [], False
+    return _of_two(own) if n == 2 else _of_many(own)
+
+
+def _of_two(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
+    """Return the zeros of forms of two unknowns: those of the first that are zeros of all."""
+    a, b, c = forms[0, 0, 0], forms[0, 0, 1], forms[0, 1, 1]
+    apart = b * b - a * c
+    if apart < -FLAT:
+        return [], True
+    root = np.sqrt(max(apart, 0.0)) if apart > FLAT else 0.0
+    # the larger of both sums loses no digits
+    q = -(b + np.copysign(root, b))
+    found = (
+        [np.array([q, a]), np.array([c, q])] if root else [np.array([q, a]) if abs(a) > abs(c) else np.array([c, q])]
+    )
+    units = [v / np.linalg.norm(v) for v in found]
+    good = [v for v in units if np.all(np.abs(np.einsum("i,kij,j->k", v, forms, v)) < np.sqrt(FLAT))]
+    return [(v * np.sign(v[np.argmax(np.abs(v))]), 1 if root else 2) for v in good], True
+
+
+def _of_many(forms: Number) -> tuple[list[tuple[Number, int]], bool]:
+    """Return the zeros of forms of three unknowns or more, by Newton's method from many directions.
+
+    They are not finite in number where they are not isolated and more than isolated ones could be.
+    """
+    n = forms.shape[-1]
+    if n > MOST_UNKNOWNS:
+        return [], False
+    rng = np.random.default_rng(SEED)
+    x = rng.standard_normal((STARTS, n))
+    for _ in range(CORRECTIONS):
+        x /= np.linalg.norm(x, axis=1, keepdims=True)
+        slopes = np.einsum("kij,sj->ski", forms, x)
+        values = np.einsum("ski,si->sk", slopes, x)
+        matrix = np.concatenate([2.0 * slopes, x[:, None]], axis=1)
+        right = np.concatenate([-values, np.zeros((STARTS, 1))], axis=1)
+        x = x + np.einsum("sij,sj->si", np.linalg.pinv(matrix, rcond=1e-10), right)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    worst = np.abs(np.einsum("si,kij,sj->sk", x, forms, x)).max(axis=1)
+    found, isolated = list[Number](), list[bool]()
+    for v in x[worst < FLAT**1.5]:
+        if not any(abs(abs(v @ other) - 1.0) < ALIKE**2 for other in found):
+            slopes = np.concatenate([2.0 * forms @ v, v[None]])
+            found.append(v * np.sign(v[np.argmax(np.abs(v))]))
+            isolated.append(bool(len(slopes) >= n and np.linalg.svd(slopes, compute_uv=False)[n - 1] > ALIKE))
+    finite = isolated.count(False) <= 2 ** (n - 1)
+    kept = [(v, 1 if single else 2) for v, single in zip(found, isolated, strict=True) if single or finite]
+    return sorted(kept, key=lambda one: tuple(one[0].round(6))), finite

@@ -27,6 +27,7 @@ VERBS = {
     "centres": "All instant centres at one pose, primary ones first.",
     "configurations": "Every way in which it can be assembled at one pose.",
     "circuits": "Circuits, branches and limit positions; whether the driver turns fully.",
+    "singularities": "Limit positions, change points, dead points, and the branches that meet there.",
     "workspace": "The region that a point reaches by two or three drivers.",
     "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
     "forces": "Forces in all pairs, drivers' efforts, shaking force.",

@@ -32,7 +32,7 @@ VIEWS = ("groups", "loops", "graph", "circle")
 # Options of the sketch alone.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels", "dimensions")
 # Pictures instead of the sketch: the options and the names of their values.
-ASSEMBLED = ("configurations", "circuits")
+ASSEMBLED = ("configurations", "circuits", "singularities")
 INSTEAD = {
     "structure": "view",
     "polygon": "polygon",
@@ -55,6 +55,7 @@ Examples:
   compoundkin draw six-bar --structure groups -o apart.svg
   compoundkin draw six-bar --configurations --at 35 -o configurations.svg
   compoundkin draw stephenson-iii --circuits -o circuits.svg
+  compoundkin draw parallelogram --singularities -o branches.svg
   compoundkin draw loaded.toml --at 35 --forces -o forces.svg
   compoundkin draw loaded.toml --at 35 --free-body plate -o plate.svg
 """
@@ -87,6 +88,9 @@ Examples:
 )
 @click.option(
     "--circuits", is_flag=True, help="Instead: all circuits of the driver that --at leaves out, the first of those."
+)
+@click.option(
+    "--singularities", is_flag=True, help="Instead: the singular poses of the motion, the branches that meet there."
 )
 @force_options
 @pose_options

@@ -11,6 +11,7 @@ from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
 from compoundkin.analysis.interference import Interference
+from compoundkin.analysis.singularities import Singularities
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
@@ -25,7 +26,11 @@ from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_s
 from compoundkin.view.page.markup import safe
 from compoundkin.view.page.viewer import framed_player
 from compoundkin.view.report.centres_section import centre_blocks
-from compoundkin.view.report.configurations_section import circuits_report, configurations_section
+from compoundkin.view.report.configurations_section import (
+    circuits_report,
+    configurations_section,
+    singularities_section,
+)
 from compoundkin.view.report.forces_section import assumptions, drives_blocks, reactions_blocks
 from compoundkin.view.report.interference_section import blocks_of_designs
 from compoundkin.view.report.motion_report import simulation_report
@@ -47,6 +52,7 @@ _BLOCKS: dict[type, Callable[[Any], Iterable[Block]]] = {
     MobilityAnalysis: analysis_blocks,
     Interference: blocks_of_designs,
     CamAnalysis: lambda what: cam_blocks(Sample(what.motion), what),
+    Singularities: lambda what: singularities_section(what).blocks,
 }
 
 
@@ -197,7 +203,7 @@ def _(what: Configuration) -> Iterator[str]:
 
 
 @_parts.register
-def _(what: Centres | MobilityAnalysis | Interference | CamAnalysis) -> Iterator[str]:
+def _(what: Centres | MobilityAnalysis | Interference | CamAnalysis | Singularities) -> Iterator[str]:
     yield from map(plain_block, _BLOCKS[type(what)](what))
 
 

@@ -65,3 +65,18 @@ def test_a_range_in_degrees() -> None:
 def test_mistakes(args: tuple[str, ...], code: int, text: str) -> None:
     result = run(*args)
     assert (result.exit_code, text in result.stderr) == (code, True), result.output
+
+
+def test_singularities_of_a_parallelogram() -> None:
+    result = run("singularities", "parallelogram", "--format", "json")
+    assert result.exit_code == 0, result.output
+    assert [row["kind"] for row in rows(result, "singularities")] == ["change point"] * 2
+    assert "2 branches meet" in run("singularities", "parallelogram").stdout
+    assert "velocity of C" in run("draw", "parallelogram", "--singularities").stdout
+    assert run("draw", "parallelogram", "--singularities", "--at", "35").exit_code == 2
+
+
+def test_singularities_beside_a_gap() -> None:
+    result = run("singularities", "triple-rocker", "--from", "-180", "--to", "180", "--step", "5")
+    assert result.exit_code == 3, result.output
+    assert result.stdout.count("limit position") == 2

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import prod
 
+from compoundkin.analysis.singularities import Singularities
 from compoundkin.base.arrays import degrees, first_entry
 from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit
@@ -14,7 +15,17 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.solution import first_configuration
 from compoundkin.structure import Group, Structure
-from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import (
+    NOT_SOLVED,
+    Alert,
+    Block,
+    Cell,
+    Column,
+    Outcome,
+    Paragraph,
+    Section,
+    TableBlock,
+)
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted, listed, number_text
 
@@ -27,6 +38,10 @@ TRIAD_MODES, TRIAD_BODIES = 6, 4
 FLOOR = 1e-9
 CHANGES = "Where two modes of a group meet and the motion goes on: it may change from one circuit to the other."
 CURVE = "At these dimensions there is a curve of configurations too: {} can move though no driver does."
+SINGULAR = (
+    "Found by the equations of all pairs in the poses of all links. Branches are given by the angular velocities of the"
+    " links for a driver that moves at 1 (rad/s, or length/s), and by the speeds of links that do not turn."
+)
 MISSING = "The numbers of configurations and of branches do not agree everywhere, so that a circuit may be missing."
 
 
@@ -200,6 +215,37 @@ class _CircuitSections:
             rows = tuple((t.link, self._in_unit(t.value), t.circuit, t.branch) for t in self.found.toggles)
             text = "Where a link on the frame stands still and turns back while the driver goes on."
             yield Section("toggles", "Toggle positions", (Paragraph(text), _table(columns, rows)))
+
+
+def singularities_report(found: Singularities) -> Report:
+    """Report the singular poses of a motion, and the branches that meet there."""
+    motion = found.motion
+    outcome = Outcome(True, motion.failed.size, int((motion.failed == 0).sum()))
+    return Report(motion.mechanism.title, (singularities_section(found),), outcome, motion)
+
+
+def singularities_section(found: Singularities) -> Section:
+    """List singular poses, and their branches."""
+    motion = found.motion
+    if not found:
+        return Section("singularities", "Singular poses", (Paragraph("No pose along the motion is singular."),))
+    values = tuple(Column(name, "deg" if one.is_angle else "", "fixed", FLOOR) for name, one in motion.drives.items())
+    columns = (Column("no.", style="each"), Column("pose", style="each"), *values, Column("kind"), Column("links"),
+               Column("opens", style="each"), Column("branches"))  # fmt: skip
+    angles = {name: one.is_angle for name, one in motion.drives.items()}
+    rows = list[tuple[Cell, ...]]()
+    for one in found:
+        shown = (float(degrees(value)) if angles[name] else value for name, value in one.drivers.items())
+        rows.append((one.number, one.place, *shown, one.kind, ", ".join(one.links), len(one.openings), one.meeting))
+    blocks: list[Block] = [Paragraph(SINGULAR), _table(columns, tuple(rows), keys=1)]
+    branches: tuple[tuple[Cell, ...], ...] = tuple(
+        (one.number, branch.number, "followed" if branch.followed else "", branch.in_words)
+        for one in found for branch in one.branches if not one.output
+    )  # fmt: skip
+    if branches:
+        heads = Column("no.", style="each"), Column("branch", style="each"), Column("motion"), Column("links")
+        blocks.append(_table(heads, branches, keys=2))
+    return Section("singularities", "Singular poses", tuple(blocks))
 
 
 def _table(columns: tuple[Column, ...], rows: tuple[tuple[Cell, ...], ...], keys: int = 0) -> TableBlock:

@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.analysis.characteristics.characteristics import characteristics
 from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
+from compoundkin.analysis.singularities import singular_poses
 from compoundkin.base.arguments import check_design
 from compoundkin.base.arrays import degrees
 from compoundkin.dynamics.force_analysis import loaded_forces
@@ -18,7 +19,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.model.attributes import DEGREES, PER_SECOND, unit_of
 from compoundkin.view.report.centres_section import centres_sections
-from compoundkin.view.report.configurations_section import assembly_sections
+from compoundkin.view.report.configurations_section import assembly_sections, singularities_section
 from compoundkin.view.report.forces_section import force_checks_sections, forces_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.interference_section import (
@@ -87,6 +88,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = ""
         *([forces_section(forces)] if forces is not None else []),
         *interference_sections(sample, touching),
         *gaps_sections(sample),
+        *([singularities_section(singular)] if (singular := singular_poses(motion)) else []),
         checks_section(sample, check),
         *([published_section(structure, published)] if published else []),
     )

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compoundkin.base.arrays import degrees
 from compoundkin.base.display import count_phrase
-from compoundkin.base.errors import InvalidInput, NotAssembled
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.configuration import BETWEEN, Configuration
-from compoundkin.model.attributes import unit_suffix
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.configuration import BETWEEN, Configuration, dimensions_at
+from compoundkin.kinematics.one_design import motion_of_design
+from compoundkin.kinematics.solution import quietly_solved
+from compoundkin.model.attributes import VELOCITY, unit_suffix
 from compoundkin.model.outline_shapes import outline_shapes
 from compoundkin.structure import Structure
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
@@ -35,14 +38,18 @@ from compoundkin.view.sketch.picture_options import (
 from compoundkin.view.sketch.scene import MARGIN, Scene, Window, fitted_window
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, moved_shapes, shape_corners
 from compoundkin.view.sketch.sketch_style import LINE, SMALL
+from compoundkin.view.sketch.vectors import VectorScale, vector_shapes
 
 if TYPE_CHECKING:
+    from compoundkin.analysis.singularities import Singularity
     from compoundkin.configurations.circuit import Circuit
 
 # More panels than this are not compared.
 MOST = 40
 # Panels are no larger than this, in picture units: up to so many of them such that two stand side by side, or three.
 LARGEST = {8: 340.0, MOST: 222.0}
+# The longest arrow is this part of the mechanism's size.
+LONGEST = 0.35
 # They are at least so wide, for their headings.
 NARROWEST = 200.0
 
@@ -55,6 +62,13 @@ class _ConfigurationPanel:
     said: str
     scene: Scene
     faint: tuple[Scene, ...] = ()
+    arrows: Mapping[str, complex] = field(default_factory=dict)
+
+    def tips(self) -> dict[str, complex]:
+        """The vectors of arrows in the plane, the longest of them LONGEST of the size."""
+        longest = max(map(abs, self.arrows.values()), default=0.0)
+        part = LONGEST * self.scene.mechanism.geometry.size / longest if longest else 0.0
+        return {letter: part * way for letter, way in self.arrows.items()}
 
 
 def configurations_picture(what: Drawable, options: PictureOptions) -> Picture:
@@ -111,6 +125,50 @@ def circuits_picture(what: Drawable, options: PictureOptions) -> Picture:
     count = f"{count_phrase(len(found.circuits), 'circuit')} of {found.driver}"
     branches = f"{count_phrase(len(found.branches), 'branch', 'branches')}, each in its middle"
     return _picture(structure, panels, [count, branches, *_drivers(structure, found.fixed)], "circuits", options)
+
+
+def singularities_picture(what: Drawable | Singularity, options: PictureOptions) -> Picture:
+    """Draw the singular poses of a motion, or one, a panel for each branch with the velocities of points along it.
+
+    Dead points of outputs are drawn where one is given alone. Raises InvalidInput where no pose is singular.
+    """
+    from compoundkin.analysis.singularities import Singularity, singular_poses
+
+    if isinstance(what, Singularity):
+        found: Sequence[Singularity] = [what]
+    else:
+        what, design = one_design(what, options.design)
+        motion = what if isinstance(what, Motion) else quietly_solved(structure_of(what))
+        found = singular_poses(motion_of_design(motion, design))
+    if not found:
+        remedy = "draw its dead points one by one: draw(singularities(motion)[0])"
+        raise InvalidInput(Problem("kind", "no pose along the motion is singular", remedy))
+    panels = [panel for one in found for panel in _of_singularity(one)]
+    counted = count_phrase(len(found), "singular pose")
+    notes = [counted, "arrows: velocities along each branch, the longest always alike"]
+    return _picture(found[0].motion.structure, panels, notes, "singular poses", options)
+
+
+def _of_singularity(one: Singularity) -> Iterator[_ConfigurationPanel]:
+    """Yield a panel for each branch of a singular pose, or one for the pose alone."""
+    structure = one.motion.structure
+    if not one.branches:
+        yield _ConfigurationPanel(one.name, f"{one.values}: {one.meeting}", _scene_of(one))
+    for branch in one.branches:
+        heading = one.name if len(one.branches) == 1 else f"{one.name}, branch {branch.number}"
+        moving = {letter: v for letter, v in branch.velocities.items() if letter in structure.mechanism.carriers}
+        said = f"{one.values}: {branch.in_words}{' (followed)' if branch.followed else ''}"
+        yield _ConfigurationPanel(heading, said, _scene_of(one), arrows=moving)
+
+
+def _scene_of(one: Singularity) -> Scene:
+    """The scene of a singular pose; a guide is as long as it is needed there."""
+    structure, poses = one.motion.structure, dict(one.poses)
+    design = int(np.ravel_multi_index(one.design, one.motion.shape[:-1])) if one.design else 0
+    points = dimensions_at(structure, design, int(one.place))
+    return Scene(
+        structure, poses, poses, points, ends_of(structure), outlines=outline_shapes(structure.mechanism, points)
+    )
 
 
 def _of_circuit(structure: Structure, driver: str, circuit: Circuit) -> str:
@@ -171,7 +229,7 @@ def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[
     scenes = [scene for panel in panels for scene in (panel.scene, *panel.faint)]
     if not scenes:
         return []
-    window = _window(scenes, next(size for count, size in LARGEST.items() if len(panels) <= count))
+    window = _window(panels, scenes, next(size for count, size in LARGEST.items() if len(panels) <= count))
     across = int(window.width / (SMALL * NARROW))
     wrap = textwrap.TextWrapper(across, break_on_hyphens=False, break_long_words=False).wrap
     said = [wrap(panel.said.replace(BETWEEN, " /\u00a0")) for panel in panels]
@@ -188,17 +246,25 @@ def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[
     return parts
 
 
-def _window(scenes: Sequence[Scene], largest: float) -> Window:
+def _window(panels: Sequence[_ConfigurationPanel], scenes: Sequence[Scene], largest: float) -> Window:
     """The one window of all scenes."""
     first = window_on(scenes[0], scenes[1:])
     scale = min(1.0, (largest - 2.0 * MARGIN) / max(first.width - 2.0 * MARGIN, first.height - 2.0 * MARGIN))
     whole = Window(first.scale * scale, first.corner, 0.0, 0.0)
     points = np.array([p for scene in scenes for p in shape_corners(layered(Painter(scene, whole)))] or [0j])
+    tips = [complex(whole.at(panel.scene.letters[k] + way)) for panel in panels for k, way in panel.tips().items()
+            if k in panel.scene.letters]  # fmt: skip
+    points = np.concatenate([points, tips])
     return fitted_window(whole, points, NARROWEST)
 
 
 def _drawn(panel: _ConfigurationPanel, window: Window, kinds: Sequence[str]) -> list[Shape]:
     painter = Painter(panel.scene, window)
     laid = in_layers(painter)
-    found = placed(labels_of(painter, laid, kinds), [one.shape for one in laid], window.width, window.height)
-    return [*(ghost_shapes(other, window) for other in panel.faint), *by_links(laid), *label_shapes(panel.scene, found)]
+    places = {letter: complex(window.at(place)) for letter, place in panel.scene.letters.items()}
+    rates = {letter: way for letter, way in panel.tips().items() if letter in places}
+    arrows = vector_shapes(places, rates, VectorScale(VELOCITY, window.scale, 1.0, "", 1))
+    behind = [*(one.shape for one in laid), *arrows]
+    found = placed(labels_of(painter, laid, kinds), behind, window.width, window.height)
+    faint = (ghost_shapes(other, window) for other in panel.faint)
+    return [*faint, *by_links(laid), *arrows, *label_shapes(panel.scene, found)]

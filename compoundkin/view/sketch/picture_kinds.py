@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from compoundkin.analysis.singularities import Singularity
 from compoundkin.base import display
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
@@ -30,10 +31,10 @@ class PictureKind(NamedTuple):
     known: Sequence[str]
     of_forces: bool = False
 
-    def picture(self, what: Drawable | Forces, options: PictureOptions) -> Picture:
+    def picture(self, what: Drawable | Forces | Singularity, options: PictureOptions) -> Picture:
         """Draw it; forces are found first where it is theirs."""
         made: Picture = display.import_function(f"{__package__}.{self.drawn}")(
-            _forces(what) if self.of_forces else what, options
+            _forces(what) if self.of_forces and not isinstance(what, Singularity) else what, options
         )
         return made
 
@@ -50,6 +51,7 @@ KINDS: Mapping[str, PictureKind] = {
     "construction": PictureKind("construction:construction", (*POSE, "link", "size")),
     "configurations": PictureKind("configuration_pictures:configurations_picture", (*POSE, "labels", "size")),
     "circuits": PictureKind("configuration_pictures:circuits_picture", ("at", "design", "labels", "size")),
+    "singularities": PictureKind("configuration_pictures:singularities_picture", ("design", "labels", "size")),
     "free-bodies": PictureKind("force_pictures:free_bodies", (*POSE, "link", "size"), of_forces=True),
     "force-polygon": PictureKind("force_pictures:force_polygons", (*POSE, "link", "size"), of_forces=True),
 }
@@ -58,7 +60,7 @@ SKETCH_OF_FORCES = PictureKind("force_pictures:force_sketch", (*POSE, "labels", 
 
 @checked
 def draw(
-    what: Motion | Mechanism | Structure | Forces,
+    what: Motion | Mechanism | Structure | Forces | Singularity,
     at: Any = None,
     *,
     kind: str = "sketch",
@@ -81,10 +83,11 @@ def draw(
     centres; "polygon", the polygon of the velocities of all points (`vectors="acceleration"`: of their accelerations)
     with the images of the links; "construction", how the dyad with a `link` (the first one if left out) is drawn
     with circles and lines, its other mode dashed; "configurations", all of them at the pose, or "circuits", all those
-    of the driver that `at` leaves out, side by side on one scale; "free-bodies", each link or one `link` alone with all
-    that acts on it; or "force-polygon", the forces on each link or one head to tail. The last two are of forces, or
-    find them; the sketch of forces has them as arrows, that in each pair on its second link, or all those on one
-    `link`.
+    of the driver that `at` leaves out, side by side on one scale; "singularities", the singular poses of a motion with
+    the velocities along each branch that meets there, as one of `singularities` is drawn too; "free-bodies", each link
+    or one `link` alone with all that acts on it; or "force-polygon", the forces on each link or one head to tail. The
+    last two are of forces, or find them; the sketch of forces has them as arrows, that in each pair on its second link,
+    or all those on one `link`.
 
     The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
     the index `pose`; else the one nearest to the mechanism's drawing. Graph and circle diagram have none. In a sketch,
@@ -111,7 +114,11 @@ def draw(
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", suggestion(kind, list(KINDS))))
     options = PictureOptions(at, pose, design, ghosts, paths, centres, vectors, labels, size, link, dimensions)
     chosen = KINDS[kind]
-    if not isinstance(what, Drawable) and kind == "sketch":
+    if isinstance(what, Singularity):
+        if kind not in ("sketch", "singularities"):
+            raise InvalidInput(Problem("kind", f"a singular pose has no {kind!r}", "leave the kind out"))
+        chosen = KINDS["singularities"]
+    elif not isinstance(what, Drawable) and kind == "sketch":
         chosen = SKETCH_OF_FORCES
     elif not isinstance(what, Drawable) and not chosen.of_forces:
         what = what.motion
