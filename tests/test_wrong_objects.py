@@ -110,6 +110,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "force_analysis": {"motion": h["loaded"], "inertia": True, "holding": ""},
         "friction": {"pair": "A", "coefficient": 0.1, "radius": 2.0, "length": None},
         "gaps": {"motion": motion},
+        "singularities": {"what": motion, "outputs": ()},
         "gear": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,
                  "phase": None, "first_at": "A", "second_at": "B", "internal": False, "module": None},
         "gravity": {"x": 0.0, "y": -9.81, "unit": "m/s^2"},

@@ -46,7 +46,11 @@ VERBS = {
 }
 
 # Verbs that are not `command` of the file of their name, as `import` is a word of Python.
-_COMMANDS = {"import": ("import_command", "command"), "open": ("report", "open_command")}
+_COMMANDS = {
+    "import": ("import_command", "command"),
+    "open": ("report", "open_command"),
+    "singularities": ("circuits", "singularities_command"),
+}
 
 EPILOG = """\b
 Examples:
