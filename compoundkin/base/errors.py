@@ -91,6 +91,10 @@ class ChangePointWarning(UserWarning):
     """Drivers rest exactly at a change point, where two branches meet."""
 
 
+class NearChangePoint(ChangePointWarning):
+    """A motion turns back so near to a change point that a rounding of the dimensions decides."""
+
+
 class DrawnBeyondEnd(UserWarning):
     """The drawn pose is beyond an end of a guide."""
 

@@ -182,7 +182,7 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
     @property
     def change_points(self) -> Mapping[int, Number]:
         """Where groups are at change points, (designs, count), padded with inf. Twice where the motion turns back."""
-        return self.followed.flips
+        return self.followed.change_points
 
     def sign(self, k: int, design: int) -> int:
         """Return the sign of a group's mode at the first pose of a design."""

@@ -119,6 +119,8 @@ class _Design:
             shown=self._shown(curve.shown, shape),
             signs=self.rows(curve.signs),
             flips=self.rows(curve.flips),
+            left=self.rows(curve.left),
+            near_misses={k: tuple((0, s) for d, s in one if d == self.index) for k, one in curve.near_misses.items()},
             paths={k: self._path(path) for k, path in curve.paths.items()},
             turns={link: self._turns(turns) for link, turns in curve.turns.items()},
         )

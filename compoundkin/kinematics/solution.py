@@ -20,6 +20,7 @@ from compoundkin.base.errors import (
     FewDigits,
     InvalidInput,
     LikelySlip,
+    NearChangePoint,
     NotAssembled,
     NotDetermined,
     Problem,
@@ -33,7 +34,7 @@ from compoundkin.kinematics.configuration import Configuration, dimensions_at, n
 from compoundkin.kinematics.curve.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
 from compoundkin.kinematics.curve.configuration_curve import FollowedPoses, follow, leaping_groups
 from compoundkin.kinematics.curve.driver_path import drawn_value
-from compoundkin.kinematics.curve.modes import StatedModes, signs_of, stated_by
+from compoundkin.kinematics.curve.modes import StatedModes, branches_of, signs_of, stated_by
 from compoundkin.kinematics.driver_values import Inputs, by_name, inputs, times_of
 from compoundkin.kinematics.motion import LinkErrors, Motion, errors_at
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -59,6 +60,7 @@ def solve(
     order: int = 2,
     modes: Mapping[str, int] | str | Configuration | None = None,
     hint: Mapping[str, Any] | None = None,
+    branch: Mapping[str, Any] | None = None,
 ) -> Motion:
     """Solve a mechanism group by group, for position and its derivatives. They go up to `order` (0 to 3).
 
@@ -77,12 +79,17 @@ def solve(
     its loop), another has mode +1, a larger group the configuration farthest from being singular. `modes` may also be
     one of `configurations()`, from which the motion then starts, or the name of one at the first pose.
 
+    Through a change point the motion goes on smoothly. `branch` names those at which a group goes over to its other
+    branch instead, by a link of the group and the driver's value there, or several (within 2.5 degrees of a driver's
+    angle, or 0.09 sizes): `branch={"rocker": np.pi}`. `singularities` lists them.
+
     A mechanism that moves though it is overconstrained is solved without what is redundant, which is then checked.
 
     Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
     NotAssembled where a group has no pose at all or a redundant pair opens; warns UnassembledPoses where some poses do
     not close, DrawnBeyondEnd where the drawing is beyond an end of a guide, ChangePointWarning where drivers rest
-    exactly at a change point (the smooth motion goes on), FewDigits where rates next to a limit position have fewer
+    exactly at a change point (the smooth motion goes on), NearChangePoint where a rounding of the dimensions decides
+    which branch is taken, FewDigits where rates next to a limit position have fewer
     than three digits; those without any are NaN.
 
     >>> from compoundkin.model.elements import drive, link
@@ -97,7 +104,7 @@ def solve(
         times = times_of(solving_order.structure.mechanism, values, time)
         given = inputs(solving_order, values, speed, acceleration, jerk, times, order)
         signs, shown = signs_of(solving_order, modes), stated_by(solving_order, modes, hint)
-        told = solved(solving_order, given, signs, shown, order)
+        told = solved(solving_order, given, signs, shown, order, branches_of(solving_order, branch))
     motion = told.motion if times is None else replace(told.motion, time=times)
     if times is None:
         warn_of_degrees(motion.structure, given)
@@ -106,15 +113,41 @@ def solve(
 
 
 def solved(
-    solving_order: SolvingOrder, given: Inputs, signs: Mapping[int, int], shown: StatedModes, order: int
+    solving_order: SolvingOrder,
+    given: Inputs,
+    signs: Mapping[int, int],
+    shown: StatedModes,
+    order: int,
+    branches: Mapping[int, tuple[float, ...]] | None = None,
 ) -> Description:
     """Return the motion of some inputs. Raises as `solve`, and warns of nothing."""
     with diagnosing(solving_order.structure):
-        followed = follow(solving_order, given, signs, shown)
+        followed = follow(solving_order, given, signs, shown, branches)
     told = without_imprecise_rates(*solve_all_blocks(followed, order))
     if solving_order.structure.relaxation:
         check_redundant(told.motion)
+    if branches:
+        _check_branches(told.motion)
     return told
+
+
+def _check_branches(motion: Motion) -> None:
+    """Raise InvalidInput where a motion has no change point at which it is to go over to another branch."""
+    wrong = []
+    curve = motion.followed.curve
+    for k, (value, known) in curve.unknown_branches().items():
+        link = motion.structure.groups[k].links[0]
+        shown = [_shown(motion.structure, curve.path.moving[0], v) for v in (value, *known)]
+        remedy = f"it has change points at {', '.join(shown[1:])}" if known else "it has none along this motion"
+        wrong.append(Problem(f"branch.{link}", f"{shown[0]} is at no change point of its group", remedy))
+    if wrong:
+        raise InvalidInput(wrong)
+
+
+def _shown(structure: Structure, driver: str, value: float) -> str:
+    """Return a driver's value in words: degrees or a length."""
+    is_angle = structure.driven_angles[driver]
+    return f"{np.rad2deg(value) if is_angle else value:.6g}{' degrees' if is_angle else ''}"
 
 
 def _warn(motion: Motion, poor: int) -> None:
@@ -123,6 +156,9 @@ def _warn(motion: Motion, poor: int) -> None:
         _warn_of_drawing(motion.followed)
     if any(motion.followed.rests.values()):
         warn(_rest(motion), ChangePointWarning)
+    for k, missed in motion.followed.curve.near_misses.items():
+        if missed:
+            warn(_near_miss(motion, k, *missed[0]), NearChangePoint)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
@@ -138,12 +174,19 @@ def _rest(motion: Motion) -> str:
     values = {
         name: np.broadcast_to(v[0], motion.failed.shape)[design, pose] for name, v in motion.inputs.drives.items()
     }
-    angles = motion.structure.driven_angles
-    told = (f"{name} = {np.rad2deg(v) if angles[name] else v:.6g}{' degrees' if angles[name] else ''}"
-            for name, v in values.items())  # fmt: skip
+    told = (f"{name} = {_shown(motion.structure, name, v)}" for name, v in values.items())
     links = ", ".join(motion.structure.groups[group].links)
     where = f"at pose {pose}, {', '.join(told)}, the drivers rest at a change point of {links}"
     return f"{where}: either branch may go on from there, and the smooth motion is taken"
+
+
+def _near_miss(motion: Motion, k: int, design: int, place: float) -> str:
+    """Return where a group comes within rounding of a change point, and what follows."""
+    part = motion.followed.curve.path.pick(np.array([design]), np.array([place]))
+    told = (f"{name} = {_shown(motion.structure, name, float(np.ravel(v[0])[0]))}" for name, v in part.drives.items())
+    links = ", ".join(motion.structure.groups[k].links)
+    what = "within 1e-8 of a change point (the squared sine between its branches), and turns back"
+    return f"at {', '.join(told)}, {links} comes {what}: a rounding of the dimensions decides which branch it takes"
 
 
 def _warn_of_drawing(followed: FollowedPoses) -> None:
@@ -234,7 +277,8 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
     while True:
         found = _solved_along(followed, order)
         near = found.near if followed.is_dense else found.near | near_groups(followed.curve)
-        curve = pass_through(followed.curve, near) if near else None
+        searched = pass_through(followed.curve, near) if near else followed.curve
+        curve = searched if searched.flips.keys() != followed.curve.flips.keys() else None
         leaping = leaping_groups(followed) if curve is None else []
         if leaping:
             curve = followed.curve.with_followed(leaping)
@@ -243,8 +287,9 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
         if curve is not None:
             followed = replace(followed, curve=curve)
             continue
+        followed = replace(followed, curve=searched)
         if not found.nearly:
-            return found.motion, found.doubtful
+            return replace(found.motion, followed=followed), found.doubtful
         followed, (designs, index, poses) = expanded(followed, found.nearly, order)
         found.doubtful[designs, index] = False
         return replace(found.motion, followed=followed).mended(designs, index, poses), found.doubtful

@@ -123,7 +123,10 @@ def _steps_between_poses(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
     broken = np.cumsum(motion.failed != 0, axis=1)
     designs, index = np.nonzero(usable)
     goes_on = (designs[1:] == designs[:-1]) & (broken[designs[1:], index[1:]] == broken[designs[:-1], index[:-1]])
-    yield from _parts(PoseSteps(designs[:-1][goes_on], index[:-1][goes_on], index[1:][goes_on]))
+    steps = PoseSteps(designs[:-1][goes_on], index[:-1][goes_on], index[1:][goes_on])
+    # where another branch was asked for, the motion is not smooth
+    smooth = ~motion.followed.leaves_branch(*steps)
+    yield from _parts(PoseSteps(*(each[smooth] for each in steps)))
 
 
 def _steps_into_gaps(motion: Motion, usable: Number) -> Iterator[PoseSteps]:

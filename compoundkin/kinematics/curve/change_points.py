@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -35,6 +35,8 @@ COARSE, FLAT = 1e-4, 1e-15
 # A square that is zero between two samples is as far from there as its root says, but for the curvature of that, by
 # less than this factor; and where its rate is nearly zero, it is less than this part of what it is at the samples.
 CURVED, RISEN = 3.0, 1e-5
+# Where a square is below this and not zero, the eighth digit of the dimensions decides which branch the motion takes.
+NOTED = 1e-8
 
 
 class _Slopes(NamedTuple):
@@ -60,6 +62,17 @@ def _slopes(columns: Sequence[Sequence[Number]], bound: float) -> _Slopes:
     return _Slopes(columns[0][0], first, touching, slope_is_zero(first, second).all(axis=-1) & touching)
 
 
+# A design, and a place of its path.
+Place: TypeAlias = tuple[int, float]
+
+
+class _Passed(NamedTuple):
+    """Where a group passes change points, and where it comes within rounding of one."""
+
+    places: list[Place]
+    missed: list[Place]
+
+
 class _Known(NamedTuple):
     """What is known of a square of a group at samples of a path, by their indices in order along each design.
 
@@ -72,26 +85,28 @@ class _Known(NamedTuple):
     square: int
 
 
-def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> ConfigurationCurve | None:
+def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> ConfigurationCurve:
     """Return the curve that passes the change points of groups among `near`, and those that others have in common.
 
-    None where there are none.
+    It is the same where there are none; where groups come within rounding of one and turn back is noted too.
     """
     if len(curve.path.places) == 1:
-        return None
+        return curve
     asked, todo = set(near), [solver.index for solver in curve.solving_order.solvers if solver.modes_may_meet]
     found, samples, beside = curve, dict[int, Number](), _BesideChangePoints()
+    missed = dict(curve.near_misses)
     for k in (k for k in todo if k not in curve.flips):
-        places: list[tuple[int, float]] = []
-        common = beside.common(found, k)
+        places, common = list[Place](), beside.common(found, k)
         if k in asked:
             samples = samples or _near_samples(found, sorted(n for n in asked if n in todo and n >= k))
-            places = [place for known in _known(found, k, samples[k]) for place in _passed(found, k, known, common)]
+            passed = [_passed(found, k, known, common) for known in _known(found, k, samples[k])]
+            places = [place for each in passed for place in each.places]
+            missed[k] = tuple(place for each in passed for place in each.missed)
         places += common
         if places:
             # groups after this one are elsewhere from there on
             found, samples = found.with_flips(k, _padded(places, curve.path.designs)), {}
-    return None if found is curve else found
+    return replace(found, near_misses=missed) if missed != curve.near_misses else found
 
 
 # What is smooth through a change point of an earlier group loses its digits beside it: it is interpolated from places
@@ -106,9 +121,9 @@ class _BesideChangePoints:
     """Poses beside the change points that are known so far, solved group by group."""
 
     def __init__(self) -> None:
-        self.places: list[tuple[int, float]] = []
+        self.places: list[Place] = []
 
-    def common(self, curve: ConfigurationCurve, k: int) -> list[tuple[int, float]]:
+    def common(self, curve: ConfigurationCurve, k: int) -> list[Place]:
         """Return the change points that a group has in common with earlier groups."""
         first, last = curve.path.ends
         every = sorted({(d, float(f)) for rows in curve.flips.values() for d, row in enumerate(rows)
@@ -170,7 +185,7 @@ def _some_slopes(curve: ConfigurationCurve, k: int, designs: Number, places: Num
     groups, found = [n for n in curve.flips if n < k and has_roots], []
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
     spots = (places + SAME * sense)[:, None] if groups else places[:, None], designs[:, None]
-    for name in (name for name, (value, *_) in curve.path.knots.drives.items() if np.shape(value)[1:] > (1,)):
+    for name in curve.path.moving:
         rates = {n: (v[0], curve.solving_order.unit(n) if n == name else 0.0) for n, v in part.drives.items()}
         along = part.driven(rates)
         roots, _ = roots_along(curve, along, spots, groups, onward)
@@ -214,9 +229,7 @@ def _margins(curve: ConfigurationCurve, upto: int) -> Iterator[tuple[slice, slic
         yield d, m, block.margins
 
 
-def _passed(
-    curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[tuple[int, float]]
-) -> list[tuple[int, float]]:
+def _passed(curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[Place]) -> _Passed:
     """Return where a group passes between samples whose rates are opposite, or is at samples that are change points.
 
     Those that it has in `common` with earlier groups are left out.
@@ -231,7 +244,7 @@ def _passed(
     for d, f in common:
         beside = (designs[a] == d) & (places[samples[a]] <= f + CLOSE) & (places[samples[b]] >= f - CLOSE)
         opposite &= ~beside
-    found = _between(curve, k, known, a[joined & opposite & (b - a == 1)])
+    found, missed = _between(curve, k, known, a[joined & opposite & (b - a == 1)])
     for one in a[joined & opposite & (b - a > 1)]:
         found.append((int(designs[one]), float(places[samples[one + 1]])))
     for n in np.flatnonzero(slopes.still):
@@ -240,15 +253,15 @@ def _passed(
         elif samples[n] == len(places) - 1:
             # beyond the whole path, which is on one side of it
             found.append((int(designs[n]), float(np.nextafter(places[-1], np.inf))))
-    return found
+    return _Passed(found, missed)
 
 
-def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> list[tuple[int, float]]:
+def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Passed:
     """Return designs and places of zeros between some samples and those after them. They are change points."""
     samples, every = curve.path.samples, known.slopes
     # what the rates are along the path there, which is straight from sample to sample
     ahead, _ = curve.path.onward(curve.solving_order, known.designs[a], samples[known.samples[a]])
-    ahead = ahead[:, [np.shape(value)[1:] > (1,) for value, *_ in curve.path.knots.drives.values()]]
+    ahead = ahead[:, [name in curve.path.moving for name in curve.path.knots.drives]]
     length = samples[known.samples[a] + 1] - samples[known.samples[a]]
     falls, rises = (np.sum(every.rates[i] * ahead, axis=-1) * length for i in (a, a + 1))
     most = np.maximum(every.values[a], every.values[a + 1])
@@ -257,7 +270,7 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> lis
     zeros = _Bracket(curve, k, known.square, known.designs[a], samples[known.samples[a]], length, ahead)
     zeros, falls, rises, most = zeros.some(may), falls[may], rises[may], most[may]
     if not len(falls):
-        return []
+        return _Passed([], [])
     # most come near a limit and turn back
     share = false_position(
         zeros.rates, np.ones(len(falls)), falls, rises, COARSE * float(np.min(rises - falls)), TRIALS
@@ -265,11 +278,12 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> lis
     low = zeros.slopes(share).values < RISEN * most
     zeros, falls, rises = zeros.some(low), falls[low], rises[low]
     if not len(falls):
-        return []
+        return _Passed([], [])
     share = false_position(zeros.rates, np.ones(len(falls)), falls, rises, FLAT, TRIALS)
-    touching = zeros.slopes(share).touching
-    found = (zeros.low + share * zeros.length)[touching]
-    return [(int(d), float(s)) for d, s in zip(zeros.designs[touching], found, strict=True)]
+    there, places = zeros.slopes(share), zeros.low + share * zeros.length
+    missed = ~there.touching & (np.abs(there.values) < NOTED)
+    return _Passed(*([(int(d), float(s)) for d, s in zip(zeros.designs[which], places[which], strict=True)]
+                     for which in (there.touching, missed)))  # fmt: skip
 
 
 class _Bracket(NamedTuple):
@@ -298,7 +312,7 @@ class _Bracket(NamedTuple):
         return found
 
 
-def _padded(found: Sequence[tuple[int, float]], count: int) -> Number:
+def _padded(found: Sequence[Place], count: int) -> Number:
     """Return places by design in order, (count, most), padded with inf."""
     rows: list[list[float]] = [[] for _ in range(count)]
     for design, place in found:

@@ -15,12 +15,14 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number, cross, whole_turns, wrapped
 from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import constant
 from compoundkin.kinematics.block import NEAREST, Block, Root
 from compoundkin.kinematics.configuration import ONLY
 from compoundkin.kinematics.curve.driver_path import (
     CLOSE,
     SAME,
+    SPACING,
     DriverPath,
     PosePlaces,
     as_column,
@@ -54,7 +56,9 @@ class ConfigurationCurve(ShortRepr):
 
     `signs` are those of dyads at home, (designs, 1) or a number; they change at the places `flips`, (designs, count),
     padded with infinity. `paths` are the states of the other groups, of which those in `states` are known at home,
-    `turns` the angles of links that pairs count with full turns. `chosen_by` tells what chose each group's mode.
+    `turns` the angles of links that pairs count with full turns. `chosen_by` tells what chose each group's mode. At the
+    change points next to driver values `branches` a group goes over to its other branch, which is at the places `left`;
+    at `near_misses`, designs and places, it turns back within rounding of a change point.
     """
 
     solving_order: SolvingOrder
@@ -64,7 +68,10 @@ class ConfigurationCurve(ShortRepr):
     pose_at_home: int = 0
     has_returns: bool = False
     states: Mapping[int, Number] = field(default_factory=dict)
+    branches: Mapping[int, tuple[float, ...]] = field(default_factory=dict)
+    left: Mapping[int, Number] = field(default_factory=dict)
     flips: Mapping[int, Number] = field(default_factory=dict)
+    near_misses: Mapping[int, tuple[tuple[int, float], ...]] = field(default_factory=dict)
     signs: dict[int, Number] = field(default_factory=dict)
     paths: dict[int, GroupPath] = field(default_factory=dict)
     turns: dict[str, Turns] = field(default_factory=dict)
@@ -126,8 +133,52 @@ class ConfigurationCurve(ShortRepr):
         """Return the curve on which a group also changes its sign at some places, (designs, count)."""
         home = self.path.home
         places = np.where(np.abs(places - home) < SAME, home, places)
-        other = replace(self, flips={**self.flips, k: places})
+        leaves = self._leaves(k, places)
+        flips = {**self.flips, k: np.where(leaves, np.inf, places)}
+        other = replace(self, flips=flips, left={**self.left, k: np.where(leaves, places, np.inf)})
         return other.chosen(k) if self.solving_order.numbered or self.turns else other
+
+    def _leaves(self, k: int, places: Number) -> Number:
+        """Return at which change points a group goes over to its other branch."""
+        found = np.zeros(places.shape, dtype=bool)
+        designs, which = np.nonzero(np.isfinite(places))
+        values = self.driver_values(designs, places[designs, which]) if k in self.branches else None
+        for value in self.branches.get(k, ()):
+            assert values is not None
+            found[designs, which] |= np.abs(self._driver_gap(values - value)) < AT_BRANCH
+        return found
+
+    def driver_values(self, designs: Number, places: Number) -> Number:
+        """Return the values of the only driver that moves at places. Raises InvalidInput where there are several."""
+        moving = self.path.moving
+        if len(moving) != 1:
+            raise InvalidInput(Problem("branch", "change points are named by the value of the only driver that moves"))
+        return np.broadcast_to(self.path.pick(designs, places).drives[moving[0]][0], (len(places), 1))[:, 0]
+
+    def _driver_gap(self, gap: Number) -> Number:
+        """Return differences of the moving driver's values, in places."""
+        (name,) = self.path.moving
+        gap = wrapped(gap) if self.path.wraps else gap
+        return gap / (self.solving_order.unit(name) * SPACING)
+
+    @property
+    def change_points(self) -> Mapping[int, Number]:
+        """The places of all change points that groups pass, on whichever branch they go on."""
+        return {k: np.fmin(flips, self.left[k]) for k, flips in self.flips.items()}
+
+    def unknown_branches(self) -> dict[int, tuple[float, tuple[float, ...]]]:
+        """Return, by group, a value of `branches` at which it has no change point, and the values where it has some."""
+        found = {}
+        for k, asked in self.branches.items():
+            every = np.concatenate(
+                [np.atleast_2d(rows.get(k, np.empty((1, 0)))) for rows in (self.flips, self.left)], axis=1
+            )
+            designs, which = np.nonzero(np.isfinite(every))
+            values = self.driver_values(designs, every[designs, which])
+            missing = [v for v in asked if not np.any(np.abs(self._driver_gap(values - v)) < AT_BRANCH)]
+            if missing:
+                found[k] = missing[0], tuple(np.unique(values.round(12)).tolist())
+        return found
 
     def with_followed(self, groups: Sequence[int]) -> ConfigurationCurve:
         """Return the curve on which some groups with signs are followed from where they are at home."""
@@ -147,7 +198,7 @@ class ConfigurationCurve(ShortRepr):
         """Return the curve with what comes back after gaps, also after a whole turn."""
         if not self.path.wraps:
             return replace(self, has_returns=True).chosen(known=self.paths)
-        return replace(self, path=self.path.around(), has_returns=True, flips={}).chosen()
+        return replace(self, path=self.path.around(), has_returns=True, flips={}, left={}).chosen()
 
     def chosen(self, since: int = 0, known: Mapping[int, GroupPath] | None = None) -> ConfigurationCurve:
         """Return the curve with all modes chosen at home, and followed from there but for the paths that are `known`.
@@ -239,6 +290,8 @@ def configured(curve: ConfigurationCurve, designs: Number, places: Number) -> _C
 
 
 _NOWHERE = np.zeros((1, 1))
+# A change point is named by a driver value that is nearer to it than this, in places: 2.5 degrees.
+AT_BRANCH = 0.5
 
 
 @dataclass(frozen=True)
@@ -360,16 +413,17 @@ class FollowedPoses(ShortRepr):
         return self.curve.nearest_reached(designs, self.poses.at(designs, s))
 
     @cached_property
-    def flips(self) -> Mapping[int, Number]:
+    def change_points(self) -> Mapping[int, Number]:
         """Where groups pass change points along the motion, (designs, count), padded with inf.
 
         Twice where the motion turns back from one.
         """
+        every = self.curve.change_points
         if self.given.poses == 1:
-            return {k: np.full((self.given.designs, 1), np.inf) for k in self.curve.flips}
+            return {k: np.full((self.given.designs, 1), np.inf) for k in every}
         places = np.broadcast_to(self.poses.of_poses, (self.given.designs, self.given.poses))
         found = {}
-        for k, flips in self.curve.flips.items():
+        for k, flips in every.items():
             rows = [sorted(s for f in row[np.isfinite(row)] for s in _passings(places[d], f))
                     for d, row in enumerate(flips)]  # fmt: skip
             found[k] = np.full((len(rows), max(1, *map(len, rows))), np.inf)
@@ -382,12 +436,22 @@ class FollowedPoses(ShortRepr):
         """By group, the designs and poses from which on the drivers rest at a change point."""
         places = np.broadcast_to(self.poses.of_poses, (self.given.designs, self.given.poses))
         found: dict[int, list[tuple[int, int]]] = {}
-        for k, flips in self.curve.flips.items() if self.given.poses > 1 else ():
+        for k, flips in self.curve.change_points.items() if self.given.poses > 1 else ():
             for d, row in enumerate(flips):
                 for f in row[np.isfinite(row)]:
                     there = np.abs(places[d] - f) < SAME
                     both = np.flatnonzero(there[1:] & there[:-1])
                     found.setdefault(k, []).extend((d, int(i)) for i in both[:1])
+        return found
+
+    def leaves_branch(self, designs: Number, begin: Number, end: Number) -> Number:
+        """Return whether a group goes over to its other branch between poses, by their indices."""
+        low, high = (self.places_on_path(designs, at.astype(float)) for at in (begin, end))
+        found: Number = np.zeros(len(designs), dtype=bool)
+        for places in self.curve.left.values():
+            there = places[designs]
+            passes = (there - low[:, None]) * (there - high[:, None]) <= 0.0
+            found |= np.any(passes & np.isfinite(there), axis=1)
         return found
 
     @property
@@ -455,7 +519,8 @@ class _Contact:
         values, samples = self._of(block), self.curve.path.samples
         known = np.isfinite(values)
         steps = np.nan_to_num(self._change(values[:, :-1], values[:, 1:]))
-        beside = np.pad(steps, ((0, 0), (1, 1)), mode="edge")
+        # at an end of the path there is but the one within
+        beside = np.pad(steps, ((0, 0), (1, 1)), mode="reflect" if steps.shape[1] > 1 else "constant")
         uneven = (steps > LEAP) & (steps > UNEVEN * np.minimum(beside[:, :-2], beside[:, 2:]))
         designs, i = np.nonzero(uneven)
         if self._remains(designs, samples[i], samples[i + 1], values[designs, i], values[designs, i + 1]):
@@ -513,7 +578,13 @@ def _passings(places: Number, flip: float) -> Iterator[float]:
             yield float(one + (flip - places[one]) / (places[two] - places[one]))
 
 
-def follow(solving_order: SolvingOrder, given: Inputs, fixed: Mapping[int, int], shown: StatedModes) -> FollowedPoses:
+def follow(
+    solving_order: SolvingOrder,
+    given: Inputs,
+    fixed: Mapping[int, int],
+    shown: StatedModes,
+    branches: Mapping[int, tuple[float, ...]] | None = None,
+) -> FollowedPoses:
     """Return the poses of some inputs on their curve: modes chosen at home, other groups followed from there.
 
     Change points, and what comes back after gaps, are found while the poses are solved.
@@ -524,7 +595,8 @@ def follow(solving_order: SolvingOrder, given: Inputs, fixed: Mapping[int, int],
         path = replace(path, knots=knots)
     # only dimensions that vary along the motion ask for it
     pose = 0 if given.is_rigid else int(np.argmin(np.abs(poses.of_poses[0] - path.home)))
-    return FollowedPoses(ConfigurationCurve(solving_order, path, fixed, shown, pose).chosen(), given, poses)
+    curve = ConfigurationCurve(solving_order, path, fixed, shown, pose, branches=branches or {})
+    return FollowedPoses(curve.chosen(), given, poses)
 
 
 # From one sample to the next but one a link turns no farther than this (radians), so that no half a turn is missed;

@@ -59,6 +59,11 @@ class DriverPath:
         return float(self.places[0]), float(self.places[-1])
 
     @property
+    def moving(self) -> tuple[str, ...]:
+        """The drivers that move along it."""
+        return tuple(name for name, (value, *_) in self.knots.drives.items() if np.shape(value)[1:] > (1,))
+
+    @property
     def period(self) -> float:
         """After how many places the drivers are at the same pose again; infinite where they never are."""
         return TURN / SPACING if self.wraps else np.inf
@@ -111,7 +116,7 @@ class DriverPath:
 
     def around(self) -> DriverPath:
         """Return the path of a driver that wraps, a whole turn both ways from home."""
-        name = next(name for name, (value, *_) in self.knots.drives.items() if np.shape(value)[1:] > (1,))
+        (name,) = self.moving
         first, last = self.ends
         ends = min(first, self.home - self.period), max(last, self.home + self.period)
         places = np.unique([ends[0], first, self.home, last, ends[1]])

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
+from compoundkin.base.arguments import real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
 from compoundkin.base.poses import Pose
@@ -84,6 +85,22 @@ def signs_of(
         return {**_by_group(solving_order, written), **read_name(solving_order, modes)}
     called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
     return {**_by_group(solving_order, written), **_by_group(solving_order, called)}
+
+
+def branches_of(solving_order: SolvingOrder, branch: Mapping[str, Any] | None) -> dict[int, tuple[float, ...]]:
+    """Return at which driver values groups go over to their other branch. Raises InvalidInput for what is none."""
+    where = {link: solver for solver in solving_order.solvers for link in solver.group.links}
+    found: dict[int, tuple[float, ...]] = {}
+    for name, values in (branch or {}).items():
+        solving_order.structure.mechanism.link(name)
+        if name not in where or not where[name].modes_may_meet:
+            raise InvalidInput(Problem(f"branch.{name}", "the group of this link has no change points"))
+        numbers = np.ravel(real_numbers(f"branch.{name}", values))
+        if not np.isfinite(numbers).all():
+            raise InvalidInput(Problem(f"branch.{name}", "a driver value is not finite"))
+        k = where[name].index
+        found[k] = (*found.get(k, ()), *numbers.tolist())
+    return found
 
 
 def _by_group(solving_order: SolvingOrder, modes: Mapping[str, int]) -> dict[int, int]:
