@@ -89,7 +89,7 @@ def test_a_near_miss_keeps_its_mode():
     for ground in (5.0 + 1e-6, 5.0 + 1e-4, 5.01):
         mechanism = parallelogram(DRAWN).replace(ck.link("frame", A=0, D=ground), ck.link("coupler", B=0, C=5.0 - 1e-6))
         with_gap = ck.solve(mechanism, {"crank": ck.deg(np.arange(30.0, 151.0, 5.0))})
-        assert with_gap.followed.flips == {}
+        assert with_gap.followed.change_points == {}
 
 
 def test_designs_pass_at_their_own_places():
@@ -125,7 +125,7 @@ def test_a_class_iii_group_behind_a_change_point_is_tracked_again():
     )
     motion = ck.solve(mechanism, {"crank": ck.deg(np.linspace(60.0, 230.0, 57))}, order=1)
     assert [group.class_ for group in motion.structure.groups] == [2, 3]
-    assert motion.followed.flips
+    assert motion.followed.change_points
     assert np.abs(motion.links["coupler"].angle).max() < 1e-12
     assert np.abs(np.diff(motion.links["plate"].angle)).max() < 0.2
     assert ck.verify(motion).passed

@@ -228,6 +228,7 @@ def _of_one_driver(solving_order: SolvingOrder, given: Inputs, name: str, drawn:
     away = (value - home) / unit
     one, two = (low - home) / unit, (high - home) / unit
     begin, end = np.minimum(np.minimum(one, two), 0.0), np.maximum(np.maximum(one, two), 0.0)
+    # an end that is at home but for rounding is home
     far = (-float(begin.min()), float(end.max()))
     if is_angle:
         ends = [(-far[0], home - unit * far[0]), (0.0, home), (far[1], home + unit * far[1])]
@@ -237,7 +238,7 @@ def _of_one_driver(solving_order: SolvingOrder, given: Inputs, name: str, drawn:
         ends = [(-far[0], home + unit * begin), (0.0, home), (far[1], home + unit * end)]
         one, two = (np.divide(a, b, out=np.zeros_like(b), where=b != 0.0) for a, b in ((-far[0], begin), (far[1], end)))
         away = away * np.where(away < 0.0, one, two)
-    kept = [knot for k, knot in enumerate(ends) if k == 1 or knot[0] != 0.0]
+    kept = [knot for k, knot in enumerate(ends) if k == 1 or abs(knot[0]) > CLOSE]
     knots = _first(given).driven({**_first_drives(given), name: (np.concatenate([v for _, v in kept], axis=1),)})
     places = np.array([place for place, _ in kept])
     path = DriverPath(knots.of_poses(len(kept)), places, 0.0, is_angle and not solving_order.turning)
@@ -307,7 +308,7 @@ def _line(
     )
     places = (share - at_foot) * scale
     drives = _first_drives(given)
-    keeps = [k for k, wanted in enumerate((far[0] > 0.0, True, far[1] > 0.0)) if wanted]
+    keeps = [k for k, wanted in enumerate((far[0] > CLOSE, True, far[1] > CLOSE)) if wanted]
     for name in moving:
         own = np.broadcast_to(given.drives[name][0], value.shape[:2])
         at = own[:, i : i + 1] * (1.0 - (foot - i)) + own[:, i + 1 : i + 2] * (foot - i)
