@@ -81,7 +81,9 @@ class Windows(ShortRepr):
     @staticmethod
     def samples(low: Number, high: Number) -> Number:
         """Return where windows are sampled, (n, samples)."""
-        return np.where(SAMPLES >= 1.0, high[:, None], low[:, None] + (1.0 + SAMPLES) * 0.5 * (high - low)[:, None])
+        places = low[:, None] + 0.5 * (1.0 + SAMPLES) * (high - low)[:, None]
+        places[:, -1] = high
+        return places
 
     def some(self, *index: Number) -> Windows:
         """Return some of them as a single row; the last index is that of the window."""
@@ -146,11 +148,10 @@ class Windows(ShortRepr):
         spacing = FINE[1] - FINE[0]
         low, high = np.maximum(start - spacing, -1.0), np.minimum(start + spacing, 1.0)
         t: Number = start
-        with np.errstate(all="ignore"):
-            for _ in range(NEWTON):
-                first, second = chebyshev.chebval(t, both, tensor=False)
-                step = first / second
-                t = np.minimum(np.maximum(np.where(np.isfinite(step), t - step, t), low), high)
+        for _ in range(NEWTON):
+            first, second = chebyshev.chebval(t, both, tensor=False)
+            step = first / second
+            t = np.minimum(np.maximum(np.where(np.isfinite(step), t - step, t), low), high)
         # a curve that runs into a plateau is level at the end, as nearly as the polynomial tells it
         end, index = np.where(t < 0.0, 0, 1), np.arange(len(t))
         slope = np.abs((self.polynomials @ SLOPES.T)[index, 1 - end])
@@ -284,9 +285,10 @@ def _vertices(
     near = (place <= first[kind] + 1.0) | ((first[kind] == 0.0) & (place >= last - 1.0)) | (high - low > alike)
     which, place, kind, inside = (v[may & near] for v in (which, place, kind, inside))
     if len(which):
-        value, ends = sought.sign[which] * f.values(which, place), ~inside
+        value = sought.sign[which] * f.values(which, place)
         yield Offers(kind[inside], value[inside], place[inside], vertex=True)
-        yield Offers(kind[ends], value[ends], place[ends])
+        if not inside.all():
+            yield Offers(kind[~inside], value[~inside], place[~inside])
 
 
 def best_of(offers: Sequence[Offers], largest: Number, squared: Number) -> tuple[Number, Number, Number]:
