@@ -26,7 +26,7 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, degrees, wrapped
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase
-from compoundkin.base.errors import ChangePointWarning, InvalidInput, UnassembledPoses
+from compoundkin.base.errors import ChangePointWarning, InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.linear import zeros_of_forms
 from compoundkin.base.newton import StoppingRule, gauss_newton
 from compoundkin.base.poses import FIXED, Pose
@@ -153,6 +153,23 @@ class Singularity(ShortRepr):
     def name(self) -> str:
         """What it is called in reports and pictures."""
         return f"{self.kind} {self.number}"
+
+    @property
+    def other_branch(self) -> dict[str, float]:
+        """What `solve(branch=...)` takes to go over to the other branch here, where a motion passes smoothly.
+
+        Raises InvalidInput for what is no change point of a motion by one driver.
+
+        >>> from compoundkin.files import load
+        >>> here = singularities(solve(load("parallelogram"), {"crank": np.deg2rad(np.arange(30.0, 331.0, 5.0))}))[0]
+        >>> here.other_branch
+        {'coupler': 3.141592653589793}
+        """
+        if self.kind != CHANGE or len(self.drivers) != 1:
+            what = f"{self.name} is no change point of a motion by one driver"
+            raise InvalidInput(Problem("branch", what, "only there another branch goes on"))
+        (value,) = self.drivers.values()
+        return {self.links[0]: value}
 
     @property
     def meeting(self) -> str:

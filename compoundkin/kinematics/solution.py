@@ -295,7 +295,7 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
         return replace(found.motion, followed=followed).mended(designs, index, poses), found.doubtful
 
 
-class _Solved(NamedTuple):
+class _SolvedBlocks(NamedTuple):
     """A motion in the configuration of a curve.
 
     Also the groups near limit positions, those so near that they may need their double root, and the poses whose rates
@@ -308,7 +308,7 @@ class _Solved(NamedTuple):
     doubtful: Number
 
 
-def _solved_along(followed: FollowedPoses, order: int) -> _Solved:
+def _solved_along(followed: FollowedPoses, order: int) -> _SolvedBlocks:
     """Solve block by block and gather."""
     keep_freed_memory()
     solving_order, given = followed.solving_order, followed.given
@@ -323,7 +323,7 @@ def _solved_along(followed: FollowedPoses, order: int) -> _Solved:
         near = _near(block)
         where |= doubtful(solving_order, given, block, near)
         motion = Motion(structure, order, given, dict(block.world), failed, followed)
-        return _Solved(motion, near, _nearly(block) if near else near, where)
+        return _SolvedBlocks(motion, near, _nearly(block) if near else near, where)
     store = JoinedBlocks(designs, poses)
     for d, m in parts:
         part = given.cut(d, m)
@@ -334,7 +334,7 @@ def _solved_along(followed: FollowedPoses, order: int) -> _Solved:
         nearly |= _nearly(block) if here else here
         where[d, m] |= doubtful(solving_order, part, block, here)
     motion = Motion(structure, order, given, store.poses(), store.failed, followed)
-    return _Solved(motion, near, nearly, where)
+    return _SolvedBlocks(motion, near, nearly, where)
 
 
 def _near(block: Block) -> set[int]:

@@ -66,7 +66,7 @@ def _slopes(columns: Sequence[Sequence[Number]], bound: float) -> _Slopes:
 Place: TypeAlias = tuple[int, float]
 
 
-class _Passed(NamedTuple):
+class _Passages(NamedTuple):
     """Where a group passes change points, and where it comes within rounding of one."""
 
     places: list[Place]
@@ -229,7 +229,7 @@ def _margins(curve: ConfigurationCurve, upto: int) -> Iterator[tuple[slice, slic
         yield d, m, block.margins
 
 
-def _passed(curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[Place]) -> _Passed:
+def _passed(curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[Place]) -> _Passages:
     """Return where a group passes between samples whose rates are opposite, or is at samples that are change points.
 
     Those that it has in `common` with earlier groups are left out.
@@ -253,10 +253,10 @@ def _passed(curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[P
         elif samples[n] == len(places) - 1:
             # beyond the whole path, which is on one side of it
             found.append((int(designs[n]), float(np.nextafter(places[-1], np.inf))))
-    return _Passed(found, missed)
+    return _Passages(found, missed)
 
 
-def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Passed:
+def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Passages:
     """Return designs and places of zeros between some samples and those after them. They are change points."""
     samples, every = curve.path.samples, known.slopes
     # what the rates are along the path there, which is straight from sample to sample
@@ -270,7 +270,7 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Pa
     zeros = _Bracket(curve, k, known.square, known.designs[a], samples[known.samples[a]], length, ahead)
     zeros, falls, rises, most = zeros.some(may), falls[may], rises[may], most[may]
     if not len(falls):
-        return _Passed([], [])
+        return _Passages([], [])
     # most come near a limit and turn back
     share = false_position(
         zeros.rates, np.ones(len(falls)), falls, rises, COARSE * float(np.min(rises - falls)), TRIALS
@@ -278,11 +278,11 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Pa
     low = zeros.slopes(share).values < RISEN * most
     zeros, falls, rises = zeros.some(low), falls[low], rises[low]
     if not len(falls):
-        return _Passed([], [])
+        return _Passages([], [])
     share = false_position(zeros.rates, np.ones(len(falls)), falls, rises, FLAT, TRIALS)
     there, places = zeros.slopes(share), zeros.low + share * zeros.length
     missed = ~there.touching & (np.abs(there.values) < NOTED)
-    return _Passed(*([(int(d), float(s)) for d, s in zip(zeros.designs[which], places[which], strict=True)]
+    return _Passages(*([(int(d), float(s)) for d, s in zip(zeros.designs[which], places[which], strict=True)]
                      for which in (there.touching, missed)))  # fmt: skip
 
 

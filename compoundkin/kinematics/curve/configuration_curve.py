@@ -504,11 +504,11 @@ def leaping_groups(followed: FollowedPoses) -> list[int]:
         return []
     samples, designs = curve.path.samples, np.arange(curve.path.designs)[:, None]
     block = curve.run(curve.path.at(samples), 0, samples[None], designs, max(asked) + 1)
-    return [k for k in asked if _Contact(curve, curve.solving_order.solvers[k]).leaps(block)]
+    return [k for k in asked if _ContactCoordinate(curve, curve.solving_order.solvers[k]).leaps(block)]
 
 
 @dataclass(frozen=True)
-class _Contact:
+class _ContactCoordinate:
     """The coordinate of a group of one body on a contact, as a pure number, along a path."""
 
     curve: ConfigurationCurve
