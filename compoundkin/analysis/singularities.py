@@ -302,7 +302,7 @@ def _of_equations(motion: Motion) -> list[Singularity]:
     system, found = _Equations(motion), list[Singularity]()
     with np.errstate(all="ignore"):
         cyclic = closed_cycles(motion) if motion.inputs.poses > 1 else np.zeros(motion.inputs.designs, dtype=bool)
-        for design in range(motion.inputs.designs):
+        for design in np.flatnonzero(np.any(motion.failed == 0, axis=1)).tolist():
             mine = []
             for spot in _Search(system, design).spots():
                 one = _examined(system, design, spot)

@@ -120,7 +120,10 @@ class _Design:
             signs=self.rows(curve.signs),
             flips=self.rows(curve.flips),
             left=self.rows(curve.left),
-            near_misses={k: tuple((0, s) for d, s in one if d == self.index) for k, one in curve.near_misses.items()},
+            near_misses={
+                k: tuple(one._replace(design=0) for one in missed if one.design == self.index)
+                for k, missed in curve.near_misses.items()
+            },
             paths={k: self._path(path) for k, path in curve.paths.items()},
             turns={link: self._turns(turns) for link, turns in curve.turns.items()},
         )

@@ -157,8 +157,8 @@ def _warn(motion: Motion, poor: int) -> None:
     if any(motion.followed.rests.values()):
         warn(_rest(motion), ChangePointWarning)
     for k, missed in motion.followed.curve.near_misses.items():
-        if missed:
-            warn(_near_miss(motion, k, *missed[0]), NearChangePoint)
+        for one in [one for one in missed if abs(one.least) < NOTED][:1]:
+            warn(_near_miss(motion, k, one.design, one.place), NearChangePoint)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
@@ -178,6 +178,10 @@ def _rest(motion: Motion) -> str:
     links = ", ".join(motion.structure.groups[group].links)
     where = f"at pose {pose}, {', '.join(told)}, the drivers rest at a change point of {links}"
     return f"{where}: either branch may go on from there, and the smooth motion is taken"
+
+
+# Where a discriminant, in parts of its scale, is below this and not zero, the eighth digit of the dimensions decides.
+NOTED = 1e-8
 
 
 def _near_miss(motion: Motion, k: int, design: int, place: float) -> str:

@@ -327,5 +327,5 @@ def test_hard_cases(name: str) -> None:
 def test_all_hard_cases_are_there() -> None:
     names = {entry["id"] for entry in json.loads((REFERENCE / "hard.json").read_text())}
     # whose numbers are in the tests of the configuration curve
-    others = {"knife-edge-drives-cam", "scissor-two-stages"}
+    others = {"knife-edge-drives-cam", "scissor-two-stages", "crank-shaper-near-its-limit"}
     assert {path.stem for path in (REFERENCE / "hard").glob("*.toml")} == names | others

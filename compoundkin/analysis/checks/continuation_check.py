@@ -119,10 +119,14 @@ def _sharpness(motion: Motion) -> Number:
 
 
 def _steps_between_poses(motion: Motion, usable: Number) -> Iterator[PoseSteps]:
-    """Yield the steps from each regular pose to the next without a gap between."""
+    """Yield the steps from each regular pose to the next, over a single pose that is not assembled too.
+
+    A singular pose may have no configuration by itself, and the motion goes on behind it.
+    """
     broken = np.cumsum(motion.failed != 0, axis=1)
     designs, index = np.nonzero(usable)
-    goes_on = (designs[1:] == designs[:-1]) & (broken[designs[1:], index[1:]] == broken[designs[:-1], index[:-1]])
+    gap = broken[designs[1:], index[1:]] - broken[designs[:-1], index[:-1]]
+    goes_on = (designs[1:] == designs[:-1]) & (gap <= 1)
     steps = PoseSteps(designs[:-1][goes_on], index[:-1][goes_on], index[1:][goes_on])
     # where another branch was asked for, the motion is not smooth
     smooth = ~motion.followed.leaves_branch(*steps)
@@ -149,7 +153,17 @@ def _parts(steps: PoseSteps) -> Iterator[PoseSteps]:
 def _walk(motion: Motion, steps: PoseSteps, groups: int | None = None) -> GroupContinuation:
     begin, end = (motion.inputs.pick(steps.designs, at.astype(float)) for at in (steps.begin, steps.end))
     poses = known_at(motion, steps.designs, steps.begin)
-    return GroupContinuation(motion, begin, end, poses, len(steps.designs), groups)
+    return GroupContinuation(motion, begin, end, poses, len(steps.designs), groups, _corners(motion, steps))
+
+
+def _corners(motion: Motion, steps: PoseSteps) -> tuple[Number, Number] | None:
+    """Return where in steps, as parts of them, the motion turns corners, and how wide these are. None without any."""
+    places, wide = motion.followed.corners
+    if not np.isfinite(places).any():
+        return None
+    low, high = (motion.followed.places_on_path(steps.designs, at.astype(float)) for at in (steps.begin, steps.end))
+    length = np.where(high == low, np.inf, high - low)[:, None]
+    return (places[steps.designs] - low[:, None]) / length, np.abs(wide[steps.designs] / length)
 
 
 def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
@@ -177,7 +191,7 @@ def _by_group(motion: Motion, beyond: Number) -> dict[str, Number]:
 
 # A drawing does not choose between two configurations whose distances from it (parts of the size) differ by less than
 # the first; for a group without signs the other must be nearer than the second, a part of the distance.
-NEARER, CLEARLY = 1e-6, 0.5
+CLEARER, CLEARLY = 1e-6, 0.5
 # The configurations of larger groups take seconds, and are not enumerated.
 MOST_BODIES = 4
 
@@ -233,8 +247,8 @@ def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
                 pose = every.bodies[k]
                 trial.publish(body, Pose(constant(pose.z.c[0][..., j]), constant(pose.u.c[0][..., j])))
             nearest = np.fmin(nearest, np.where(every.real[..., j], away(trial), np.inf))
-    clear = nearest < (CLEARLY * own if solver.is_numbered else own - NEARER)
-    return np.where(clear & (own - nearest > NEARER), own - nearest, 0.0)
+    clear = nearest < (CLEARLY * own if solver.is_numbered else own - CLEARER)
+    return np.where(clear & (own - nearest > CLEARER), own - nearest, 0.0)
 
 
 def _distances_from_modes(motion: Motion, written: list[int]) -> dict[str, Number]:
@@ -268,7 +282,9 @@ LONGEST = 0.1
 SINGULAR = 1e7
 ORDER = 3
 NEWTON = 6
-LENGTHS = StepLengths(first=1.0, longest=1.0, shortest=1e-8, easy=1, most=120)
+# No step is longer than this part of the way to a corner.
+NEARER = 0.5
+LENGTHS = StepLengths(first=1.0, longest=1.0, shortest=1e-8, easy=1, most=240)
 
 
 def own_equations(solver: GroupSolver, size: float) -> GroupEquations:
@@ -291,7 +307,8 @@ class GroupContinuation:
     """Continuation of a mechanism's groups along straight steps of its inputs, from known poses at the begin.
 
     `begin` and `end` are inputs of columns (steps, 1), `poses` those of the links at the begin. All groups are
-    followed, or the first `groups` of them.
+    followed, or the first `groups` of them. `corners` are where in each step, as parts of it, and how wide: no part is
+    longer than the way to them, over which the series converge.
     """
 
     def __init__(
@@ -302,7 +319,9 @@ class GroupContinuation:
         poses: Mapping[str, Pose],
         count: int,
         groups: int | None = None,
+        corners: tuple[Number, Number] | None = None,
     ) -> None:
+        self.corners = corners
         self.order: SolvingOrder = motion.solving_order
         self.solvers = self.order.solvers[:groups]
         self.begin, self.end, self.count = begin, end, count
@@ -343,6 +362,10 @@ class GroupContinuation:
         """Advance some steps by a part, where the correction is sure."""
         self._expand(i[self._stale[i]])
         h = np.minimum(h, 1.0 - self.at[i])
+        if self.corners is not None:
+            apart, wide = self.corners[0][i] - self.at[i][:, None], self.corners[1][i]
+            with np.errstate(invalid="ignore"):
+                h = np.fmin(h, NEARER * np.sqrt(np.nanmin(apart**2 + wide**2, axis=1, initial=np.inf)))
         block, good = self._block(i, self.at[i] + h, 0), np.ones((len(i), 1), dtype=bool)
         self.guide_ends.mask(block, BEFORE)
         powers = h[:, None, None] ** np.arange(ORDER + 1).reshape(-1, 1, 1, 1)

@@ -13,7 +13,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
-from compoundkin.kinematics.curve.change_points import rates_at
+from compoundkin.kinematics.curve.change_points import rates_at, times_to_limits
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS
@@ -33,7 +33,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
     counted = motion.regular & _away_from_change_points(motion)
     if motion.order < 1 or not counted.any():
         return
-    step = STEP * _own_time(motion)
+    step = STEP * np.fmin(_own_time(motion), times_to_limits(motion.followed))
     counted = counted & np.isfinite(step) & _before_change_points(motion, step * len(OFFSETS))
     # a pose at rest stays where it is: NaN there would spread to its neighbours
     step = np.where(np.isfinite(step), step, 0.0)

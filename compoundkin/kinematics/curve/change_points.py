@@ -23,8 +23,13 @@ from compoundkin.kinematics.block import (
     root_of_square,
     signed_root,
 )
-from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses, configured
-from compoundkin.kinematics.curve.driver_path import CLOSE, SAME
+from compoundkin.kinematics.curve.configuration_curve import (
+    ConfigurationCurve,
+    FollowedPoses,
+    NearMiss,
+    configured,
+)
+from compoundkin.kinematics.curve.driver_path import CLOSE, SAME, SPACING
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.attributes import HIGHEST_ORDER
@@ -32,11 +37,9 @@ from compoundkin.model.attributes import HIGHEST_ORDER
 # The discriminant's rate is searched for its zero so often: first coarsely, in parts of the way, then to rounding.
 TRIALS = 60
 COARSE, FLAT = 1e-4, 1e-15
-# A square that is zero between two samples is as far from there as its root says, but for the curvature of that, by
-# less than this factor; and where its rate is nearly zero, it is less than this part of what it is at the samples.
-CURVED, RISEN = 3.0, 1e-5
-# Where a square is below this and not zero, the eighth digit of the dimensions decides which branch the motion takes.
-NOTED = 1e-8
+# Between two samples a square may be zero if the cubic through them is less than this part of it there, and is nearly
+# zero, where its rate is, if it is less than this part.
+DIPS, RISEN = 0.5, 1e-5
 
 
 class _Slopes(NamedTuple):
@@ -67,10 +70,10 @@ Place: TypeAlias = tuple[int, float]
 
 
 class _Passages(NamedTuple):
-    """Where a group passes change points, and where it comes within rounding of one."""
+    """Where a group passes change points, and where it comes near one and turns back."""
 
     places: list[Place]
-    missed: list[Place]
+    missed: list[NearMiss]
 
 
 class _Known(NamedTuple):
@@ -240,7 +243,9 @@ def _passed(curve: ConfigurationCurve, k: int, known: _Known, common: Sequence[P
     a, b = moving[:-1], moving[1:]
     # samples that are not near lie between some
     joined = (designs[a] == designs[b]) & (samples[b] - samples[a] == b - a)
-    opposite = np.sum(slopes.rates[a] * slopes.rates[b], axis=-1) < 0.0
+    # at a sample where a square is least its rates are zero or of either sign
+    product = np.sum(slopes.rates[a] * slopes.rates[b], axis=-1)
+    opposite = (product < 0.0) | ((product == 0.0) & np.any(slopes.rates[a] != 0.0, axis=-1))
     for d, f in common:
         beside = (designs[a] == d) & (places[samples[a]] <= f + CLOSE) & (places[samples[b]] >= f - CLOSE)
         opposite &= ~beside
@@ -265,8 +270,8 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Pa
     length = samples[known.samples[a] + 1] - samples[known.samples[a]]
     falls, rises = (np.sum(every.rates[i] * ahead, axis=-1) * length for i in (a, a + 1))
     most = np.maximum(every.values[a], every.values[a + 1])
-    far = 2.0 * (every.values[a] / np.abs(falls) + every.values[a + 1] / np.abs(rises))
-    may = (falls < 0.0) & (rises > 0.0) & (far < CURVED)
+    rises = np.fmax(rises, LEVEL * np.abs(falls))
+    may = (falls < 0.0) & (_least_of_cubic(every.values[a], falls, every.values[a + 1], rises) < DIPS * most)
     zeros = _Bracket(curve, k, known.square, known.designs[a], samples[known.samples[a]], length, ahead)
     zeros, falls, rises, most = zeros.some(may), falls[may], rises[may], most[may]
     if not len(falls):
@@ -275,15 +280,28 @@ def _between(curve: ConfigurationCurve, k: int, known: _Known, a: Number) -> _Pa
     share = false_position(
         zeros.rates, np.ones(len(falls)), falls, rises, COARSE * float(np.min(rises - falls)), TRIALS
     )
-    low = zeros.slopes(share).values < RISEN * most
-    zeros, falls, rises = zeros.some(low), falls[low], rises[low]
+    least = zeros.slopes(share).values
+    low = least < RISEN * most
+    missed = zeros.some(~low).turning_back(share[~low], least[~low], most[~low])
+    zeros, falls, rises, most = zeros.some(low), falls[low], rises[low], most[low]
     if not len(falls):
-        return _Passages([], [])
+        return _Passages([], missed)
     share = false_position(zeros.rates, np.ones(len(falls)), falls, rises, FLAT, TRIALS)
     there, places = zeros.slopes(share), zeros.low + share * zeros.length
-    missed = ~there.touching & (np.abs(there.values) < NOTED)
-    return _Passages(*([(int(d), float(s)) for d, s in zip(zeros.designs[which], places[which], strict=True)]
-                     for which in (there.touching, missed)))  # fmt: skip
+    found = [(int(d), float(s)) for d, s in zip(zeros.designs, places, strict=True)]
+    near = ~there.touching
+    missed += zeros.some(near).turning_back(share[near], there.values[near], most[near])
+    return _Passages([place for place, touches in zip(found, there.touching, strict=True) if touches], missed)
+
+
+def _least_of_cubic(first: Number, falls: Number, last: Number, rises: Number) -> Number:
+    """Return the least value in a unit interval of cubics by their values and rates at its ends."""
+    rise = last - first
+    a, b = 3.0 * (falls + rises - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * falls - rises)
+    # the rate is falls + b t + a t^2
+    root = np.sqrt(np.maximum(b * b - 4.0 * a * falls, 0.0))
+    t = np.clip(np.nan_to_num(np.where(b > 0.0, -2.0 * falls / (b + root), (root - b) / (2.0 * a)), nan=0.5), 0.0, 1.0)
+    return np.minimum(first + t * (falls + t * (0.5 * b + t * a / 3.0)), np.minimum(first, last))
 
 
 class _Bracket(NamedTuple):
@@ -301,6 +319,13 @@ class _Bracket(NamedTuple):
         """Return some of the pieces."""
         designs, low, length, ahead = (each[which] for each in self[3:])
         return self._replace(designs=designs, low=low, length=length, ahead=ahead)
+
+    def turning_back(self, share: Number, least: Number, most: Number) -> list[NearMiss]:
+        """Return the places at shares of the pieces, where the squares are least."""
+        # a square a^2 s^2 + b: its root has a corner, rounded over b / a
+        wide = self.length * np.maximum(share, 1.0 - share) * np.sqrt(np.abs(least) / np.maximum(most - least, FLAT))
+        rows = zip(self.designs, self.low + share * self.length, least, wide, strict=True)
+        return [NearMiss(int(d), *map(float, row)) for d, *row in rows]
 
     def slopes(self, share: Number) -> _Slopes:
         """Return the slopes at shares of the pieces."""
@@ -562,4 +587,52 @@ def near_groups(curve: ConfigurationCurve) -> set[int]:
     found: set[int] = set()
     for _, _, margins in _margins(curve, upto) if upto else ():
         found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
+    return found
+
+
+def times_to_limits(followed: FollowedPoses) -> Number:
+    """Return how far in time each pose is from the nearest limit position, (designs, poses).
+
+    In complex time: where a group turns back next to a change point its discriminant has two complex zeros, so that the
+    motion turns a corner. They are those of the discriminant's quadratic; infinite where the drivers rest. Through a
+    change point the motion is smooth.
+    """
+    given, curve = followed.given, followed.curve
+    groups = [solver.index for solver in followed.solving_order.solvers if solver.modes_may_meet]
+    found = np.full((given.designs, given.poses), np.inf)
+    for d, m in blocks(given.designs, given.poses, POSES_AT_ONCE) if groups else ():
+        part, at = given.cut(d, m), places(d, m)
+        notes: dict[int, list[Series]] = {k: [] for k in groups}
+        roots = {k: recorded_root(note) for k, note in notes.items()}
+        block = followed.run(part, 2, *at, max(groups) + 1, roots)
+        for k, (note,) in notes.items():
+            time = _time_to_zero(note.c)
+            if k in block.meetings:
+                time = np.fmin(time, _time_to_zero(block.meetings[k].abs2().c))
+            flips = curve.change_points.get(k)
+            if flips is not None:
+                apart = followed.places_on_path(at[1], at[0])[..., None] - flips[at[1]]
+                passes = np.abs(apart).min(axis=-1) <= SMOOTH * time * _pace(followed, part)
+                time = np.where(passes, np.inf, time)
+            found[d, m] = np.fmin(found[d, m], time)
+    return found
+
+
+# A zero of a discriminant is that of a change point which is less than so many times as far away.
+SMOOTH = 2.0
+
+
+def _time_to_zero(c: tuple[Number, ...]) -> Number:
+    """Return the distance of the nearer zero of a quadratic by its coefficients, in the complex plane."""
+    value, rate, bend = (*c, 0.0, 0.0)[:3]
+    root = np.sqrt(np.asarray(rate * rate - 4.0 * value * bend, dtype=complex))
+    farther = np.maximum(np.abs(rate + root), np.abs(rate - root))
+    return np.divide(2.0 * np.abs(value), farther, out=np.full(np.shape(farther), np.inf), where=farther > 0.0)
+
+
+def _pace(followed: FollowedPoses, part: Inputs) -> Number:
+    """Return how many places a second the fastest driver goes."""
+    found: Number = 0.0
+    for name, (_, speed, *_) in part.drives.items():
+        found = np.fmax(found, np.abs(speed) / (followed.solving_order.unit(name) * SPACING))
     return found

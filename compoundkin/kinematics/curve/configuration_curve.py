@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,6 +51,18 @@ from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
 from compoundkin.model.pairs.contract import as_turn_counting
 
 
+class NearMiss(NamedTuple):
+    """Where a design's group comes near a change point and turns back, at a place: how small its square is there.
+
+    Its motion turns a corner there that is so many places `wide`.
+    """
+
+    design: int
+    place: float
+    least: float
+    wide: float
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class ConfigurationCurve(ShortRepr):
     """The configuration of every group along a path of the drivers.
@@ -58,7 +71,7 @@ class ConfigurationCurve(ShortRepr):
     padded with infinity. `paths` are the states of the other groups, of which those in `states` are known at home,
     `turns` the angles of links that pairs count with full turns. `chosen_by` tells what chose each group's mode. At the
     change points next to driver values `branches` a group goes over to its other branch, which is at the places `left`;
-    at `near_misses`, designs and places, it turns back within rounding of a change point.
+    at `near_misses` it comes near one and turns back.
     """
 
     solving_order: SolvingOrder
@@ -71,7 +84,7 @@ class ConfigurationCurve(ShortRepr):
     branches: Mapping[int, tuple[float, ...]] = field(default_factory=dict)
     left: Mapping[int, Number] = field(default_factory=dict)
     flips: Mapping[int, Number] = field(default_factory=dict)
-    near_misses: Mapping[int, tuple[tuple[int, float], ...]] = field(default_factory=dict)
+    near_misses: Mapping[int, tuple[NearMiss, ...]] = field(default_factory=dict)
     signs: dict[int, Number] = field(default_factory=dict)
     paths: dict[int, GroupPath] = field(default_factory=dict)
     turns: dict[str, Turns] = field(default_factory=dict)
@@ -397,9 +410,17 @@ class FollowedPoses(ShortRepr):
         """The solving order, with what is followed on the curve."""
         return self.curve.solving_order
 
-    def run(self, part: Inputs, order: int, s: Number, designs: Number, upto: int | None = None) -> Block:
+    def run(
+        self,
+        part: Inputs,
+        order: int,
+        s: Number,
+        designs: Number,
+        upto: int | None = None,
+        roots: Mapping[int, Root] | None = None,
+    ) -> Block:
         """Solve a block of inputs in the configuration at places `s` along the motion, up to a group."""
-        return _solved(self.curve, part, order, _ConfiguredAlong(self.curve, designs, s, self.poses), upto, None)
+        return _solved(self.curve, part, order, _ConfiguredAlong(self.curve, designs, s, self.poses), upto, roots)
 
     def sign(self, k: int, designs: Number, s: Number) -> Number:
         """Return the sign of a dyad's mode at places along the motion."""
@@ -453,6 +474,19 @@ class FollowedPoses(ShortRepr):
             passes = (there - low[:, None]) * (there - high[:, None]) <= 0.0
             found |= np.any(passes & np.isfinite(there), axis=1)
         return found
+
+    @cached_property
+    def corners(self) -> tuple[Number, Number]:
+        """The places on the path at which a design's motion turns corners, and how wide they are.
+
+        Both are (designs, count), padded with infinity.
+        """
+        every = [one for missed in self.curve.near_misses.values() for one in missed]
+        rows = [[one for one in every if one.design == d] for d in range(self.given.designs)]
+        found = np.full((2, len(rows), max(1, *map(len, rows))), np.inf)
+        for d, own in enumerate(rows):
+            found[0, d, : len(own)], found[1, d, : len(own)] = [o.place for o in own], [o.wide for o in own]
+        return found[0], found[1]
 
     @property
     def lost(self) -> bool:
