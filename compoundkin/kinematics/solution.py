@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import product
 from math import factorial
 from typing import Any, NamedTuple
 
@@ -125,10 +126,45 @@ def solved(
         followed = follow(solving_order, given, signs, shown, branches)
     told = without_imprecise_rates(*solve_all_blocks(followed, order))
     if solving_order.structure.relaxation:
-        check_redundant(told.motion)
+        try:
+            check_redundant(told.motion)
+        except NotAssembled as error:
+            closing = _closing_signs(told.motion.followed, signs)
+            if closing is None:
+                raise error
+            followed = follow(solving_order, given, {**signs, **closing}, shown, branches)
+            followed.curve.chosen_by.update(dict.fromkeys(closing, "redundant"))
+            told = without_imprecise_rates(*solve_all_blocks(followed, order))
     if branches:
         _check_branches(told.motion)
     return told
+
+
+# So many groups chosen by a drawing are tried in their other modes where redundant pairs open.
+MOST_TRIED = 6
+
+
+def _closing_signs(followed: FollowedPoses, signs: Mapping[int, int]) -> dict[int, int] | None:
+    """Return other modes than the drawing's of as few groups as may be, in which all redundant pairs close.
+
+    A drawing of other dimensions may lie nearer to a mode in which a pair that closes later opens. None where none do.
+    """
+    curve = followed.curve
+    two = {solver.index for solver in curve.solving_order.solvers if solver.modes == 2}
+    free = [k for k, by in curve.chosen_by.items() if by in ("drawing", "default") and k in two]
+    asked = [k for k in free if np.ndim(curve.signs[k]) == 0][:MOST_TRIED]
+    own = tuple(int(curve.signs[k]) for k in asked)
+    every = (dict(zip(asked, one, strict=True)) for one in product((1, -1), repeat=len(asked)))
+    for other in sorted(every, key=lambda one: sum(a != b for a, b in zip(one.values(), own, strict=True))):
+        trial = follow(curve.solving_order, followed.given, {**signs, **other}, curve.shown)
+        try:
+            motion, _ = solve_all_blocks(trial, 0)
+            check_redundant(motion)
+        except NotAssembled:
+            continue
+        if np.any(motion.failed == 0):
+            return other
+    return None
 
 
 def _check_branches(motion: Motion) -> None:

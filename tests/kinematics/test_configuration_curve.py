@@ -266,3 +266,25 @@ def platforms(count: int) -> ck.Mechanism:
     values = np.linspace(0.0, 0.15, 9)
     drawing = ck.drawn(**drawn)
     return ck.Mechanism("platforms", ck.link("frame", *frame), *items, drawing, ck.drive("crank", values=values))
+
+
+def test_a_lift_with_both_drivers_over_more_than_half_a_turn() -> None:
+    """It raised IndexError; both stages pass change points at once, and two of its arms are redundant."""
+    mechanism = ck.load("double-parallelogram-lift")
+    values = {drive.name: np.linspace(0.1, 5.0, 24) for drive in mechanism.drives}
+    motion = quietly(mechanism, values)
+    assert motion.assembled.all()
+    assert np.abs(motion.links["head"].angle).max() < 1e-12
+    assert ck.verify(motion).passed
+
+
+@pytest.mark.parametrize("longer", [1.25, 2.0])
+def test_a_drawing_of_shorter_arms_does_not_choose_modes_that_open_redundant_pairs(longer: float) -> None:
+    """The drawing, that of the lift as it is, lies nearer to a crossed parallelogram: its third arm would not fit."""
+    mechanism = ck.load("double-parallelogram-lift")
+    arms = [ck.link(name, **{one: 0, other: 300.0 * longer}) for name, one, other in
+            (("lower", "A", "D"), ("lower-2", "B", "E"), ("lower-3", "C", "F"))]  # fmt: skip
+    motion = ck.solve(mechanism.replace(*arms))
+    assert motion.assembled.all()
+    assert np.abs(motion.links["head"].angle).max() < 1e-12
+    assert "redundant" in motion.chosen_by.values()

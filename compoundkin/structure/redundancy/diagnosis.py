@@ -344,25 +344,37 @@ def chosen(given: Sequence[Candidate], states: int) -> list[Candidate]:
     Aligned ones go before others.
     """
     found: list[Candidate] = []
-    left = np.eye(states)
-    while left.shape[1]:
-        taken = {one.place for one in found}
-        open_to = [one for one in given if one.place not in taken and len(one.forces) <= left.shape[1]]
-        shares = [float(np.linalg.svd(one.forces @ left, compute_uv=False)[-1]) for one in open_to]
-        aligned = [share for one, share in zip(open_to, shares, strict=True) if one.is_aligned and share > WEAK]
+    # what each candidate carries of the states that are left
+    carried, places = [one.forces for one in given], [one.place for one in given]
+    taken, count = set[object](), states
+    while count:
+        index = [k for k, place in enumerate(places) if place not in taken and len(carried[k]) <= count]
+        shares = _shares([carried[k] for k in index])
+        aligned = [share for k, share in zip(index, shares, strict=True) if given[k].is_aligned and share > WEAK]
         most = max(aligned or shares, default=0.0)
         if most <= WEAK:
             return []
         best = [
-            one
-            for one, share in zip(open_to, shares, strict=True)
-            if share >= (1.0 - ALIKE) * most and (one.is_aligned or not aligned)
-        ]
-        one = best[-1]
-        found.append(one)
-        _, _, right = np.linalg.svd(one.forces @ left, full_matrices=True)
-        left = left @ right[len(one.forces) :].T
+            k
+            for k, share in zip(index, shares, strict=True)
+            if share >= (1.0 - ALIKE) * most and (given[k].is_aligned or not aligned)
+        ][-1]
+        found.append(given[best])
+        taken.add(places[best])
+        rest = np.linalg.qr(carried[best].T, mode="complete")[0][:, len(carried[best]) :]
+        count -= len(carried[best])
+        joined = np.concatenate(carried) @ rest
+        carried = np.split(joined, np.cumsum([len(forces) for forces in carried])[:-1])
     return found
+
+
+def _shares(forces: Sequence[Array]) -> list[float]:
+    """Return the least singular value of each matrix, those of one size together."""
+    found = np.zeros(len(forces))
+    for rows in {len(one) for one in forces}:
+        some = [k for k, one in enumerate(forces) if len(one) == rows]
+        found[some] = np.linalg.svd(np.stack([forces[k] for k in some]), compute_uv=False)[:, -1]
+    return [float(share) for share in found]
 
 
 def strength(given: Sequence[Candidate]) -> float:
