@@ -274,9 +274,10 @@ def singularities(what: Motion | Mechanism | Structure, outputs: Sequence[str] =
       branch 2: crank 1, coupler 0.666667, follower -0.333333
     """
     motion = what if isinstance(what, Motion) else _solved(what)
-    own = outputs_of(motion, chosen_outputs(motion, outputs))
+    given = tuple(outputs)
+    own = outputs_of(motion, chosen_outputs(motion, given))
     names = [one.coordinate for one in own if not one.is_point and one.rate]
-    return _numbered(motion, [*_of_equations(motion), *_of_outputs(motion, names, bool(outputs))])
+    return _numbered(motion, [*_of_equations(motion), *_of_outputs(motion, names, bool(given))])
 
 
 @checked
