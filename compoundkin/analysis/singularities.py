@@ -40,7 +40,7 @@ from compoundkin.kinematics.extremes.stretches import SAME_PLACE, closed_cycles,
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.contract import Ends, constraint_scales
 from compoundkin.structure import Structure
 from compoundkin.structure.redundancy.constraint_equations import ConstraintEquations
 
@@ -50,6 +50,9 @@ DEAD, ARCHITECTURE = "dead point", "architecture"
 # A block is singular where its least singular value is below this: dimensions that close to rounding, 1e-12 of the
 # size, leave its root where two branches meet.
 SINGULAR = 1e-6
+# Where a motion ends it may be so much greater: ends are known to 1e-13 of a pose, and what grows fast there, as beside
+# a pole of another group, to the root of as much more.
+AT_END = 1e-3
 # There, singular values of the whole Jacobian below this are zero: a pose is known to no more than SINGULAR, which the
 # Jacobian's slope by the pose makes a few times larger.
 ZERO = 1e-5
@@ -66,7 +69,13 @@ ONE = 1e-3
 # A place where the least singular value is below this is resolved: rounding of poses.
 RESOLVED = 1e-10
 PLACES_AT_ONCE = 512
-# Second derivatives (rows of length 1, unit vectors) below this are zero, and so are discriminants by this part of
+# Links farther away than so many sizes are on their way to infinity, as between guides that become parallel: the least
+# singular value falls there, though nothing is singular.
+FAR = 200.0
+# Of a group so many intervals at most are divided at once, those with the least values first: on the way to infinity
+# very many stay open, and none has a zero.
+MOST_OPEN = 200
+# Second derivatives (along unit vectors) below this are zero, and so are discriminants by this part of
 # theirs: poses, and with them null spaces, are known to some 1e-10.
 FLAT = 1e-7
 # A branch is confirmed by a step of this length (radians, parts of the unit) both ways, corrected: it deviates from its
@@ -321,12 +330,16 @@ def _of_equations(motion: Motion) -> list[Singularity]:
 
 
 class _Row(NamedTuple):
-    """A row of the Jacobian: which entry of which pair, and which driver prescribes it; None where it is held."""
+    """A row of the Jacobian: which entry of which pair, and which driver prescribes it; None where it is held.
+
+    `scale` is the unit of a length, 1 of an angle.
+    """
 
     pair: int
     entry: int
     driver: str | None
     sign: float
+    scale: float
     level: int
 
 
@@ -385,14 +398,16 @@ class _Equations:
     def rows(self) -> tuple[_Row, ...]:
         """All rows: what pairs hold, then the drivers' coordinates."""
         free = len(self._equations.pairs)
-        held = [
-            _Row(k, i, None, 1.0, self._last(pair))
+        found = [
+            _Row(k, i, None, 1.0, scale, self._last(pair))
             for k, pair in enumerate(self.pairs[:free])
-            for i in range(pair.held)
+            for i, scale in enumerate(constraint_scales(pair, self.unit))
         ]
         drives = zip(self.motion.mechanism.drives, self._equations.driven, strict=True)
-        return (*held, *(_Row(free + k, pair.held, drive.name, float(pair.driven_by(drive.link)), self._last(pair))
-                         for k, (drive, pair) in enumerate(drives)))  # fmt: skip
+        for k, (drive, pair) in enumerate(drives, start=free):
+            sign, scale = float(pair.driven_by(drive.link)), 1.0 if pair.free_is_angle else self.unit
+            found.append(_Row(k, pair.held, drive.name, sign, scale, self._last(pair)))
+        return tuple(found)
 
     def _last(self, pair: Pair) -> int:
         return max(self.level[name] for name in pair.members)
@@ -428,6 +443,13 @@ class _Equations:
         poses = {name: _leading(pose, len(places)) for name, pose in there.poses.items()}
         return _Poses(poses, ends, there.failed.ravel() == 0)
 
+    def near(self, block: _Block, there: _Poses) -> Number:
+        """Return at which places a group is assembled, and no link at it on its way to infinity."""
+        found = there.good
+        for name in {name for row in block.rows for name in self.pairs[row.pair].members}:
+            found = found & (np.abs(there.links[name].z.c[0]) < FAR * self.motion.size)
+        return found
+
     def tables(self, poses: Mapping[str, Pose], ends: Sequence[Ends], count: int) -> list[Number]:
         """Return the Jacobian of every pair, (count, rows, 3 members), x and y in parts of the unit."""
         size, found = self.unit, []
@@ -437,25 +459,16 @@ class _Equations:
             found.append(np.broadcast_to(own, (count, *own.shape[-2:])))
         return found
 
-    def matrix(self, rows: Sequence[_Row], links: Sequence[str], tables: Sequence[Number]) -> tuple[Number, Number]:
-        """Return rows by some links, (count, rows, 3 links), and their lengths over all links.
-
-        Rows of drivers are not scaled: they are radians, or parts of the unit.
-        """
+    def matrix(self, rows: Sequence[_Row], links: Sequence[str], tables: Sequence[Number]) -> Number:
+        """Return rows by some links, (count, rows, 3 links). Rows are radians, or parts of the unit."""
         at = {name: 3 * k for k, name in enumerate(links)}
-        count = len(tables[0])
-        found, lengths = np.zeros((count, len(rows), 3 * len(links))), np.ones((count, len(rows)))
+        found = np.zeros((len(tables[0]), len(rows), 3 * len(links)))
         for i, row in enumerate(rows):
-            pair, entry = self.pairs[row.pair], tables[row.pair][:, row.entry] * row.sign
-            size = 1.0 if row.driver is None or pair.free_is_angle else self.unit
-            for side, name in enumerate(pair.members):
+            for side, name in enumerate(self.pairs[row.pair].members):
                 if name in at:
-                    found[:, i, at[name] : at[name] + 3] += entry[:, 3 * side : 3 * side + 3] / size
-            length = np.linalg.norm(entry, axis=1) if row.driver is None else np.full(count, size)
-            lengths[:, i] = np.where(length > 0.0, length, 1.0)
-            if row.driver is None:
-                found[:, i] /= lengths[:, i, None]
-        return found, lengths
+                    part = tables[row.pair][:, row.entry, 3 * side : 3 * side + 3]
+                    found[:, i, at[name] : at[name] + 3] += part * (row.sign / row.scale)
+        return found
 
 
 class _Poses(NamedTuple):
@@ -477,10 +490,11 @@ def _leading(pose: Pose, count: int) -> Pose:
 
 
 class _Spot(NamedTuple):
-    """Where some blocks are singular: from a place to another."""
+    """Where some blocks are singular: from a place to another; and whether the motion ends there."""
 
     place: float
     until: float
+    is_end: bool = False
 
 
 @dataclass(eq=False)
@@ -525,7 +539,7 @@ class _Search:
             halves = [np.column_stack(part)[~flat] for part in ((rows[:, 0], middle, rows[:, 2]),
                                                                 (middle, rows[:, 1], rows[:, 2]))]  # fmt: skip
             rows = self._alive(np.concatenate(halves))
-        return self._joined(whole)
+        return self._joined(whole, np.concatenate([s.low[mine][s.limits[mine, 0]], s.high[mine][s.limits[mine, 1]]]))
 
     def _divided(self, ends: Number) -> Number:
         """Return intervals divided next to the change points that the motion knows: their places are known at once."""
@@ -550,8 +564,10 @@ class _Search:
             part = distinct[k : k + PLACES_AT_ONCE]
             there = system.at(self.design, part)
             tables = system.tables(there.links, there.ends, len(part))
-            own = [system.matrix(block.rows, block.links, tables)[0] for block in system.blocks]
-            values = [_least(m, block.kept, there.good) for m, block in zip(own, system.blocks, strict=True)]
+            own = [system.matrix(block.rows, block.links, tables) for block in system.blocks]
+            values = [
+                _least(m, block.kept, system.near(block, there)) for m, block in zip(own, system.blocks, strict=True)
+            ]
             least.append(np.stack(values, axis=1))
             blocks.append(own)
         joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)]
@@ -573,13 +589,15 @@ class _Search:
             # what is next to a singular place is that place
             found = ~wide & (np.minimum(*values) < RESOLVED)
             kept[mine] = (wide & flat) | (~found & (values[0] + values[1] <= BENDS * change))
+            still = mine[kept[mine]]
+            kept[still[np.argsort((values[0] + values[1])[kept[mine]], kind="stable")[MOST_OPEN:]]] = False
         return rows[kept]
 
-    def _joined(self, whole: list[tuple[float, float]]) -> list[_Spot]:
-        """Return places that are singular, those next to each other as one, and stretches."""
+    def _joined(self, whole: list[tuple[float, float]], limits: Number) -> list[_Spot]:
+        """Return places that are singular, those next to each other as one, and stretches; `limits` end the motion."""
         best = np.min(np.where(np.isnan(self.least), np.inf, self.least), axis=1)
         order = np.argsort(self.places)
-        order = order[best[order] < SINGULAR]
+        order = order[best[order] < np.where(np.isin(self.places[order], limits), AT_END, SINGULAR)]
         groups, spots = list[list[int]](), list[_Spot]()
         for k in order.tolist():
             if groups and (
@@ -596,7 +614,7 @@ class _Search:
                                      for p in (first, last))))  # fmt: skip
             else:
                 place = self._known(float(self.places[one[int(np.argmin(best[one]))]]))
-                spots.append(_Spot(place, place))
+                spots.append(_Spot(place, place, bool(np.isin(self.places[one], limits).any())))
         return spots
 
     def _known(self, place: float) -> float:
@@ -671,31 +689,22 @@ class _Pose:
                 own = self.ends[row.pair], tuple(poses[name] for name in pair.members)
                 known[row.pair] = (pair.coordinate(*own),) if row.driver is not None else pair.closure(*own)
             c = known[row.pair][0 if row.driver is not None else row.entry].c
-            value = np.real(c[order]) * row.sign if order < len(c) else 0.0
+            value = np.real(c[order]) * (row.sign / row.scale) if order < len(c) else 0.0
             found.append(np.broadcast_to(value, states.shape[:-1]))
-        return np.stack(found, axis=-1) / self._lengths
+        return np.stack(found, axis=-1)
 
     @cached_property
-    def whole(self) -> tuple[Number, Number]:
-        """All rows by all links at the pose, and their lengths."""
-        tables = self.system.tables(self.poses, self.ends, 1)
-        matrix, lengths = self.system.matrix(self.system.rows, self.system.links, tables)
-        return matrix[0], lengths[0]
+    def whole(self) -> Number:
+        """All rows by all links at the pose."""
+        return self._matrix(self.poses)
 
-    @property
-    def _lengths(self) -> Number:
-        return self.whole[1]
+    def _matrix(self, poses: Mapping[str, Pose]) -> Number:
+        tables = self.system.tables(poses, self.ends, 1)
+        return self.system.matrix(self.system.rows, self.system.links, tables)[0]
 
     @cached_property
     def _start(self) -> Number:
         return self._values(np.zeros(len(self.system.links) * 3), 0)
-
-    def rows_at(self, state: Number) -> Number:
-        """Return all rows by all links in another state, scaled as at the pose."""
-        poses = self.moved(state)
-        tables = self.system.tables(poses, self.ends, 1)
-        matrix, lengths = self.system.matrix(self.system.rows, self.system.links, tables)
-        return matrix[0] * (lengths[0] / self._lengths)[:, None]
 
     @cached_property
     def _drivers(self) -> Number:
@@ -705,15 +714,14 @@ class _Pose:
         """Return what pairs hold and what drivers hold across their path, of rows or values of all."""
         return np.concatenate([rows[~self._drivers], self.way.across @ rows[self._drivers]])
 
-    def pace(self, tangent: Number, rows: Number | None = None) -> float:
+    def pace(self, tangent: Number) -> float:
         """Return how fast the drivers move along their path."""
-        matrix = self.whole[0] if rows is None else rows
-        return float(self.way.along @ (matrix[self._drivers] @ tangent))
+        return float(self.way.along @ (self.whole[self._drivers] @ tangent))
 
     def second(self, states: Number) -> Number:
         """Return the second derivatives of the held rows along states (n, 3 links), (n, rows)."""
         values = 2.0 * self._values(states, 2)
-        paces = self.whole[0][self._drivers] @ states.T
+        paces = self.whole[self._drivers] @ states.T
         bent = (self.way.along @ paces)[:, None] ** 2 * self.way.bend
         return np.concatenate(
             [values[:, ~self._drivers], (values[:, self._drivers] - bent) @ self.way.across.T], axis=1
@@ -732,7 +740,7 @@ class _Pose:
                 [r.driver is not None and self.system.pairs[r.pair].free_is_angle for r in self.system.rows]
             )
             away = np.where(angles, wrapped(away), away)
-            return self.with_free_driver(away), self.with_free_driver(self.rows_at(x))
+            return self.with_free_driver(away), self.with_free_driver(self._matrix(self.moved(x)))
 
         found = gauss_newton(system, lambda m, r: np.linalg.lstsq(m, r, rcond=REST.rounding)[0], state, STEPS, REST)
         return found.x if found.residual < CLOSED else None
@@ -808,25 +816,32 @@ def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | Non
     """Return what a pose is at which some block is singular. None where others hold it."""
     middle = 0.5 * (spot.place + spot.until)
     pose = _pose_at(system, design, middle)
-    if not np.isfinite(pose.whole[0]).all():
+    if not np.isfinite(pose.whole).all():
         return None
+    kind, turns, finite, values = CHANGE, False, True, _drivers_at(system.motion, design, middle)
     idle = _idle(pose)
-    opened = _without(_spaces(pose.whole[0])[0], idle)
+    null, left = _spaces(pose.with_free_driver(pose.whole))
+    null = _without(null, idle)
+    opened = _without(_spaces(pose.whole)[0], idle)
+    if null.shape[1] == 1 and (opened.shape[1] or spot.is_end):
+        pose, values = _at_limit(pose, idle, values)
+        opened = _without(_spaces(pose.whole)[0], idle)
+    which = [_nullity(system, pose, block) for block in system.blocks]
+    # no more than in the blocks: links far away have levers that make whole singular values small
+    opened = opened[:, max(opened.shape[1] - sum(which), 0) :]
     if not opened.shape[1]:
         return None
-    null, left = _spaces(pose.with_free_driver(pose.whole[0]))
-    null = _without(null, idle)
-    kind, turns, finite, values = CHANGE, False, True, _drivers_at(system.motion, design, middle)
     if null.shape[1] == 1:
-        pose, values = _at_limit(pose, values)
-        null = _without(_spaces(pose.with_free_driver(pose.whole[0]))[0], idle)[:, :1]
-        kind, turns = LIMIT, abs(_turning(pose, null[:, 0])) > FLAT
-        tangents = [(null[:, 0], 1)]
+        tangent = _without(_spaces(pose.with_free_driver(pose.whole))[0], idle)[:, 0]
+        kind, turns, tangents = LIMIT, abs(_turning(pose, tangent)) > FLAT, [(tangent, 1)]
     else:
         forms = _forms(pose, null, left)
         roots, finite = zeros_of_forms(forms)
         tangents = [(null @ root, times) for root, times in roots if _leads_on(pose, null @ root)]
         kind = CHANGE if sum(times for _, times in tangents) > 1 or not finite else SHAKY
+        if spot.is_end and not tangents and opened.shape[1] == 1:
+            # what seems to open besides is next to a pole of another group
+            kind, turns, tangents = LIMIT, True, [(opened[:, 0], 1)]
     if spot.until > spot.place:
         values = _drivers_at(system.motion, design, spot.place)
         # else the drivers rest at a singular pose
@@ -835,12 +850,14 @@ def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | Non
     for way in ways if not finite else ():
         if not any(_alike(way, other) for other, _ in tangents):
             tangents.append((way, 1))
-    branches = [replace(_tangent(pose, t), multiplicity=times, followed=any(_alike(t, way) for way in ways))
-                for t, times in tangents]  # fmt: skip
+    # at a limit position the motion turns into the only branch by the root of the distance
+    branches = [
+        replace(_tangent(pose, t), multiplicity=times, followed=kind == LIMIT or any(_alike(t, way) for way in ways))
+        for t, times in tangents
+    ]
     branches.sort(key=lambda one: not one.followed)
-    which = [k for k, block in enumerate(system.blocks) if _is_singular(system, pose, block)]
-    groups = [system.motion.structure.groups[k] for k in which]
     motion = system.motion
+    groups = [group for group, count in zip(motion.structure.groups, which, strict=True) if count]
     return Singularity(
         0, kind, _design(motion, design), spot.place, spot.until, values, _time(motion, design, spot.place),
         tuple(group.name for group in groups), tuple(link for group in groups for link in group.links), "",
@@ -849,9 +866,11 @@ def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | Non
     )  # fmt: skip
 
 
-def _is_singular(system: _Equations, pose: _Pose, block: _Block) -> bool:
+def _nullity(system: _Equations, pose: _Pose, block: _Block) -> int:
+    """Return in how many directions a group moves though the links before it rest, idle links apart."""
     tables = system.tables(pose.poses, pose.ends, 1)
-    return bool(_least(system.matrix(block.rows, block.links, tables)[0], block.kept, np.ones(1, dtype=bool))[0] < ZERO)
+    values = np.linalg.svd(system.matrix(block.rows, block.links, tables)[0], compute_uv=False)
+    return block.kept - int(np.sum(values[: block.kept] > ZERO))
 
 
 def _design(motion: Motion, design: int) -> tuple[int, ...]:
@@ -872,15 +891,15 @@ def _drivers_at(motion: Motion, design: int, place: float) -> dict[str, float]:
 
 def _turning(pose: _Pose, tangent: Number) -> float:
     """Return the second derivative of the drivers' path along a smooth branch."""
-    held = pose.with_free_driver(pose.whole[0])
+    held = pose.with_free_driver(pose.whole)
     bent = np.linalg.lstsq(held, -pose.second(tangent[None])[0], rcond=ZERO)[0]
     return float(pose.way.along @ pose.bending(tangent)) + pose.pace(bent)
 
 
-def _at_limit(pose: _Pose, values: Mapping[str, float]) -> tuple[_Pose, dict[str, float]]:
+def _at_limit(pose: _Pose, idle: Number, values: Mapping[str, float]) -> tuple[_Pose, dict[str, float]]:
     """Return the pose at which the drivers stand still along a smooth branch, by Newton's method, and their values."""
     for _ in range(POLISHED):
-        tangent = _spaces(pose.with_free_driver(pose.whole[0]))[0][:, 0]
+        tangent = _without(_spaces(pose.with_free_driver(pose.whole))[0], idle)[:, 0]
         pace, bend = pose.pace(tangent), _turning(pose, tangent)
         if abs(bend) < FLAT or abs(pace) < REST.exact:
             break
@@ -951,7 +970,7 @@ def _alike(one: Number, other: Number) -> bool:
 def _tangent(pose: _Pose, state: Number, number: int = 0) -> PoseTangent:
     """Return a direction with its rates scaled."""
     system, motion = pose.system, pose.system.motion
-    rates = pose.whole[0][pose._drivers] @ state
+    rates = pose.whole[pose._drivers] @ state
     names = [row.driver for row in system.rows if row.driver is not None]
     units = np.array([1.0 if motion.drives[name].is_angle else system.unit for name in names])
     fastest = int(np.argmax(np.abs(rates))) if len(rates) else 0
@@ -989,7 +1008,7 @@ def _of_outputs(motion: Motion, names: Sequence[str], strict: bool) -> Iterator[
             found.at.design.tolist(), found.at.place.tolist(), found.until.tolist(), strict=True
         ):
             pose = _pose_at(system, design, place)
-            null = _without(_spaces(pose.with_free_driver(pose.whole[0]))[0], _idle(pose))
+            null = _without(_spaces(pose.with_free_driver(pose.whole))[0], _idle(pose))
             tangents = (_tangent(pose, null[:, 0], 1),) if null.shape[1] == 1 else ()
             groups = tuple(g.name for g in motion.structure.groups if not set(g.links).isdisjoint(links))
             yield Singularity(

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 import compoundkin as ck
 from compoundkin.analysis.singularities import Singularities, Singularity, singular_poses
 from compoundkin.base.linear import zeros_of_forms
+from compoundkin.kinematics.extremes.dead_points import driver_dead_points
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses",
                                         "ignore::compoundkin.base.errors.ChangePointWarning")  # fmt: skip
@@ -317,6 +318,22 @@ def crossing(B: complex, near: float) -> complex:
     across = np.sqrt(max(3.0**2 - along**2, 0.0))
     both = [B + away / abs(away) * (along + sign * 1j * across) for sign in (1, -1)]
     return min(both, key=lambda c: abs(np.angle(c - 3.0) - near))
+
+
+@pytest.mark.parametrize("seed", [3, 9, 57, 94, 140, 419])
+def test_limit_positions_of_random_mechanisms_are_all_that_is_singular(seed: int) -> None:
+    """The motion stops where a group does not close: found by bisection there, by the whole Jacobian here.
+
+    Dyads of slides among them run to infinity where their guides become parallel: no singular pose.
+    """
+    mechanism = ck.chains.random_mechanism(1 + seed % 6, seed)
+    start = float(mechanism.drives[0].values)
+    motion = ck.solve(mechanism, np.linspace(start - 3.1, start + 3.1, 73))
+    every = singular_poses(motion)
+    assert {one.kind for one in every} <= {"limit position"}
+    assert all(one.branches[0].followed for one in every)
+    stops = driver_dead_points(motion).place
+    np.testing.assert_allclose([one.place for one in every], np.sort(stops), atol=1e-9)
 
 
 # --- zeros of quadratic forms ----------------------------------------------------------------------------------
