@@ -610,8 +610,8 @@ class _Search:
         for one in groups:
             first, last = self.places[one[0]], self.places[one[-1]]
             if any(a < last and first < b for a, b in whole):
-                spots.append(_Spot(*(float(np.round(p)) if abs(p - np.round(p)) < SAME_PLACE else float(p)
-                                     for p in (first, last))))  # fmt: skip
+                low, high = (np.round(p) if abs(p - np.round(p)) < SAME_PLACE else p for p in (first, last))
+                spots.append(_Spot(float(low), float(high)))
             else:
                 place = self._known(float(self.places[one[int(np.argmin(best[one]))]]))
                 spots.append(_Spot(place, place, bool(np.isin(self.places[one], limits).any())))
