@@ -216,7 +216,8 @@ def _rest(motion: Motion) -> str:
     return f"{where}: either branch may go on from there, and the smooth motion is taken"
 
 
-# Where a discriminant, in parts of its scale, is below this and not zero, the eighth digit of the dimensions decides.
+# Where a discriminant, in parts of its scale, or the distance of pins, of the size, is below this and not zero, the
+# eighth digit of the dimensions decides.
 NOTED = 1e-8
 
 
@@ -225,7 +226,7 @@ def _near_miss(motion: Motion, k: int, design: int, place: float) -> str:
     part = motion.followed.curve.path.pick(np.array([design]), np.array([place]))
     told = (f"{name} = {_shown(motion.structure, name, float(np.ravel(v[0])[0]))}" for name, v in part.drives.items())
     links = ", ".join(motion.structure.groups[k].links)
-    what = "within 1e-8 of a change point (the squared sine between its branches), and turns back"
+    what = "within 1e-8 of a change point (the squared sine between its branches, or pins apart), and turns back"
     return f"at {', '.join(told)}, {links} comes {what}: a rounding of the dimensions decides which branch it takes"
 
 

@@ -324,6 +324,8 @@ class _Bracket(NamedTuple):
         """Return the places at shares of the pieces, where the squares are least."""
         # a square a^2 s^2 + b: its root has a corner, rounded over b / a
         wide = self.length * np.maximum(share, 1.0 - share) * np.sqrt(np.abs(least) / np.maximum(most - least, FLAT))
+        # of pins that nearly meet it is their distance that dimensions decide, not its square
+        least = np.sqrt(np.abs(least)) if self.square else least
         rows = zip(self.designs, self.low + share * self.length, least, wide, strict=True)
         return [NearMiss(int(d), *map(float, row)) for d, *row in rows]
 

@@ -205,17 +205,23 @@ def followed_path(
         low, high = max(low, first), min(high, last)
         stops = np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
     way_on, way_back = ways or both_ways(curve)
-    ahead, back = _march(way_on, k, state).go(at, stops), _march(way_back, k, state).go(at, stops[::-1])
+    ahead, back = (
+        _march(way_on, way_back, k, state).go(at, stops),
+        _march(way_back, way_on, k, state).go(at, stops[::-1]),
+    )
     # a change point at an end of the path is solved just beyond it
     reach = np.stack([_beyond(back.reached, first, -CLOSE), _beyond(ahead.reached, last, CLOSE)], axis=1)
-    # both begin with the same
-    return _joined(reach, ahead.first_side, [*ahead.nodes, *back.nodes[1:]])
+    # in order along the path: at a knot the slope of the way to it comes first, then that of the way on
+    return _joined(reach, ahead.first_side, [*back.nodes[::-1], *ahead.nodes])
 
 
-def _march(surroundings: KnownSurroundings, k: int, state: Number) -> GroupMarch:
+def _march(onward: KnownSurroundings, toward: KnownSurroundings, k: int, state: Number) -> GroupMarch:
     """Return a continuation of a group from a state, (designs, 1, width), NaN for designs that have none."""
-    equations = equations_of(surroundings.curve.solving_order.solvers[k])
-    return GroupMarch(equations, partial(surroundings.around, k), LONGEST, state)
+    curve = onward.curve
+    equations = equations_of(curve.solving_order.solvers[k])
+    return GroupMarch(
+        equations, partial(onward.around, k), partial(toward.around, k), curve.path.places, LONGEST, state
+    )
 
 
 def _joined(reach: Number, side: Number, nodes: Sequence[Node]) -> GroupPath:
@@ -280,14 +286,20 @@ class Node(NamedTuple):
 class GroupMarch:
     """One continuation of a group's state along a way.
 
-    `around(designs, s)` is what surrounds the group of some designs, each at its own place, with `TERMS` derivatives by
-    s; no step is longer than `longest`.
+    `onward(designs, s)` is what surrounds the group of some designs, each at its own place, with `TERMS` derivatives by
+    s on the way from there, `toward` that on the way to it: they differ at `knots`. No step is longer than `longest`.
     """
 
     def __init__(
-        self, equations: GroupEquations, around: Callable[[Number, Number], Block], longest: float, state: Number
+        self,
+        equations: GroupEquations,
+        onward: Callable[[Number, Number], Block],
+        toward: Callable[[Number, Number], Block],
+        knots: Number,
+        longest: float,
+        state: Number,
     ) -> None:
-        self.equations, self.around, self.longest = equations, around, longest
+        self.equations, self.onward, self.toward, self.knots, self.longest = equations, onward, toward, knots, longest
         self.state, self.origin = np.array(state), state
         self.alive = np.isfinite(state).all(axis=(1, 2))
         # which numbers of a state are lengths
@@ -310,7 +322,7 @@ class GroupMarch:
         self.goal = np.searchsorted(self.stops, self.sense * self.here, side="right")
         i = np.flatnonzero(self.alive)
         state = self.state[i]
-        known = self._rates(state, self.around(i, self.here[i])) if len(i) else ([state] * TERMS, state[..., 0])
+        known = self._rates(state, self.onward(i, self.here[i])) if len(i) else ([state] * TERMS, state[..., 0])
         self._take(i, self.here[i], state, *known)
         self.first_side = self.side[:, 0].copy()
         there = self.goal == len(stops)
@@ -330,6 +342,11 @@ class GroupMarch:
         new, new_rates, new_side, good = self._step(i, weights, rates, self.sense * length, place)
         self.trials[i] = np.where(good & (within > 0), 0, self.trials[i] + 1)
         self._take(i[good], place[good], new[good], [c[good] for c in new_rates], new_side[good])
+        turns = good & np.isin(place, self.knots)
+        if turns.any():
+            self._take(
+                i[turns], place[turns], new[turns], *self._rates(new[turns], self.onward(i[turns], place[turns]))
+            )
         self.goal[i] += good & (place == self.sense * stop)
         arrived = self.goal[i] == len(self.stops)
         lost = (self.spread[i] > FARTHEST) | (self.trials[i] > MOST_TRIALS)
@@ -361,7 +378,7 @@ class GroupMarch:
         """Return one step: the states there, their rates and sides, and for which designs it is a neighbour."""
         state, h = self.state[i], h[:, None, None]
         guess = state + sum(c * h**k for k, c in enumerate(rates, 1))
-        block = self.around(i, place)
+        block = self.toward(i, place)
         found = self.equations.newton(guess, block)
         good = found.closed.reshape(len(i)) & (found.moved.reshape(len(i)) <= STRAY * self.spread[i])
         new = np.where(good[:, None, None], found.state, state)
