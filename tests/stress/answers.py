@@ -89,7 +89,8 @@ class Answer:
             home = numbers["s"]
             s = s - _turns(s - home)
             order = np.flatnonzero(self.assembled)
-            back, on = order[self.s[order] < 0][::-1], order[self.s[order] >= 0]
+            order = order[np.argsort(np.abs(self.s[order]), kind="stable")]
+            back, on = order[self.s[order] < 0], order[self.s[order] >= 0]
             for group in (on, back):
                 s[group] = np.unwrap(np.concatenate(([home], s[group])))[1:]
             self.raw[:, n + number] = self.turned[:, n + number] = s

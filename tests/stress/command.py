@@ -16,7 +16,9 @@ import click
 import compoundkin as ck
 from tests.stress.misuse import misused
 from tests.stress.mutated_files import mutated
-from tests.stress.trial import Outcome, Placed, drawn_case, tried
+from tests.stress.outcome import Outcome
+from tests.stress.sketch import Placed
+from tests.stress.trial import KINDS, drawn_case, kind_of, tried
 
 JOBS = click.option("--jobs", default=1, show_default=True, help="So many processes.")
 COUNT = click.option("--count", default=300, show_default=True, help="So many cases.")
@@ -31,6 +33,7 @@ FIRST = click.option("--first", default=0, show_default=True, help="From this ca
 @JOBS
 @click.option("--case", "one", type=int, help="This case alone, told in full.")
 @click.option("--small", is_flag=True, help="Few links and poses, as in the test command.")
+@click.option("--kind", type=click.Choice(["all", *KINDS]), default="even", show_default=True, help="What is tried.")
 @click.option("--verify", "verified", is_flag=True, help="`verify` must pass wherever nothing else is wrong.")
 @click.option(
     "--save", "folder", type=click.Path(path_type=Path), help="Write faulty cases (or the one) as files here."
@@ -44,6 +47,7 @@ def main(
     jobs: int,
     one: int | None,
     small: bool,
+    kind: str,
     verified: bool,
     folder: Path | None,
 ) -> None:
@@ -51,9 +55,10 @@ def main(
     if context.invoked_subcommand:
         return
     numbers = [one] if one is not None else range(first, first + count)
-    again = f"{'--small ' if small else ''}--seed {seed} --case NUMBER"
-    saving = partial(save, folder, seed, small) if folder else None
-    sys.exit(1 if run(partial(tried, seed, small=small, verified=verified), numbers, jobs, again, saving) else 0)
+    again = f"{'--small ' if small else ''}--kind {kind} --seed {seed} --case NUMBER"
+    saving = partial(save, folder, seed, small, kind) if folder else None
+    trial = partial(tried, seed, small=small, verified=verified, kind=kind)
+    sys.exit(1 if run(trial, numbers, jobs, again, saving) else 0)
 
 
 @main.command()
@@ -127,9 +132,12 @@ def outcomes(trial: partial[Outcome], numbers: list[int], jobs: int) -> Iterator
         yield from pool.imap_unordered(trial, numbers, chunksize=4)
 
 
-def save(folder: Path, seed: int, small: bool, number: int) -> None:
+def save(folder: Path, seed: int, small: bool, kind: str, number: int) -> None:
     """Write a case as a mechanism file with its values; one with a profile by formula is not written."""
-    case = drawn_case(seed, number, small)
+    kind = kind_of(number, kind)
+    if kind == "stacked":
+        return
+    case = drawn_case(seed, number, small, kind)
     placed = Placed(case.sketch)
     mechanism = placed.mechanism(f"stress {seed} {number}")
     values = case.values(placed.values())

@@ -1,7 +1,8 @@
 """The suite's own continuation: from the drawn pose along the drivers' way, by length of arc, to its branch's limit.
 
-A way is s -> drivers' values, `values + rate * s`; the drawn pose is at s = 0. Unknowns and s together move along a
-curve that is regular at limit positions as well: there s turns back. A step is taken where the corrections are small
+A way is s -> drivers' values: straight, `values + rate * s`, or of several straight legs, each with its rate from its
+corner on. The drawn pose is at s = 0; with several legs s only grows. Unknowns and s together move along a curve that
+is regular at limit positions as well: there s turns back. A step is taken where the corrections are small
 and contract, where the tangent has hardly turned, and where the sign of the determinant stayed, so that no other branch
 that passes near is taken for this one. Proposed poses are held to the same, which costs less than finding them.
 """
@@ -55,22 +56,29 @@ class Reached:
 class Branch:
     """The branch through the drawn pose."""
 
-    def __init__(self, equations: Equations, rate: Array) -> None:
-        self.equations, self.values = equations, equations.values
-        self.rate = equations.scaled(np.asarray(rate, dtype=float))
-        self.load = np.concatenate((np.zeros(equations.count), self.rate))
+    def __init__(self, equations: Equations, rates: Array, corners: Sequence[float] = (0.0,)) -> None:
+        self.equations, self.corners = equations, np.asarray(corners, dtype=float)
+        self.rates = equations.scaled(np.atleast_2d(np.asarray(rates, dtype=float)))
+        ways = np.diff(self.corners)[:, None] * self.rates[:-1]
+        self.values = equations.values + np.vstack((np.zeros(self.rates.shape[1]), np.cumsum(ways, axis=0)))
+        self.loads = np.hstack((np.zeros((len(self.corners), equations.count)), self.rates))
         self.steps = 0
         self.start = self.place(0.0, equations.drawn)
 
-    def residual(self, x: Array, s: Array) -> Array:
-        found = self.equations.residual(x)
-        found[..., self.equations.count :] -= self.values + self.rate * np.asarray(s)[..., None]
+    def leg(self, s: Array) -> Array:
+        """The leg that goes on from s."""
+        return np.maximum(np.searchsorted(self.corners, s, side="right") - 1, 0)
+
+    def residual(self, x: Array, s: Array, leg: Array | None = None) -> Array:
+        found, s = self.equations.residual(x), np.asarray(s)
+        leg = self.leg(s) if leg is None else leg
+        found[..., self.equations.count :] -= self.values[leg] + self.rates[leg] * (s - self.corners[leg])[..., None]
         return found
 
     def place(self, s: float, x: Array) -> Place:
         jacobian = self.equations.jacobian(x)
         try:
-            rate = np.linalg.solve(jacobian, self.load)
+            rate = np.linalg.solve(jacobian, self.loads[self.leg(s)])
         except np.linalg.LinAlgError:
             return Place(s, x, np.full(x.shape, np.inf), 0.0)
         return Place(s, x, rate, float(np.linalg.slogdet(jacobian)[0]))
@@ -86,7 +94,7 @@ class Branch:
         jacobian = self.equations.jacobian(x)
         off = np.max(np.abs(solved(jacobian, self.residual(x, s))), axis=-1)
         moved = np.where(off < 1e-8, np.max(np.abs(x - first), axis=-1), np.nan)
-        rates = solved(jacobian, np.broadcast_to(self.load, x.shape))
+        rates = solved(jacobian, self.loads[self.leg(s)])
         return x, moved, rates, np.linalg.slogdet(jacobian)[0]
 
     def joins(self, one: Place, other: Place) -> bool:
@@ -105,7 +113,8 @@ class Branch:
     def follow(self, start: Place, stops: Sequence[float], known: dict[float, Place] | None = None) -> Reached:
         """Follow the branch from a place over stops in their order, by known places where these join."""
         found, here = Reached(last=start), start
-        for stop in stops:
+        ahead = {float(c) for c in self.corners[1:] if start.s < c < max(stops, default=start.s)}
+        for stop in sorted({*stops, *ahead}) if ahead else stops:
             if stop == here.s:
                 there: Place | None = here
             else:
@@ -168,7 +177,7 @@ class _Walk:
     """Steps along the curve of (unknowns, s)."""
 
     def __init__(self, branch: Branch, here: Place, sense: float) -> None:
-        self.branch, self.sense = branch, sense
+        self.branch, self.sense, self.leg = branch, sense, branch.leg(here.s)
         self.y = np.append(here.x, here.s)
         tangent = np.append(here.rate, 1.0) * sense
         self.tangent = tangent / np.linalg.norm(tangent)
@@ -185,7 +194,7 @@ class _Walk:
     def _matrix(self, x: Array, last: Array) -> Array:
         n = x.size
         matrix = np.empty((n + 1, n + 1))
-        matrix[:n, :n], matrix[:n, n], matrix[n] = self.branch.equations.jacobian(x), -self.branch.load, last
+        matrix[:n, :n], matrix[:n, n], matrix[n] = self.branch.equations.jacobian(x), -self.branch.loads[self.leg], last
         return matrix
 
     def _side(self, x: Array, tangent: Array) -> float:
@@ -213,7 +222,7 @@ class _Walk:
         except np.linalg.LinAlgError:
             return None
         for number in range(NEWTON):
-            residual = np.append(self.branch.residual(y[:-1], y[-1]), 0.0)
+            residual = np.append(self.branch.residual(y[:-1], y[-1], self.leg), 0.0)
             step = inverse @ residual
             size = float(np.max(np.abs(step)))
             if not size <= allowed:

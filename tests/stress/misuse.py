@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from tests.stress.trial import Outcome, TooSlow, broken_off
+from tests.stress.outcome import Outcome, TooSlow, broken_off
 
 # Seconds.
 SLOW = 10.0

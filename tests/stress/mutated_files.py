@@ -21,7 +21,7 @@ from typing import Any
 
 import compoundkin as ck
 from compoundkin.files import dumps, loads
-from tests.stress.trial import Outcome, TooSlow, broken_off
+from tests.stress.outcome import Outcome, TooSlow, broken_off
 
 CATALOG = Path(__file__).parents[2] / "catalog"
 # One in so many files that can be read is solved and reported too: that takes far longer than reading it.

@@ -239,7 +239,7 @@ class Grown:
                 self.kind(), self._end(one), self.pick([k for k in rest if k in both] if self.chance(0.4) else rest)
             )
 
-    def mixed(self) -> None:
+    def mixed(self, higher: tuple[str, ...] = HIGHER, weights: tuple[float, ...] = HIGHER_WEIGHTS) -> None:
         """Links held by a pair of two and higher pairs of one."""
         count = int(self.rng.choice([1, 1, 2, 3]))
         new = [self.link() for _ in range(count)]
@@ -248,7 +248,11 @@ class Grown:
             self.join(self.kind(), link, self.pick(new[:k]) if k and self.chance(0.7) else self.pick(old))
         for k in range(count):
             one = new[k]
-            self.join(self.pick(HIGHER, HIGHER_WEIGHTS), one, self.pick([n for n in (*new, *old) if n != one]))
+            self.join(self.pick(higher, weights), one, self.pick([n for n in (*new, *old) if n != one]))
+
+    def cams(self) -> None:
+        """Links held by a pair of two and a profile."""
+        self.mixed(("C", "F"), (0.6, 0.4))
 
     def loose(self) -> None:
         """One link in three slots or on three profiles."""
@@ -297,6 +301,7 @@ GROUPS: dict[str, Callable[[Grown], None]] = {
     "ring": Grown.ring,
     "chain": Grown.chain,
     "mixed": Grown.mixed,
+    "cams": Grown.cams,
     "loose": Grown.loose,
     "wheel": Grown.wheel,
     "pinion": Grown.pinion,
@@ -311,8 +316,12 @@ TASTES: tuple[dict[str, float], ...] = (
 )
 
 
-def flavour_of(rng: np.random.Generator, small: bool) -> Flavour:
-    taste = TASTES[int(rng.integers(len(TASTES)))]
+# Cams between any links, as drivers and driven, on each other; held by three profiles.
+CAMS: tuple[dict[str, float], ...] = ({"dyad": 0.3, "cams": 1.0, "loose": 0.2},)
+
+
+def flavour_of(rng: np.random.Generator, small: bool, tastes: tuple[dict[str, float], ...] = TASTES) -> Flavour:
+    taste = tastes[int(rng.integers(len(tastes)))]
     large = rng.random()
     sizes = ((3, 6), (3, 6), (6, 9), (6, 9)) if small else ((3, 7), (7, 10), (10, 19), (19, 61))
     links = int(rng.integers(*sizes[int(np.searchsorted((0.6, 0.88, 0.98), large))]))
@@ -327,10 +336,12 @@ def flavour_of(rng: np.random.Generator, small: bool) -> Flavour:
     )
 
 
-def random_sketch(rng: np.random.Generator, small: bool = False) -> tuple[Sketch, list[str]]:
+def random_sketch(
+    rng: np.random.Generator, small: bool = False, tastes: tuple[dict[str, float], ...] = TASTES
+) -> tuple[Sketch, list[str]]:
     """A random mechanism, all lengths near 5, and the names of what it was grown from."""
     while True:
-        grown = Grown(rng, flavour_of(rng, small))
+        grown = Grown(rng, flavour_of(rng, small, tastes))
         used = _grow(grown)
         if used and regular(_finished(grown.sketch, rng)):
             return grown.sketch, used

@@ -13,8 +13,9 @@ from tests.stress.equations import Equations
 from tests.stress.known import KNOWN, SEED, SLOW
 from tests.stress.misuse import misused
 from tests.stress.mutated_files import mutated
+from tests.stress.outcome import Outcome
 from tests.stress.sketch import Placed
-from tests.stress.trial import Outcome, drawn_case, tried
+from tests.stress.trial import drawn_case, tried
 
 pytestmark = pytest.mark.full
 
@@ -41,7 +42,7 @@ def test_the_suites_own_jacobian_and_rates_are_those_of_differences(number: int)
     for k in range(x.size):
         ahead, behind = (equations.residual(x + h * np.eye(x.size)[k]) for h in (step, -step))
         assert np.max(np.abs((ahead - behind) / (2 * step) - equations.jacobian(x)[:, k])) < 1e-7
-    branch = Branch(equations, case.way.rate)
+    branch = Branch(equations, case.way.rates)
     way = 1e-5 / np.max(np.abs(branch.start.rate))
     there, back = (branch.follow(branch.start, [s]).places.get(s) for s in (way, -way))
     if there and back:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import signal
 import time
 import warnings
-from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,13 +13,14 @@ import compoundkin as ck
 from tests.stress.answers import Answer
 from tests.stress.continuation import Branch, Place, Reached
 from tests.stress.equations import STEP, Equations, away_from_line
-from tests.stress.random_sketches import random_sketch
+from tests.stress.outcome import Outcome, TooSlow, broken_off, shown
+from tests.stress.random_sketches import CAMS, TASTES, random_sketch
 from tests.stress.sketch import Joint, Placed, Sketch
+from tests.stress.stacks import stacked
+from tests.stress.ways import POSES, SMALL, SPACINGS, Way, bent, random_way, spaced
 
 # A case that takes longer (processor seconds) is a fault; at three times as long it is broken off.
 SLOW = 10.0
-# Pairs that count full turns.
-COUNTED = frozenset("GBKLO")
 # Two poses are one where no unknown (radians, sizes) differs by more than this, or than this by the condition.
 SAME, SAME_BY_CONDITION = 1e-6, 1e-11
 # A pose is closed where no residual (sizes, radians) is more; the second where a profile is a spline through points.
@@ -32,24 +29,11 @@ CLOSED, CLOSED_SPLINE = 1e-9, 3e-5
 RATES, RATES_BY_CONDITION = 1e-8, 1e-13
 # Rates that have fewer digits are not compared.
 NO_DIGITS = 1e-2
-# Outside its range a motion is drawn where this (radians) is the whole way.
-FAR_OUTSIDE = 2.5
 # What `verify` says of racks that do not fit, and of centres that are nowhere then. It holds them to some 1e-5.
 FIT, CENTRES = "fit of racks and wheels", {"velocities from centres", "Kennedy collinearity"}
 OFF_PITCH, FITTING = 1e-3, 1e-7
 # Nearer to a limit than this part of a pose's distance either answer is right.
 AT_LIMIT = 1e-3
-
-
-@dataclass
-class Way:
-    """Values of every driver: the drawn ones are at the place `home` of the motion, which may lie between poses."""
-
-    kind: str
-    poses: int
-    home: float
-    rate: np.ndarray
-    whole: bool = False  # a full turn of one driver, whose last pose is its first
 
 
 @dataclass
@@ -63,39 +47,27 @@ class Case:
     scale: float
     speed: np.ndarray
     acceleration: np.ndarray
+    kind: str = "even"
 
     @property
     def names(self) -> list[str]:
         return [d.name for d in self.sketch.drivers]
 
     def values(self, drawn: dict[str, float]) -> dict[str, np.ndarray]:
-        s = np.arange(self.way.poses) - self.way.home
-        return {name: drawn[name] + rate * s for name, rate in zip(self.names, self.way.rate, strict=True)}
-
-
-@dataclass
-class Outcome:
-    """What came of a case."""
-
-    number: int
-    faults: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
-    counts: Counter[str] = field(default_factory=Counter)
-    seconds: float = 0.0
-    own_seconds: float = 0.0
-
-
-class TooSlow(Exception):
-    """The case was broken off."""
+        return {name: drawn[name] + way for name, way in zip(self.names, self.way.offsets(), strict=True)}
 
 
 # --- drawing ---------------------------------------------------------------------------------------------
 
 
-def drawn_case(seed: int, number: int, small: bool = False) -> Case:
+# What a case tries beside evenly spaced poses on a straight way.
+KINDS = ("even", *SPACINGS, "bent", "cams", "resized", "windows", "stacked")
+
+
+def drawn_case(seed: int, number: int, small: bool = False, kind: str = "even") -> Case:
     """The case of a number: always the same. Small ones have few links and poses, so that many are soon done."""
     rng = np.random.default_rng((seed, number))
-    sketch, grown = random_sketch(rng, small)
+    sketch, grown = random_sketch(rng, small, CAMS if kind == "cams" else TASTES)
     way = random_way(rng, sketch, SMALL if small else POSES)
     near = rng.random() < 0.1
     if near:
@@ -105,55 +77,23 @@ def drawn_case(seed: int, number: int, small: bool = False) -> Case:
     if exponent:
         sketch = scaled(sketch, scale)
     lengths = np.array([d.kind in "PL" for d in sketch.drivers])
-    way = replace(way, rate=np.where(lengths, way.rate * scale, way.rate))
+    way = replace(way, rates=np.where(lengths, way.rates * scale, way.rates))
     speed = rng.uniform(0.5, 2.0, lengths.size) * rng.choice([-1, 1], lengths.size)
     acceleration = rng.uniform(-1.0, 1.0, lengths.size) * rng.integers(0, 2)
     unit = np.where(lengths, scale, 1.0)
-    case = Case(number, sketch, grown, way, scale, speed * unit, acceleration * unit)
+    if kind in SPACINGS:
+        way = spaced(way, kind, rng)
+    elif kind == "bent":
+        way = bent(way, rng)
+    case = Case(number, sketch, grown, way, scale, speed * unit, acceleration * unit, kind)
     case.grown.append("near limit") if near else None
     return case
-
-
-# Numbers of poses, and those of full turns.
-POSES = ((2, 5, 9, 13, 25, 41, 73), (13, 25, 37, 73))
-SMALL = ((2, 3, 4, 5, 6, 7, 8), (9, 13, 13, 25))
-
-
-def random_way(rng: np.random.Generator, sketch: Sketch, numbers: tuple[tuple[int, ...], tuple[int, ...]]) -> Way:
-    count = len(sketch.drivers)
-    angles = np.array([d.kind in "RO" for d in sketch.drivers])
-    poses = int(rng.choice(numbers[0], p=[0.05, 0.15, 0.2, 0.2, 0.2, 0.1, 0.1]))
-    span = rng.uniform(0.05, 3.0, count) * rng.choice([-1.0, 1.0], count)
-    rate = span / poses
-    if angles[0] and rng.random() < 0.25:
-        poses = int(rng.choice(numbers[1]))
-        rate = rng.choice([-1.0, 1.0], count) * 2.0 * np.pi / (poses - 1)
-        rate[1:] *= rng.integers(0, 2, count - 1)
-        if count == 1:
-            home = float(rng.choice([0.0, float(rng.integers(1, poses - 1)), rng.uniform(0.0, poses - 1)]))
-            return Way("turn", poses, home, rate, whole=not any(j.kind in COUNTED for j in sketch.joints))
-    kind = str(
-        rng.choice(["start", "one", "end", "middle", "between", "outside"], p=[0.45, 0.05, 0.1, 0.15, 0.15, 0.1])
-    )
-    if kind == "one":
-        return Way(kind, 1, 0.0, rate)
-    if kind == "outside":
-        # so far only that no pose of the motion is the drawn one after a full turn
-        rate = np.where(angles, np.minimum(1.0, FAR_OUTSIDE / np.max(np.abs(rate) * (poses + 3))) * rate, rate)
-    home = {
-        "start": 0.0,
-        "end": poses - 1.0,
-        "middle": float(rng.integers(0, poses)),
-        "between": float(rng.uniform(0.0, poses - 1.0)),
-        "outside": -float(rng.uniform(0.0, 3.0)) if rng.random() < 0.5 else poses - 1.0 + float(rng.uniform(0.0, 3.0)),
-    }[kind]
-    return Way(kind, poses, home, rate)
 
 
 def near_limit(sketch: Sketch, way: Way, distance: float) -> Sketch:
     """The same mechanism drawn again near the limit of its branch, if it has one on its way."""
     equations = Equations(Placed(sketch))
-    branch = Branch(equations, way.rate)
+    branch = Branch(equations, way.rates)
     found = branch.follow(branch.start, [float(k) for k in range(1, 20)])
     if found.why != "limit" or not found.end > 0.0:
         return sketch
@@ -208,22 +148,6 @@ def scaled(sketch: Sketch, factor: float) -> Sketch:
 # --- the trial -------------------------------------------------------------------------------------------
 
 
-@contextmanager
-def broken_off(after: float) -> Iterator[None]:
-    """Raise TooSlow where something takes longer."""
-
-    def stop(*_: Any) -> None:
-        raise TooSlow
-
-    old = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, after)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, old)
-
-
 ALLOWED_WARNINGS = ("UnassembledPoses", "ChangePointWarning", "LostDigits")
 
 
@@ -240,18 +164,41 @@ class Trial:
     def run(self) -> Outcome:
         began = time.process_time()
         case, out = self.case, self.outcome
-        out.counts.update(f"way {case.way.kind}" for _ in range(1))
+        out.counts[f"kind {case.kind}"] += 1
+        out.counts[f"way {case.way.kind}"] += 1
         out.counts.update(f"grown {name}" for name in set(case.grown))
         out.counts.update(f"pair {j.kind}" for j in case.sketch.joints)
         out.counts["pair R"] += sum(len(v) - 1 for v in case.sketch.pins().values())
         out.counts[f"drivers {len(case.sketch.drivers)}"] += 1
         out.counts[f"scale {case.scale:g}"] += 1
         out.counts["links"] += len(case.sketch.letters)
-        motion = None
+        values = case.values(self.placed.values())
+        motion = self._attempted(self.placed, values)
+        if motion is not None:
+            out.counts.update(
+                f"group {g.name} (class {g.class_})" if hasattr(g, "class_") else f"group {g.name}"
+                for g in motion.structure.groups
+            )
+            self._compare(motion)
+            if self.verified:
+                self._verify(motion)
+            if case.kind == "windows":
+                self._window(values)
+            elif case.kind == "resized":
+                self._resized(values)
+        out.own_seconds = time.process_time() - began - out.seconds
+        out.counts["seconds solving"] += out.seconds
+        out.counts["seconds comparing"] += out.own_seconds
+        out.counts["faulty" if out.faults else "right"] += 1
+        return out
+
+    def _attempted(self, placed: Placed, values: dict[str, np.ndarray], size: float = 1.0) -> Any:
+        """The motion, or None with the fault told; lengths and their rates are `size` times those of the case."""
+        out, began, motion = self.outcome, time.process_time(), None
         try:
             with broken_off(3.0 * SLOW), warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
-                motion = self._solved()
+                motion = self._solved(placed, values, size)
         except TooSlow:
             out.faults.append(f"slow: broken off after {3 * SLOW:g} s")
         except ck.errors.CompoundkinError as error:
@@ -260,32 +207,20 @@ class Trial:
             out.faults.append(f"traceback: {type(error).__name__}: {error}")
         else:
             self._warnings(caught)
-        out.seconds = time.process_time() - began
-        if out.seconds > SLOW and motion is not None:
-            out.faults.append(f"slow: {out.seconds:.1f} s")
-        if motion is not None:
-            self._compare(motion)
-            if self.verified:
-                self._verify(motion)
-        out.own_seconds = time.process_time() - began - out.seconds
-        out.counts["seconds solving"] += out.seconds
-        out.counts["seconds comparing"] += out.own_seconds
-        out.counts["faulty" if out.faults else "right"] += 1
-        return out
+        seconds = time.process_time() - began
+        out.seconds += seconds
+        if seconds > SLOW and motion is not None:
+            out.faults.append(f"slow: {seconds:.1f} s")
+        return motion
 
-    def _solved(self) -> Any:
+    def _solved(self, placed: Placed, values: dict[str, np.ndarray], size: float) -> Any:
         case = self.case
-        mechanism = self.placed.mechanism(f"stress {case.number}")
+        unit = np.where(self.equations.lengths, size, 1.0)
         named = {
-            k: dict(zip(case.names, v.tolist(), strict=True))
+            k: dict(zip(case.names, (v * unit).tolist(), strict=True))
             for k, v in (("speed", case.speed), ("acceleration", case.acceleration))
         }
-        motion = ck.solve(mechanism, case.values(self.placed.values()), **named)
-        self.outcome.counts.update(
-            f"group {g.name} (class {g.class_})" if hasattr(g, "class_") else f"group {g.name}"
-            for g in motion.structure.groups
-        )
-        return motion
+        return ck.solve(placed.mechanism(f"stress {case.number}"), values, **named)
 
     def _warnings(self, caught: list[warnings.WarningMessage]) -> None:
         for warning in caught:
@@ -293,6 +228,52 @@ class Trial:
                 self.outcome.faults.append(f"warning: {warning.category.__name__}: {warning.message}"[:300])
             else:
                 self.outcome.counts[f"warned {warning.category.__name__}"] += 1
+
+    # --- second solutions ---
+
+    def _window(self, values: dict[str, np.ndarray]) -> None:
+        """Some poses of the motion, solved without the others, are the same."""
+        rng = np.random.default_rng((self.case.number, 1))
+        if self.case.way.poses < 2:
+            return
+        first, last = np.sort(rng.choice(self.case.way.poses + 1, 2, replace=False))
+        window = slice(int(first), int(last), int(rng.integers(1, 4)))
+        motion = self._attempted(self.placed, {name: v[window] for name, v in values.items()})
+        if motion is not None:
+            branch = self.answer.branch
+            part = Answer(motion, self.equations, self.placed, branch, self.case.way.s[window])
+            self._same("window", part.raw, part.assembled, window)
+
+    def _resized(self, values: dict[str, np.ndarray]) -> None:
+        """The mechanism drawn in another size moves alike."""
+        factor = 10.0 ** float(np.random.default_rng((self.case.number, 2)).uniform(-5.0, 5.0))
+        placed = Placed(scaled(self.case.sketch, factor))
+        lengths = dict(zip(self.case.names, np.where(self.equations.lengths, factor, 1.0), strict=True))
+        motion = self._attempted(placed, {name: v * lengths[name] for name, v in values.items()}, factor)
+        if motion is not None:
+            equations = Equations(placed)
+            way = self.case.way
+            rates = way.rates * np.array([lengths[name] for name in self.case.names])
+            other = Answer(motion, equations, placed, Branch(equations, rates, way.corners), way.s)
+            raw, columns = other.raw, np.arange(3 * len(equations.links))
+            places = columns[columns % 3 < 2]
+            raw[:, places] *= equations.unit / self.equations.unit / factor
+            self._same("resized", raw, other.assembled, slice(None))
+
+    def _same(self, what: str, raw: np.ndarray, assembled: np.ndarray, window: slice) -> None:
+        """Poses of another solution are those of this one where the suite's own continuation knows them."""
+        at = np.arange(self.case.way.poses)[window]
+        known = [i for i, k in enumerate(at) if k in self.reached]
+        gaps = [at[i] for i in known if assembled[i] != self.answer.assembled[at[i]]]
+        if gaps:
+            self.outcome.faults.append(f"{what}: poses {shown(gaps)} are assembled in one solution only")
+        apart = [
+            at[i]
+            for i in known
+            if assembled[i] and self._apart(raw[i], self.reached[at[i]]) > self._tolerance(self.reached[at[i]])
+        ]
+        if apart:
+            self.outcome.faults.append(f"{what}: another pose at {shown(apart)}")
 
     def _verify(self, motion: Any) -> None:
         try:
@@ -332,10 +313,10 @@ class Trial:
 
     def _compare(self, motion: Any) -> None:
         way = self.case.way
-        branch = Branch(self.equations, self.case.way.rate)
-        s = np.arange(way.poses) - way.home
-        self.answer = Answer(motion, self.equations, self.placed, branch, s)
+        branch = Branch(self.equations, way.rates, way.corners)
+        self.answer = Answer(motion, self.equations, self.placed, branch, way.s)
         reached, soft = self._reached(branch)
+        self.reached = reached
         self._poses(reached, soft)
         self._residuals(reached | soft)
         self._rates(reached)
@@ -344,22 +325,22 @@ class Trial:
     def _reached(self, branch: Branch) -> tuple[dict[int, Place], dict[int, Place]]:
         """Places by pose: those reached within the range, and those only through the wrap of a full turn."""
         way, known = self.case.way, self.answer.known
-        stops = [k - way.home for k in range(way.poses)]
-        ahead, back = [t for t in stops if t >= 0.0], [t for t in stops[::-1] if t < 0.0]
+        stops = sorted({float(s) for s in way.s})
+        poses = {s: np.flatnonzero(way.s == s) for s in stops}
+        ahead, back = [s for s in stops if s >= 0.0], [s for s in stops[::-1] if s < 0.0]
         direct: dict[int, Place] = {}
         wrapped: dict[int, Place] = {}
-        for stops in (ahead, back):
-            found = branch.follow(branch.start, stops, known)
-            direct |= {round(t + way.home): place for t, place in found.places.items()}
-            self._ended(found, stops)
-            if way.whole and len(found.places) == len(stops):
-                sense = 1.0 if stops is ahead else -1.0
-                last = found.last or branch.start
-                turn = way.poses - 1
-                beyond = [sense * (k + 1) + (turn - way.home if sense > 0 else -way.home) for k in range(turn)]
-                more = branch.follow(last, [t for t in beyond if abs(t - last.s) > 1e-9])
-                for t, place in more.places.items():
-                    wrapped.setdefault(round(t + way.home - sense * turn), place)
+        for sense, side in ((1.0, ahead), (-1.0, back)):
+            found = branch.follow(branch.start, side, known)
+            direct |= {k: place for s, place in found.places.items() for k in poses.get(s, ())}
+            self._ended(found, side)
+            if way.whole and all(s in found.places for s in side):
+                last, turn = found.last or branch.start, sense * (stops[-1] - stops[0])
+                beyond = {s + turn: s for s in (stops if sense > 0.0 else stops[::-1])}
+                more = branch.follow(last, [s for s in beyond if sense * (s - last.s) > 1e-9])
+                for s, place in more.places.items():
+                    for k in poses[beyond[s]]:
+                        wrapped.setdefault(k, place)
         return direct, {k: v for k, v in wrapped.items() if k not in direct}
 
     def _ended(self, found: Reached, stops: list[float]) -> None:
@@ -379,7 +360,7 @@ class Trial:
         for k, place in sorted((direct | wrapped).items()):
             if not answer.assembled[k]:
                 missing.append(k)
-            elif self._apart(k, place) > self._tolerance(place):
+            elif self._apart(answer.raw[k], place) > self._tolerance(place):
                 other.append(k)
         out.counts["poses"] += way.poses
         out.counts["poses assembled"] += int(answer.assembled.sum())
@@ -392,20 +373,19 @@ class Trial:
             told = f"{what}: not assembled at {shown(direct_ones or missing)} of {way.poses}, which are reached"
             out.faults.append(told)
         if other:
-            first = int(way.home) if way.home == int(way.home) and 0 <= way.home < way.poses else None
-            what = "first pose" if first in other else "branch"
+            what = "first pose" if any(way.s[k] == 0.0 for k in other) else "branch"
             off = self._worst(other, direct | wrapped)
             out.faults.append(f"{what}: another pose at {shown(other)} of {way.poses}, off by {off:.2g}")
         beyond = [k for k in np.flatnonzero(answer.assembled) if k not in direct and k not in wrapped]
         out.counts["poses beyond a limit"] += len(beyond)
 
     def _worst(self, at: list[int], places: dict[int, Place]) -> float:
-        return max(self._apart(k, places[k]) for k in at)
+        return max(self._apart(self.answer.raw[k], places[k]) for k in at)
 
-    def _apart(self, k: int, place: Place) -> float:
+    def _apart(self, raw: np.ndarray, place: Place) -> float:
         """The greatest difference of a pose from a place, angles modulo a full turn."""
         n = 3 * len(self.equations.links)
-        gap = (self.answer.raw[k] - place.x)[:n]
+        gap = (raw - place.x)[:n]
         gap[2::3] -= 2.0 * np.pi * np.round(gap[2::3] / (2.0 * np.pi))
         return float(np.max(np.abs(gap))) if np.isfinite(gap).all() else np.inf
 
@@ -422,7 +402,11 @@ class Trial:
 
     def _rates(self, direct: dict[int, Place]) -> None:
         answer, equations = self.answer, self.equations
-        at = [k for k in direct if answer.assembled[k] and self._apart(k, direct[k]) <= self._tolerance(direct[k])]
+        at = [
+            k
+            for k in direct
+            if answer.assembled[k] and self._apart(answer.raw[k], direct[k]) <= self._tolerance(direct[k])
+        ]
         if not at or self.spline:
             return
         x = np.array([direct[k].x for k in at])
@@ -462,12 +446,14 @@ class Trial:
                 return
 
 
-def shown(numbers: list[int]) -> str:
-    """Some indices, in short."""
-    numbers = [int(k) for k in numbers]
-    return ", ".join(map(str, numbers)) if len(numbers) < 7 else f"{numbers[0]}..{numbers[-1]} ({len(numbers)})"
+def kind_of(number: int, kind: str) -> str:
+    """The kind of a case; of "all" they take turns."""
+    return KINDS[number % len(KINDS)] if kind == "all" else kind
 
 
-def tried(seed: int, number: int, small: bool = False, verified: bool = False) -> Outcome:
+def tried(seed: int, number: int, small: bool = False, verified: bool = False, kind: str = "even") -> Outcome:
     """The outcome of a case."""
-    return Trial(drawn_case(seed, number, small), verified).run()
+    kind = kind_of(number, kind)
+    if kind == "stacked":
+        return stacked(seed, number)
+    return Trial(drawn_case(seed, number, small, kind), verified).run()
