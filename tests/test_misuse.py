@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 import compoundkin as ck
 
 SIX_BAR = ck.solve(ck.load("six-bar"))
+
+LINKS = (ck.link("frame", A=0, D=4), ck.link("coupler", A=0, B=1))
+TURNS = ck.laws.program(ck.laws.rise(1.0, over=3.0))
 
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "a list of names": (lambda: SIX_BAR.table(["G.velocity"]), "one text for each"),
@@ -20,6 +24,15 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "a name for the place of a picture": (lambda: ck.draw(SIX_BAR, "coupler"), "'coupler' is not a number"),
     "a vector in an infinite direction": (lambda: ck.polar(1.0, -float("inf")), "angle: infinite numbers"),
     "an infinite vector": (lambda: ck.polar(float("inf"), 0.0), "radius: infinite numbers"),
+    "ends of an arc switched off": (
+        lambda: ck.Mechanism("t", *LINKS, ck.arc("coupler", on="frame", at="B", centre_at="D", radius=1, reach=False)),
+        "False is not two ends",
+    ),
+    "an empty array of units": (lambda: ck.Mechanism("t", *LINKS, units=np.array([])), "does not name units"),
+    "an integer of more than 64 bits": (
+        lambda: ck.profiles.constant_breadth(TURNS, base=4.0, angle=2**70),
+        "angle: .* is not a finite number",
+    ),
     "vectors of an animation switched on": (lambda: ck.animate(SIX_BAR, vectors=True), "velocity, acceleration"),
 }
 

@@ -285,7 +285,7 @@ def amount(log: Recovery, raw: Any, where: str, angle: bool | None, over: str = 
     if isinstance(raw, dict):
         told = raw.get("over", over)
         known = {TIME: False, "": angle}
-        is_angle = known[told] if told in known else log.is_angle(str(told))
+        is_angle = known[told] if isinstance(told, str) and told in known else log.is_angle(str(told))
         table = made(log, LoadTable, {"over": over, **raw}, where, is_angle)
         return 0.0 if table is None else table
     try:

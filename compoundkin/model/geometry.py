@@ -76,13 +76,21 @@ def link_from_drawing(letters: tuple[str, ...], sketch: Mapping[str, Number]) ->
     return Pose(constant(origin), constant(turned)), points
 
 
+# Points nearer to each other than this have no direction: products of their coordinates are no normal numbers.
+TINY = 1e-150
+
+
+def _apart(p: Number, q: Number) -> bool:
+    return bool(np.all(np.abs(p - q) > TINY))
+
+
 def pose_from_points(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> Pose | None:
     """Return the pose of a link drawn at two points or more, or None."""
     drawn = [name for name in points if name in sketch]
     if len(drawn) < 2:
         return None
     a = drawn[0]
-    b = next((k for k in drawn[1:] if np.all(sketch[k] != sketch[a]) and np.all(points[k] != points[a])), None)
+    b = next((k for k in drawn[1:] if _apart(sketch[k], sketch[a]) and _apart(points[k], points[a])), None)
     if b is None:
         return None
     turned = (sketch[b] - sketch[a]) * np.conjugate(points[b] - points[a])

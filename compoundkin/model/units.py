@@ -88,11 +88,12 @@ def checked_units(given: Any, unit: str) -> tuple[Units | None, list[Problem]]:
     >>> checked_units({"length": "mm", "mass": "kg", "force": "N"}, "mm")[1][0].what
     'units name the unit of length already'
     """
-    twice = [Problem("unit", "units name the unit of length already", "leave unit out")] if given and unit else []
+    twice = Problem("unit", "units name the unit of length already", "leave unit out")
+    problems = [twice] if given is not None and unit else []
     try:
-        return as_units(given), twice
+        return as_units(given), problems
     except InvalidMechanism as error:
-        return None, [*twice, *error.problems]
+        return None, [*problems, *error.problems]
 
 
 def _unit_problems(given: Any) -> Iterator[Problem]:

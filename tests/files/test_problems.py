@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import copy
 import datetime
+import json
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
+import compoundkin as ck
 from compoundkin.base.errors import InvalidMechanism
-from compoundkin.files import loads
+from compoundkin.files import dumps, loads
 from compoundkin.files.reader import read
 
 Place = tuple[str | int, ...]
@@ -217,3 +220,19 @@ def test_json_names_keys_given_twice_with_their_places() -> None:
 )
 def test_strange_texts_are_refused(text: str, syntax: Any) -> None:
     assert problems(text, syntax=syntax)
+
+
+def test_a_table_for_the_pair_of_a_load_in_json_is_refused() -> None:
+    document = json.loads(dumps(ck.load("engine-gas-pressure"), "json"))
+    document["efforts"] = [{"name": "e", "pair": "A", "amount": {"over": {}, "at": [0, 1], "values": [0, 1]}}]
+    with pytest.raises(InvalidMechanism, match="over"):
+        loads(json.dumps(document), "json")
+
+
+def test_points_that_differ_by_the_least_number_have_no_direction() -> None:
+    """Products of their coordinates overflowed."""
+    document = json.loads(dumps(ck.load("scissor-lift-loaded"), "json"))
+    document["links"]["platform"]["points"]["T"] = [5e-324, 0.0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        assert loads(json.dumps(document), "json").links["platform"].points["T"] == 5e-324

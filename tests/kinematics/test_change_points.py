@@ -317,9 +317,10 @@ def chain_of_parallelograms(turned=0.0):
     )
 
 
-@pytest.mark.parametrize("turned", [0.0, 1e-9, 0.3])
+@pytest.mark.parametrize("turned", [0.0, 1e-9, 1e-7, 1e-5, 0.3])
 def test_groups_in_a_row_have_each_their_change_points(turned):
-    for values in (np.arange(0.0, 4.0, 0.1), np.pi + np.array([-1e-7, 0.0, 1e-9, 1e-3]), [np.pi + 1e-8], [np.pi]):
+    beside = np.pi + np.array([-1e-7, 0.0, 1e-9, 1e-3])
+    for values in (np.arange(0.0, 4.0, 0.1), beside, [2.0, *beside, 4.0], [np.pi + 1e-8], [np.pi]):
         motion = ck.solve(chain_of_parallelograms(turned), {"crank": values})
         assert np.abs(motion.links["coupler"].angle).max() < 1e-12
         assert np.abs(np.exp(1j * motion.links["second"].angle) - np.exp(1j * turned)).max() < 1e-10

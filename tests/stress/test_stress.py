@@ -15,7 +15,7 @@ from tests.stress.misuse import misused
 from tests.stress.mutated_files import mutated
 from tests.stress.outcome import Outcome
 from tests.stress.sketch import Placed
-from tests.stress.trial import drawn_case, tried
+from tests.stress.trial import KINDS, drawn_case, tried
 
 pytestmark = pytest.mark.full
 
@@ -50,24 +50,32 @@ def test_the_suites_own_jacobian_and_rates_are_those_of_differences(number: int)
         assert np.max(np.abs(rate - branch.start.rate)) < 1e-4 * np.max(np.abs(rate))
 
 
-# What cases of other seeds found, by seed, number and whether they are small; said is what was wrong.
+# What cases of other seeds found, by seed, number, whether they are small, and kind; said is what was wrong.
 FOUND = {
-    "drawn at the last pose of a full turn of three drivers, the first one was taken": (7, 17, True),
-    "drawn at the last pose of a full turn, with a rack that counts turns": (13, 57, False),
-    "drawn between a pose and a limit, the pose was lost": (13, 83, False),
+    "drawn at the last pose of a full turn of three drivers, the first one was taken": (7, 17, True, "even"),
+    "drawn at the last pose of a full turn, with a rack that counts turns": (13, 57, False, "even"),
+    "drawn between a pose and a limit, the pose was lost": (13, 83, False, "even"),
+    "a later group's change points were found before an earlier group had its own": (5, 89, False, "stacked"),
+    "stages many times as fast as the driver fell down at their common change point": (5, 132, False, "stacked"),
+    "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 
 
 @pytest.mark.parametrize("said", FOUND)
 def test_what_other_seeds_found_is_right(said: str) -> None:
-    seed, number, few = FOUND[said]
-    assert tried(seed, number, small=few).faults == []
+    seed, number, few, kind = FOUND[said]
+    assert tried(seed, number, small=few, kind=kind).faults == []
 
 
 @pytest.mark.parametrize(("seed", "number"), [(910, 55), (911, 7)])
 def test_motions_that_once_could_not_be_differentiated_are_verified(seed: int, number: int) -> None:
     """Beyond the end of a motion that came back through a whole turn, and where steps danced in rounding."""
     assert tried(seed, number, small=True, verified=True).faults == []
+
+
+@pytest.mark.parametrize("kind", KINDS[1:])
+def test_random_mechanisms_of_other_kinds_are_right(kind: str) -> None:
+    assert faults(partial(small, kind=kind), range(12)) == []
 
 
 def test_mutated_files_answer_or_say_what_is_wrong() -> None:

@@ -215,7 +215,7 @@ def monotonic_stretches(motion: Motion, design: int) -> Iterator[tuple[int, int,
     drives = _driven(motion, design)
     sense = np.sign(np.diff(drives, axis=1))
     for begin, end in _runs(motion, design):
-        turns_back = 1 + np.flatnonzero(np.any(sense[:, begin + 1 : end] != sense[:, begin : end - 1], axis=0))
+        turns_back = 1 + np.flatnonzero(np.any(np.diff(sense[:, begin:end], axis=1) != 0.0, axis=0))
         cuts = [begin, *(begin + turns_back).tolist(), end]
         for first, last in pairwise(cuts):
             if last > first and np.any(sense[:, first]):

@@ -98,7 +98,9 @@ def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> Configuratio
     asked, todo = set(near), [solver.index for solver in curve.solving_order.solvers if solver.modes_may_meet]
     found, samples, beside = curve, dict[int, Number](), _BesideChangePoints()
     missed = dict(curve.near_misses)
-    for k in (k for k in todo if k not in curve.flips):
+    for k in todo:
+        if k in found.flips:
+            continue
         places, common = list[Place](), beside.common(found, k)
         if k in asked:
             samples = samples or _near_samples(found, sorted(n for n in asked if n in todo and n >= k))
@@ -107,17 +109,25 @@ def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> Configuratio
             missed[k] = tuple(place for each in passed for place in each.missed)
         places += common
         if places:
-            # groups after this one are elsewhere from there on
-            found, samples = found.with_flips(k, _padded(places, curve.path.designs)), {}
+            # groups after this one are elsewhere from there on, and so are their change points
+            asked |= {n for n in found.flips if n > k}
+            found, samples = found.without_flips_after(k).with_flips(k, _padded(places, curve.path.designs)), {}
     return replace(found, near_misses=missed) if missed != curve.near_misses else found
 
 
 # What is smooth through a change point of an earlier group loses its digits beside it: it is interpolated from places
-# so far on both sides, by the weights of Lagrange's polynomial of fifth degree.
+# so far on both sides, nearer next to an end of the path, by the weights of Lagrange's polynomial of fifth degree.
 BESIDE = 0.02 * np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 MIDDLE = np.array([0.05, -0.3, 0.75, 0.75, -0.3, 0.05])
+SLOPE = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / (60.0 * 0.02)
 # and is zero there below this part of the size, or of the discriminant's scale: rounding by the distance of the places.
 INTERPOLATED = 1e-11
+# A change point nearer to one of an earlier group than this part of these distances is the same; another one is found
+# by its own slopes.
+IN_COMMON = 1e-8
+# Where a group moves by more than this (sine, or part of the size) to those places, they are taken so near that it is
+# no more than STEADY: the polynomial's error is the sixth power of that.
+QUICK, STEADY = 0.02, 0.01
 
 
 class _BesideChangePoints:
@@ -130,32 +140,51 @@ class _BesideChangePoints:
         """Return the change points that a group has in common with earlier groups."""
         first, last = curve.path.ends
         every = sorted({(d, float(f)) for rows in curve.flips.values() for d, row in enumerate(rows)
-                        for f in row[np.isfinite(row)] if first < f + BESIDE[0] and f + BESIDE[-1] < last})  # fmt: skip
+                        for f in row[np.isfinite(row)] if min(f - first, last - f) > CLOSE})  # fmt: skip
         if not every:
             return []
-        rows = np.repeat(np.array([d for d, _ in every]), len(BESIDE))
-        at = (np.array([f for _, f in every])[:, None] + BESIDE).ravel()
         if every != self.places:
-            self.places, self.since = every, 0
-            self.block, _ = curve.begun(curve.path.pick(rows, at), 0, at[:, None], rows[:, None])
-        choice = configured(curve, rows[:, None], at[:, None])
+            passed = np.array([f for _, f in every])
+            nearest = np.fmin(passed - first, last - passed)
+            self.places, self.share = every, np.fmin(1.0, nearest / (BESIDE[-1] + CLOSE))
+            self._begin(curve)
+        found, moved = self._passed(curve, k)
+        if np.any(moved > QUICK):
+            # what turns many times as fast as the driver needs places that are nearer
+            self.share = np.where(moved > QUICK, self.share * STEADY / moved, self.share)
+            self._begin(curve)
+            found, _ = self._passed(curve, k)
+        return found
+
+    def _begin(self, curve: ConfigurationCurve) -> None:
+        rows = np.repeat(np.array([d for d, _ in self.places]), len(BESIDE))
+        at = (np.array([f for _, f in self.places])[:, None] + self.share[:, None] * BESIDE).ravel()
+        self.since, self.at = 0, (rows[:, None], at[:, None])
+        self.block, _ = curve.begun(curve.path.pick(rows, at), 0, at[:, None], rows[:, None])
+
+    def _passed(self, curve: ConfigurationCurve, k: int) -> tuple[list[Place], Number]:
+        """Return the places that a group passes, and how far it moves beside each (sine, or part of the size)."""
+        choice = configured(curve, *self.at)
         run(curve.solving_order, self.block, choice, k, self.since)
         self.since = k
         notes: list[Series] = []
         trial = self.block.copy()
         trial.roots = {k: recorded_root(notes)}
         run(curve.solving_order, trial, choice, k + 1, k)
-        squares, middle = _beside(notes[0].c[0], len(every))
+        squares, middle = _beside(notes[0].c[0], len(self.places))
         # a square of an odd power: at three times the distance it is nine times, of an even one 81 times as large
-        passes = (
-            (np.abs(middle) < INTERPOLATED) & np.all(squares > 0.0, axis=1) & (squares[:, 0] < 27.0 * squares[:, 2])
-        )
+        even = np.all(squares > 0.0, axis=1) & (squares[:, 0] < 27.0 * squares[:, 2])
+        passes, moved = (np.abs(middle) < INTERPOLATED) & even, np.sqrt(np.abs(squares[:, 0]))
+        # the root with its sign is smooth: where its own zero is, by a step of Newton
+        roots = np.sqrt(np.where(passes[:, None], squares, 1.0)) * np.sign(BESIDE)
+        passes &= np.abs(roots @ MIDDLE) < IN_COMMON * np.abs(roots @ SLOPE)
         line = trial.meetings.get(k)
         if line is not None:
-            lines, middle = _beside(line.c[0] / curve.solving_order.size, len(every))
+            lines, middle = _beside(line.c[0] / curve.solving_order.size, len(self.places))
             opposite = (lines[:, 2] * lines[:, 3].conj()).real < 0.0
-            passes |= (np.abs(middle) < INTERPOLATED) & opposite
-        return [place for place, here in zip(every, passes, strict=True) if here]
+            passes |= (np.abs(middle) < INTERPOLATED / self.share) & opposite
+            moved = np.fmin(moved, np.abs(lines[:, 0]))
+        return [place for place, here in zip(self.places, passes, strict=True) if here], moved
 
 
 def _beside(values: Number, count: int) -> tuple[Number, Number]:

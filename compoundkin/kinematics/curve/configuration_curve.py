@@ -142,6 +142,11 @@ class ConfigurationCurve(ShortRepr):
             found, good = np.where(better, other, found), good | better
         return found
 
+    def without_flips_after(self, k: int) -> ConfigurationCurve:
+        """Return the curve on which groups after one keep their signs."""
+        flips, left = ({n: v for n, v in each.items() if n <= k} for each in (self.flips, self.left))
+        return replace(self, flips=flips, left=left)
+
     def with_flips(self, k: int, places: Number) -> ConfigurationCurve:
         """Return the curve on which a group also changes its sign at some places, (designs, count)."""
         home = self.path.home

@@ -123,7 +123,7 @@ class TravelLimitedArc(TravelLimited):
     def reach_problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find invalid travel limits, and a single one."""
         yield from super().reach_problems(links, where)
-        if self.reach is not None and sum(end is None for end in self.reach) == 1:
+        if isinstance(self.reach, tuple | list) and sum(end is None for end in self.reach) == 1:
             yield Problem(f"{where}.reach", "an arc needs both of its ends", "say where it begins and where it ends")
 
     def _order_problems(self, bounds: tuple[Number, Number], place: str) -> Iterator[Problem]:

@@ -381,7 +381,9 @@ def _number_problems(made: Synthesised) -> Iterator[Problem]:
 
 def _is_number(value: Any) -> bool:
     known = isinstance(value, int | float | complex | np.number) and not isinstance(value, bool)
-    return known and bool(np.isfinite(value))
+    # an integer of more than 64 bits is no number of NumPy's
+    large = isinstance(value, int) and abs(value) >= 2**63
+    return known and not large and bool(np.isfinite(value))
 
 
 def _keyword_problems(made: Synthesised) -> Iterator[Problem]:

@@ -10,6 +10,7 @@ import compoundkin as ck
 from compoundkin.analysis.characteristics.dwells import Sampled, dwells
 from compoundkin.analysis.characteristics.path_features import path_features, straightness
 from compoundkin.analysis.characteristics.path_fits import fitted_circles, fitted_lines
+from compoundkin.analysis.characteristics.traced_path import monotonic_stretches
 from tests import catalog
 
 CRANK = ck.deg(np.arange(0, 361, 5))
@@ -162,3 +163,18 @@ def test_what_is_straight_has_no_arc_but_itself() -> None:
     assert features.arc.is_straight
     assert np.isfinite(features.arc.length)
     assert features.arc.deviation == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_path_of_a_single_pose_has_no_stretch() -> None:
+    """The first pose is assembled, and those after it are beyond the limit."""
+    links = (
+        ck.link("frame", A=0, D=5),
+        ck.link("crank", A=0, B=3),
+        ck.link("coupler", B=0, C=1),
+        ck.link("rocker", D=0, C=2),
+    )
+    drawn = ck.drawn(B=3.0, C=3.25 + 0.25j * np.sqrt(15.0))
+    with pytest.warns(ck.errors.UnassembledPoses):
+        motion = ck.solve(ck.Mechanism("rockers", *links, ck.drive("crank"), drawn), {"crank": [0.0, 1.5, 1.6, 1.7]})
+    assert motion.assembled.tolist() == [True, False, False, False]
+    assert list(monotonic_stretches(motion, 0)) == []
