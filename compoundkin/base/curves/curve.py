@@ -95,6 +95,11 @@ class Curve(ABC):
         s = s[:-1] if self.closed else s
         return Samples(s, self.expansion(s, 0)[0], self.closed)
 
+    @cached_property
+    def sample_tangents(self) -> Number:
+        """The first derivatives at the samples."""
+        return self.expansion(self.samples.s, 1)[1]
+
     @property
     def size(self) -> float:
         """The diagonal of the box around the curve: its length scale."""

@@ -1,8 +1,8 @@
-"""The place of a curve where something touches it: the best sample, Newton, then order by order in time."""
+"""The place of a curve where something touches it: between the best samples, Newton, then order by order in time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -15,9 +15,9 @@ from compoundkin.base.series import Series, compose_series, derivative_coefficie
 # Seen from an end, a point is beyond it if it is in front of it by this part of the curve's size, a direction if it
 # leans forward by this angle: what touches the very end moves on like its neighbours.
 BEYOND = 1e-12
-# Newton doubles its digits with every step: after a step below this part of two samples' distance, what is left
-# is rounding.
-LAST_STEP = 1e-8
+# Newton's error is the square of the one before, in parts of the curve's size: after a step below this part of two
+# samples' distance, what is left is rounding.
+LAST_STEP = 1e-6
 # Bisection gains one digit in 3.3 steps: from two samples to rounding within these.
 STEPS = 60
 
@@ -32,6 +32,10 @@ class SearchableCurve(Protocol):
     @property
     def samples(self) -> Samples:
         """Points from which to start."""
+
+    @property
+    def sample_tangents(self) -> Number:
+        """The first derivatives at the samples."""
 
     @property
     def size(self) -> float:
@@ -53,16 +57,17 @@ def foot(curve: SearchableCurve, p: Series, near: Number = None) -> Series:
     Where one `near` it is known, one step of Newton goes from there.
     """
 
-    def rise(s: Number, point: Number) -> tuple[Number, Number]:
-        place, first, second = curve.derivatives(s, 2)
+    def rise(at: Sequence[Number], point: Number) -> tuple[Number, Number]:
+        place, first, second = at
         return dot(point - place, first), dot(point - place, second) - dot(first, first)
 
-    return _touch_parameter(
-        curve,
-        p,
-        _Target(curve.size, rise, curve.samples.nearest, lambda place, along, point: (point - place).dot(along)),
-        near,
-    )
+    def slope(index: Number, point: Number) -> Number:
+        return dot(point - curve.samples.points[index], curve.sample_tangents[index])
+
+    def condition(place: Series, along: Series, point: Series) -> Series:
+        return (point - place).dot(along)
+
+    return _touch_parameter(curve, p, _Target(curve.size, rise, curve.samples.nearest, slope, condition), near)
 
 
 def farthest(curve: SearchableCurve, n: Series, near: Number = None) -> Series:
@@ -71,52 +76,80 @@ def farthest(curve: SearchableCurve, n: Series, near: Number = None) -> Series:
     Where one `near` it is known, one step of Newton goes from there.
     """
 
-    def rise(s: Number, direction: Number) -> tuple[Number, Number]:
-        _, first, second = curve.derivatives(s, 2)
+    def rise(at: Sequence[Number], direction: Number) -> tuple[Number, Number]:
+        _, first, second = at
         return dot(direction, first), dot(direction, second)
 
-    aim = _Target(np.abs(n.c[0]), rise, curve.samples.outermost, lambda _, along, direction: direction.dot(along))
+    def slope(index: Number, direction: Number) -> Number:
+        return dot(direction, curve.sample_tangents[index])
+
+    def condition(_: Series, along: Series, direction: Series) -> Series:
+        return direction.dot(along)
+
+    aim = _Target(np.abs(n.c[0]), rise, curve.samples.outermost, slope, condition)
     return _touch_parameter(curve, n, aim, near)
 
 
 class _Target(NamedTuple):
-    """What is sought of a curve. Its scale, the slope of what is greatest there with its own, the best sample of some
-    targets, and the condition that is kept in time."""
+    """What is sought of a curve.
+
+    Its scale; the slope of what is greatest there, with its own, from the curve's derivatives; the best sample of some
+    targets; the slope at samples; and the condition that is kept in time.
+    """
 
     scale: Number
-    rise: Callable[[Number, Number], tuple[Number, Number]]
+    rise: Callable[[Sequence[Number], Number], tuple[Number, Number]]
     best: Callable[[Number], Number]
+    slope: Callable[[Number, Number], Number]
     condition: Callable[[Series, Series, Series], Series]
 
 
 def _touch_parameter(curve: SearchableCurve, given: Series, aim: _Target, near: Number) -> Series:
-    """Find the parameter that belongs to `given`: the best sample, Newton, then order by order."""
+    """Find the parameter that belongs to `given`: between the best samples, Newton, then order by order."""
     s = _search(curve, given.c[0], aim) if near is None else _newton_step(curve, given.c[0], aim, near)
     if given.order == 0:
         return Series((curve.wrapped(s),))
     coefficients = curve.expansion(s, given.order + 1)
-    first, slope = aim.rise(s, given.c[0])
+    first, slope = aim.rise((coefficients[0], coefficients[1], 2.0 * coefficients[2]), given.c[0])
     stays = rests_at_end(curve, s, first / np.abs(coefficients[1]) / aim.scale)
     rates = _rates(given, s, slope, coefficients, aim.condition)
     return Series((curve.wrapped(s), *[np.where(stays, 0.0, rate)[()] for rate in rates]))
 
 
 def _search(curve: SearchableCurve, given: Number, aim: _Target) -> Number:
-    """Search the parameter from the best sample."""
+    """Search the parameter between the samples beside the best one."""
     lead = np.asarray(given, dtype=complex)
     flat = lead.ravel()
     known = np.isfinite(flat)
     found = np.full(flat.shape, np.nan)
     targets = flat[known]
     if targets.size:
-        bounds = curve.samples.around(aim.best(targets))
-        found[known] = newton_maximum(lambda s, which: aim.rise(s, targets[which]), bounds, LAST_STEP, STEPS)
+        bounds = _bounds(curve, targets, aim)
+        found[known] = newton_maximum(
+            lambda s, which: aim.rise(curve.derivatives(s, 2), targets[which]), bounds, LAST_STEP, STEPS
+        )
     return found.reshape(lead.shape)[()]
+
+
+def _bounds(curve: SearchableCurve, targets: Number, aim: _Target) -> tuple[Number, Number, Number]:
+    """Return between which parameters to search, and where to begin: where a parabola through the slopes falls."""
+    samples, best = curve.samples, aim.best(targets)
+    low, middle, high = samples.around(best)
+    last = samples.s.size - 1
+    before, after = (
+        (best - 1, (best + 1) % (last + 1)) if curve.closed else (np.fmax(best - 1, 0), np.fmin(best + 1, last))
+    )
+    left, here, right = (aim.slope(index, targets) for index in (before, best, after))
+    fall, bend = 0.5 * (left - right), 0.5 * (left + right) - here
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = 2.0 * here / (fall + np.sqrt(fall * fall - 4.0 * bend * here))
+        inside = (fall > 0.0) & (np.abs(part) < 1.0) & (low < middle) & (middle < high)
+    return low, np.where(inside, middle + part * samples.step, middle), high
 
 
 def _newton_step(curve: SearchableCurve, given: Number, aim: _Target, near: Number) -> Number:
     """Go one step from a parameter nearby; none at an end that holds it."""
-    first, slope = aim.rise(near, given)
+    first, slope = aim.rise(curve.derivatives(near, 2), given)
     stays = rests_at_end(curve, near, first / np.abs(curve.expansion(near, 1)[1]) / aim.scale)
     return np.where(stays, near, near - first / slope)
 

@@ -93,13 +93,22 @@ class Cam(ProfileContact, Guided, FrictionContact):
 
     def touch(self, ends: Ends, poses: Poses) -> Touch:
         """Return the contact at the foot of the roller's middle."""
-        frame, centre, foot = self._foot(ends, poses)
+        return self._touch_at(ends, *self._foot(ends, poses))
+
+    def touch_and_sliding(self, ends: Ends, poses: Poses) -> tuple[Touch, tuple[Number, ...]]:
+        """Return the contact and the row of the sliding, at one foot."""
+        foot = self._foot(ends, poses)
+        return self._touch_at(ends, *foot), self._sliding_at(poses, *foot)
+
+    def _touch_at(self, ends: Ends, frame: Pose, centre: Series, foot: Series) -> Touch:
         place, normal = frame.at(self.curve.at(foot)), frame.u * self.curve.normal(foot) * self.outward
         return Touch(place, normal, normal.dot(centre - place) - ends[1].measure)
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
         """Return the row of the middle along the profile, by the parallel curve's speed."""
-        frame, centre, foot = self._foot(ends, poses)
+        return self._sliding_at(poses, *self._foot(ends, poses))
+
+    def _sliding_at(self, poses: Poses, frame: Pose, centre: Series, foot: Series) -> tuple[Number, ...]:
         s = foot.c[0]
         place, first, _ = self.curve.derivatives(s, 2)
         along = first / np.abs(first)
@@ -130,6 +139,8 @@ class Cam(ProfileContact, Guided, FrictionContact):
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Tell whether the foot is on the profile, not beyond an end of it."""
+        if self.curve.closed:
+            return True
         frame, centre, foot = self._foot(ends, poses)
         return ~self.curve.beyond(frame.u.conj() * (centre - frame.z), foot)
 

@@ -45,6 +45,10 @@ class Contact(Replaceable):
     def touch(self, ends: Ends, poses: Poses) -> Touch:
         """Return the contact of the two links; away from contact, where they are nearest."""
 
+    def touch_and_sliding(self, ends: Ends, poses: Poses) -> tuple[Touch, tuple[Number, ...]]:
+        """Return the contact, and the Jacobian's row of the coordinate."""
+        return self.touch(ends, poses), self.sliding(ends, poses)
+
     @abstractmethod
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
         """Return the Jacobian's row of the coordinate: its derivatives by each link's x, y, theta."""
@@ -59,17 +63,17 @@ class Contact(Replaceable):
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of the distance and of the sliding."""
-        place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
-        return jacobian_of_rows(passing_rates(poses, place, normal), self.sliding(ends, poses))
+        touch, sliding = self.touch_and_sliding(ends, poses)
+        return jacobian_of_rows(passing_rates(poses, touch.place.c[0], touch.normal.c[0]), sliding)
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
         """Return a unit force along the common normal, and the coordinate's effort.
 
         A roller's contact lies where the normal through its middle meets the profile.
         """
-        place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
-        x, y, turn = self.sliding(ends, poses)[3:]
-        return Wrench.at(place, normal), Wrench.at(poses[1].z.c[0], complex_of(x, y), turn)
+        touch, (*_, x, y, turn) = self.touch_and_sliding(ends, poses)
+        along = Wrench.at(poses[1].z.c[0], complex_of(x, y), turn)
+        return Wrench.at(touch.place.c[0], touch.normal.c[0]), along
 
     @property
     def acts_at(self) -> str:

@@ -92,14 +92,25 @@ class Face(ProfileContact, FrictionContact):
     def touch(self, ends: Ends, poses: Poses) -> Touch:
         """Find where the profile reaches farthest toward the face."""
         frame, face = self._sides(ends, poses)
-        place = frame.at(self.curve.at(self._support(frame, face)))
+        return self._touch_at(frame, face, self._support(frame, face))
+
+    def touch_and_sliding(self, ends: Ends, poses: Poses) -> tuple[Touch, tuple[Number, ...]]:
+        """Return the contact and the row of the sliding, at one place of the profile."""
+        frame, face = self._sides(ends, poses)
+        s = self._support(frame, face)
+        return self._touch_at(frame, face, s), self._sliding_at(poses, frame, face, s.c[0])
+
+    def _touch_at(self, frame: Pose, face: End, s: Series) -> Touch:
+        place = frame.at(self.curve.at(s))
         normal = self._normal(face)
         return Touch(place, normal, normal.dot(face.point - place))
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
         """Return the row along the face. The radius of curvature times the relative turn adds to the sliding."""
         frame, face = self._sides(ends, poses)
-        s = self._support(frame, face).c[0]
+        return self._sliding_at(poses, frame, face, self._support(frame, face).c[0])
+
+    def _sliding_at(self, poses: Poses, frame: Pose, face: End, s: Number) -> tuple[Number, ...]:
         rolled = self.side / np.abs(self.curve.curvature(s))
         passed = passing_rates(poses, frame.at(self.curve.at(s)).c[0], face.along.c[0])
         return tuple(rolled * turn - p for turn, p in zip((0.0, 0.0, -1.0, 0.0, 0.0, 1.0), passed, strict=True))
@@ -111,8 +122,10 @@ class Face(ProfileContact, FrictionContact):
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Tell whether the contact is not at an end of an open profile."""
+        if self.curve.closed:
+            return True
         s = self._support(*self._sides(ends, poses)).c[0]
-        return self.curve.closed | ((s > self.curve.low) & (s < self.curve.high))
+        return (s > self.curve.low) & (s < self.curve.high)
 
     def equivalent(self, ends: Ends) -> Equivalent | None:
         """Return, for a round disc, a block on the face. It is pinned at the middle of the disc."""
