@@ -90,12 +90,12 @@ class Block:
         """Return the same block, to try a group on."""
         return replace(self, world=dict(self.world), margins={})
 
-    def leading(self, names: Iterable[str] | None = None) -> Block:
-        """Return the same block without derivatives. What is known is of the named links only, or of all."""
+    def leading(self, names: Iterable[str] | None = None, order: int = 0) -> Block:
+        """Return the same block to an order only. What is known is of the named links only, or of all."""
         names = self.world if names is None else names
-        world = {name: self.world[name].trimmed(0) for name in names if name in self.world}
-        local = {name: pose.trimmed(0) for name, pose in self.local.items()}
-        return replace(self, world=world, local=local, order=0, margins={})
+        world = {name: self.world[name].trimmed(order) for name in names if name in self.world}
+        local = {name: pose.trimmed(order) for name, pose in self.local.items()}
+        return replace(self, world=world, local=local, order=order, margins={})
 
     def links_of(self, body: Body, pose: Pose) -> dict[str, Pose]:
         """Return the poses of a body's links from that of its base."""

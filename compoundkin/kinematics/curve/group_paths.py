@@ -337,8 +337,8 @@ class GroupMarch:
         within = np.searchsorted(self.stops, here + most, side="right") - self.goal[i]
         self.goal[i] = np.minimum(self.goal[i] + np.maximum(within - 1, 0), len(self.stops) - 1)
         stop = self.stops[self.goal[i]]
-        length = np.minimum(stop - here, most)
-        place = self.sense * np.where(stop - here <= most, stop, here + most)
+        there = np.where(stop - here <= most, stop, here + most if len(self.here) > 1 else _round(here, most))
+        length, place = there - here, self.sense * there
         new, new_rates, new_side, good = self._step(i, weights, rates, self.sense * length, place)
         self.trials[i] = np.where(good & (within > 0), 0, self.trials[i] + 1)
         self._take(i[good], place[good], new[good], [c[good] for c in new_rates], new_side[good])
@@ -389,6 +389,16 @@ class GroupMarch:
         off, moved = (np.abs(gap * weights).max(axis=(1, 2)) for gap in (between - predicted, new - state))
         near = off <= BENT * moved + SAME
         return new, new_rates, new_side, good & near & (new_side == self.side[i])[:, 0]
+
+
+def _round(here: Number, most: Number) -> Number:
+    """Return the farthest places within a step at which other groups are likely to be asked for too.
+
+    They are multiples of a power of a half, at least half a step away: what surrounds the groups of a chain is solved
+    once for all of them.
+    """
+    part = np.exp2(np.floor(np.log2(most)) - 1.0)
+    return np.fmax(np.floor((here + most) / part) * part, here + most / 2.0)
 
 
 def _strides(weights: Number, rates: list[Number]) -> Number:

@@ -108,7 +108,7 @@ class FollowerSolver(GroupSolver):
     def _published(self, block: Block, found: Number, slope: Number) -> None:
         """Add its links to what is known, from the closed coordinate and the slope of the contact's distance there."""
         ends = block.ends[self.pair.name]
-        coordinate = self._series(ends, lambda q: self.mounted.poses(block, q), found, slope, block.order)
+        coordinate = self._series(block, ends, found, slope)
         pose = self.mounted.placed(block, coordinate)
         # no turns are counted: the angle found may leap by one between poses
         block.publish(self.group.bodies[0], Pose(pose.z, pose.u))
@@ -134,12 +134,13 @@ class FollowerSolver(GroupSolver):
         closed = (np.abs(gap) <= CLOSED * self.size) & assembled
         return np.where(closed, coordinate, np.nan), closed, slope
 
-    def _series(self, ends: Ends, placing: Placing, coordinate: Number, slope: Number, order: int) -> Series:
-        """Return the coordinate to the given order, from its closed value and the slope there."""
+    def _series(self, block: Block, ends: Ends, coordinate: Number, slope: Number) -> Series:
+        """Return the coordinate to the block's order, from its closed value and the slope there."""
         found: tuple[Number, ...] = (coordinate,)
-        for k in range(1, order + 1):
-            trial = Series((*found, *[np.zeros_like(coordinate)] * (order + 1 - k)))
-            found = (*found, -self.pair.closure(ends, placing(trial))[0].c[k] / slope)
+        for k in range(1, block.order + 1):
+            trial = Series((*found, np.zeros_like(coordinate)))
+            poses = self.mounted.poses(self.mounted.leading(block, k), trial)
+            found = (*found, -self.pair.closure(ends, poses)[0].c[k] / slope)
         return Series(found)
 
     def _gap(self, ends: Ends, placing: Placing, coordinate: Number) -> tuple[Number, Number]:

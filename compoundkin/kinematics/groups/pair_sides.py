@@ -73,9 +73,9 @@ class MountedBody:
         own = block.links_of(self.body, self.placed(block, coordinate))
         return tuple(own[name] if name in own else block.world[name] for name in self.higher.members)
 
-    def leading(self, block: Block) -> Block:
-        """Return what it needs of a block, without derivatives."""
-        return block.leading([self.side.other, *self.higher.members])
+    def leading(self, block: Block, order: int = 0) -> Block:
+        """Return what it needs of a block, to an order only."""
+        return block.leading([self.side.other, *self.higher.members], order)
 
     def freedom(self, block: Block) -> Freedom:
         """Return how the body moves as the coordinate grows."""
