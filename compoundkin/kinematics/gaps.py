@@ -25,8 +25,8 @@ class Gap:
     `begin` and `end` are the driver values at which the group stops and starts to close, found to 1e-9;
     where the run reaches an end of the motion (`open_begin`, `open_end`) they are the motion's own value
     there. `first` and `last` are the indices of the poses along the motion. `pair` is named where the poses
-    are beyond an end of its guide: `links` are then those that it joins, and no group is named. `times` are those of
-    `begin` and `end` of a motion in time.
+    are beyond an end of its guide, or its wheels do not fit in a design: `links` are then those that it joins, and no
+    group is named. `times` are those of `begin` and `end` of a motion in time.
     """
 
     design: tuple[int, ...]
@@ -139,9 +139,9 @@ def _blames(motion: Motion, designs: Number, poses: Number) -> list[_Blame]:
     block = motion.block(part, 0, poses.astype(float)[:, None], designs[:, None])
     found = []
     for k, index in enumerate(motion.failed[designs, poses].tolist()):
-        passed = motion.solving_order.guide_ends.passed(index, block, k)
-        if passed is not None:
-            found.append(_Blame(passed.pair.members, "", passed.reason, passed.pair.name))
+        broken = motion.solving_order.broken(index, block, k)
+        if broken is not None:
+            found.append(_Blame(broken.pair.members, "", broken.reason, broken.pair.name))
         else:
             group, solver = motion.structure.groups[index - 1], motion.solving_order.solvers[index - 1]
             reason = solver.why(block, k)

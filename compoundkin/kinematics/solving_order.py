@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
@@ -16,10 +16,10 @@ from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import CLIPPED, Block, LimitRule
 from compoundkin.kinematics.groups import GroupSolver, solver_of
-from compoundkin.kinematics.groups.pair_sides import Reason, Words, reason_text
+from compoundkin.kinematics.groups.pair_sides import Reason, Words, reason_text, spot
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, as_turn_counting, constraint_scales
+from compoundkin.model.pairs.contract import DimensionFit, Ends, as_turn_counting, constraint_scales
 from compoundkin.model.pairs.travel_limits import TravelLimited, as_travel_limited, bounds_name
 from compoundkin.model.validation import load_designs, outline_designs
 from compoundkin.structure.four_bars import FourBarLoops, four_bar_loops
@@ -45,7 +45,8 @@ class SolvingOrder(ShortRepr):
             pairs.update({d.pair.name: d.pair for d in body.driven})
         self.pairs = pairs
         self.guide_ends = GuideEnds(structure, self.size)
-        own = None if ends is not None else self.guide_ends.bounds(geometry)
+        self.fits = Fits(structure, ends)
+        own = None if ends is not None else {**self.guide_ends.bounds(geometry), **self.fits.rooms}
         self.ends: dict[str, Ends] = dict(ends or {name: pair.ends(geometry) for name, pair in pairs.items()})
         self.solvers: tuple[GroupSolver, ...] = tuple(
             solver_of(k, group, self.size, self.ends) for k, group in enumerate(structure.groups)
@@ -141,6 +142,16 @@ class SolvingOrder(ShortRepr):
                 local.update({k: v for k, v in placed.items() if v is not FIXED})
         return Block(shape, ends, world, local, order, limits)
 
+    def broken(self, failed: int, block: Block, at: int) -> Broken | None:
+        """Return what keeps a failed pose of a column from being assembled, if it is an end of a guide or a misfit."""
+        return self.guide_ends.passed(failed, block, at) or self.fits.misfit(failed, block, at)
+
+    def named(self, failed: int) -> str:
+        """Return the name of the pair by whose end or misfit a pose failed."""
+        k = failed - 1 - len(self.structure.groups)
+        ends = self.guide_ends.pairs
+        return ends[k].name if k < len(ends) else self.fits.pairs[k - len(ends)].name
+
     def closing(self, solver: GroupSolver) -> tuple[Pair, ...]:
         """Return the redundant pairs that close or open with a group.
 
@@ -179,6 +190,7 @@ def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | N
     """
     guide_ends = solving_order.guide_ends
     has_ends, turning = bool(guide_ends.pairs), solving_order.turning
+    solving_order.fits.mask(block)
     if has_ends:
         guide_ends.mask(block, BEFORE)
     for solver in solving_order.solvers[since:upto]:
@@ -226,11 +238,61 @@ HERE, THERE = "{here}", "{there}"
 BEFORE = -1
 
 
-class PassedEnd(NamedTuple):
-    """An end of a guide that a pose is beyond. Its pair, and the words for it."""
+class Broken(NamedTuple):
+    """What a pair forbids: a pose beyond an end of its guide, dimensions that do not fit; and the words for it."""
 
-    pair: TravelLimited
+    pair: Pair
     reason: str
+
+
+class Fits(ShortRepr):
+    """What of the dimensions of pairs must fit, in designs of which it is not known that it does.
+
+    A design in which it does not fails at all poses, by a number above those of guides. `rooms`, with the numbers in
+    the words, go with the pairs' sides; they are among the `ends` where these are given.
+    """
+
+    def __init__(self, structure: Structure, ends: Mapping[str, Ends] | None = None) -> None:
+        self.pairs, geometry = structure.mechanism.written_pairs, structure.mechanism.geometry
+        self.first = len(structure.groups) + sum(as_travel_limited(pair) is not None for pair in self.pairs)
+        self.rooms = {} if ends else {name: room for pair in self.pairs for name, room in rooms_of(pair, geometry)}
+        known = ends or self.rooms
+        found = (dict(_named_fits(pair, geometry)) for pair in self.pairs)
+        asked = ({name: fit for name, fit in fits.items() if name in known} for fits in found)
+        self.asked = {k: fits for k, fits in enumerate(asked) if fits}
+
+    def mask(self, block: Block) -> None:
+        """Note the designs in which something does not fit."""
+        for k, fits in self.asked.items():
+            for room in (spot(block.ends[name][0]) for name in fits):
+                if np.any(room <= 0.0):
+                    block.fail(room > 0.0, self.first + k)
+
+    def misfit(self, failed: int, block: Block, at: int) -> Broken | None:
+        """Return the pair that does not fit at a failed pose of a column. None where it failed otherwise."""
+        k = failed - 1 - self.first
+        return None if k < 0 else Broken(self.pairs[k], reason_text(self.reasons(block, k), at))
+
+    def reasons(self, block: Block, k: int) -> tuple[Reason, ...]:
+        """Return why a pair may not fit."""
+        found = []
+        for name, fit in self.asked.get(k, {}).items():
+            room, *numbers = map(spot, block.ends[name])
+            words = (word if isinstance(word, str) else numbers.pop(0) for word in fit.words)
+            found.append(Reason(room <= 0.0, tuple(words)))
+        return tuple(found)
+
+
+def rooms_of(pair: Pair, geometry: Geometry) -> Iterator[tuple[str, Ends]]:
+    """Yield the room of what of a pair is not known to fit, and the numbers in its words, as sides with a name."""
+    for name, fit in _named_fits(pair, geometry):
+        if not (isinstance(fit.room, float | int) and fit.room > 0.0):
+            yield name, (End(fit.room), *(End(word) for word in fit.words if not isinstance(word, str)))
+
+
+def _named_fits(pair: Pair, geometry: Geometry) -> Iterator[tuple[str, DimensionFit]]:
+    for k, fit in enumerate(pair.fits(geometry)):
+        yield f"{pair.name} (fit {k + 1})", fit
 
 
 class GuideEnds(ShortRepr):
@@ -275,12 +337,12 @@ class GuideEnds(ShortRepr):
         """Return the index of the pair whose end is nearest, or passed by most."""
         return np.argmin([np.broadcast_to(one, block.shape) for one in self._margins(block)], axis=0)
 
-    def passed(self, failed: int, block: Block, at: int) -> PassedEnd | None:
-        """Return which end a failed pose of a column is beyond. None where a group does not close."""
-        if failed <= self._groups:
+    def passed(self, failed: int, block: Block, at: int) -> Broken | None:
+        """Return which end a failed pose of a column is beyond. None where it failed otherwise."""
+        if not self._groups < failed <= self._groups + len(self.pairs):
             return None
         pair = self.pairs[failed - self._groups - 1]
-        return PassedEnd(pair, reason_text(self.reasons(block, pair), at))
+        return Broken(pair, reason_text(self.reasons(block, pair), at))
 
     def reasons(self, block: Block, pair: TravelLimited) -> tuple[Reason, ...]:
         """Return why a pose may be beyond a guide's end or its beginning."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
 from math import prod
@@ -24,7 +25,7 @@ from compoundkin.model.definition import MechanismDefinition, MechanismNames
 from compoundkin.model.elements import Drawn, Expectation, Item, Link, Mode
 from compoundkin.model.geometry import FRAME, Geometry, link_from_drawing, pose_from_points, real
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import DrawnPair, Ends, as_orienting, as_turn_counting
+from compoundkin.model.pairs.contract import DrawnPair, Ends, as_orienting, as_turn_counting, misfit_problems
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.model.units import checked_units
@@ -83,17 +84,26 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         self.time: Number | None = real("time", time)
         self.items: tuple[Item, ...] = items
-        problems += definition_problems(self)
-        problems += load_problems(self, self.names, units is not None) + outline_problems(self, self.names)
-        problems += [] if problems else self._misfits()
-        if problems:
-            raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
+        self._validate(problems)
         load_warnings(self)
 
-    def _misfits(self) -> Iterator[Problem]:
+    def _validate(self, problems: Sequence[Problem] = (), must_fit: bool = True) -> None:
+        """Raise InvalidMechanism for all problems of its elements, those that are known first."""
+        # units with problems are not missing
+        has_units = self.units is not None or bool(problems)
+        found = [*problems, *definition_problems(self), *load_problems(self, self.names, has_units)]
+        found += outline_problems(self, self.names)
+        found += [] if found else self._misfits(must_fit)
+        if found:
+            raise InvalidMechanism(found, heading=f"{self.title!r} cannot be built")
+
+    def _misfits(self, must_fit: bool) -> Iterator[Problem]:
         """Find dimensions of pairs that do not fit, where nothing else is wrong and all points have places."""
         for where, pair in self.placed_pairs if not self.unplaced else ():
-            yield from pair.misfits(self.geometry, where)
+            problems = list(pair.misfits(self.geometry, where))
+            yield from problems
+            if must_fit and not problems:
+                yield from misfit_problems(pair.fits(self.geometry), where)
         yield from crossed_polygons(self) if not self.unplaced else ()
 
     @cached_property
@@ -160,11 +170,20 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         >>> crank.replace(link("crank", A=0, B=2)).links["crank"].points["B"]
         (2+0j)
         """
-        keys = {_identity(item): item for item in items}
-        replaced = [keys.pop(_identity(item), item) for item in self.items]
         words = {**{k: getattr(self, k) for k in _ABOUT[1:-2]}, **({} if "units" in changes else self.unit_words)}
         title = changes.pop("title", self.title)
-        return Mechanism(title, *replaced, *keys.values(), **{**words, **changes})
+        return Mechanism(title, *self._replaced(items), **{**words, **changes})
+
+    def as_design(self, *items: Item) -> Mechanism:
+        """Return a copy as `replace` does, as one of several designs: if its wheels do not fit it is not assembled."""
+        design = copy(self)
+        design.items = self._replaced(items)
+        design._validate(must_fit=False)
+        return design
+
+    def _replaced(self, items: Sequence[Item]) -> tuple[Item, ...]:
+        keys = {_identity(item): item for item in items}
+        return *(keys.pop(_identity(item), item) for item in self.items), *keys.values()
 
     def without_prescribed_motion(self) -> Mechanism:
         """Return the mechanism without prescribed motions and expectations."""
@@ -321,7 +340,7 @@ def values_of_design(value: Any, shape: tuple[int, ...], design: int) -> Any:
 
 
 def mechanism_of_design(mechanism: Mechanism, shape: tuple[int, ...], design: int) -> Mechanism:
-    """Return the mechanism of one of several designs. The shape is that of its motion.
+    """Return the mechanism of one of several designs, which were validated together. The shape is that of its motion.
 
     >>> from compoundkin.model.elements import drive, link
     >>> lengths = np.array([[1.0], [2.0]])
@@ -332,15 +351,10 @@ def mechanism_of_design(mechanism: Mechanism, shape: tuple[int, ...], design: in
     with warnings.catch_warnings():
         # warnings were given for the whole
         warnings.simplefilter("ignore")
-        return Mechanism(
-            mechanism.title,
-            *(_item_of_design(item, shape, design) for item in mechanism.items),
-            source=mechanism.source,
-            description=mechanism.description,
-            outputs=mechanism.outputs,
-            time=values_of_design(mechanism.time, shape, design),
-            **mechanism.unit_words,
-        )
+        own = copy(mechanism)
+        own.items = tuple(_item_of_design(item, shape, design) for item in mechanism.items)
+        own.time = values_of_design(mechanism.time, shape, design)
+    return own
 
 
 def _item_of_design(item: Any, shape: tuple[int, ...], design: int) -> Any:

@@ -258,11 +258,13 @@ def _checked_value(one: FreeDimension, value: Any) -> Number:
     return found
 
 
-def mechanism_with(stated: StatedDimensions, values: Mapping[FreeDimension, Number]) -> Mechanism:
+def mechanism_with(
+    stated: StatedDimensions, values: Mapping[FreeDimension, Number], must_fit: bool = True
+) -> Mechanism:
     """Return the mechanism with these dimensions, several designs where they are arrays.
 
     What its pairs read off the drawing stays as it was. Raises InvalidMechanism for dimensions that
-    no such mechanism can have.
+    no such mechanism can have; if wheels need not fit, designs in which they do not are not assembled.
     """
     links: dict[str, dict[str, Number]] = {}
     numbers: dict[str, dict[str, Number]] = {}
@@ -285,7 +287,7 @@ def mechanism_with(stated: StatedDimensions, values: Mapping[FreeDimension, Numb
         # a motion of its own, which is perhaps not as long as that along which dimensions vary
         drives = [replace(one, values=None) if isinstance(one.values, np.ndarray) else one for one in drives]
     items += [one for one, before in zip(drives, own, strict=True) if one is not before]
-    return stated.mechanism.replace(*items) if items else stated.mechanism
+    return (stated.mechanism.replace if must_fit else stated.mechanism.as_design)(*items) if items else stated.mechanism
 
 
 def _with_part(point: Number, part: str, value: Number) -> Number:

@@ -120,10 +120,12 @@ class PageProgram(ShortRepr):
 
     @cached_property
     def reasons(self) -> tuple[tuple[RecordedReason, ...], ...]:
-        """Why each group is not assembled, and each guide with ends beyond them."""
+        """Why each group is not assembled, each guide with ends beyond them, and why each pair does not fit."""
         order, block = self.mechanism.order, self.mechanism.block
+        fits = order.fits
         found = (*(solver.reasons(block) for solver in order.solvers),
-                 *(order.guide_ends.reasons(block, pair) for pair in order.guide_ends.pairs))  # fmt: skip
+                 *(order.guide_ends.reasons(block, pair) for pair in order.guide_ends.pairs),
+                 *(fits.reasons(block, k) for k in range(len(fits.pairs) if fits.asked else 0)))  # fmt: skip
         return tuple(tuple(map(self._reason, reasons)) for reasons in found)
 
     def _reason(self, reason: Reason) -> RecordedReason:

@@ -158,7 +158,7 @@ class PathPrograms(ShortRepr):
         values = {one: one.value_in(numbers.given) for one in self.dimensions}
         # the drivers' values are among the numbers, and a law cannot have designs
         one_law = {one: value for one, value in values.items() if not (one.is_of_law and np.ndim(value))}
-        mechanism = mechanism_with(self.stated, one_law)
+        mechanism = mechanism_with(self.stated, one_law, must_fit=False)
         return solve_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
 
     def checked_values(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:

@@ -146,7 +146,7 @@ def values_near_limits(
             arrays[k] = np.array(np.broadcast_to(array, numbers.extent))
     failed, imprecise = screened.failed, 0
     for part, result in solve_in_parts(by, numbers, screened.to_solve):
-        failed[part] = result.motion.failed if result else 1
+        failed[part] = result.motion.failed if result else np.where(failed[part] == 0, 1, failed[part])
         if result:
             shape = result.motion.failed.shape
             for name, array in zip(names, arrays, strict=True):

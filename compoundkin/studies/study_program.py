@@ -20,7 +20,7 @@ from compoundkin.base.version import VERSION
 from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import DEGREES, component_names, unit_suffix
-from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range, failed_name, is_travel_limit
+from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range, failure, is_misfit
 from compoundkin.studies.responses.designs import Designs, StudiedPath, designs_at_once
 from compoundkin.studies.responses.response import Response
 from compoundkin.studies.samples.design_sample import DesignSample
@@ -204,9 +204,10 @@ def _texts(designs: Designs, codes: Number) -> Iterator[str]:
     motion = designs.path.reference
     driver, values, unit = _driver_values(designs)
     for group, begin, end in codes.tolist():
-        why = "is beyond an end" if is_travel_limit(motion, group) else "cannot be assembled"
-        reason = f"{failed_name(motion, group)} {why}"
-        if end < 0:
+        reason = failure(motion, group)
+        if end - begin == designs.poses - 1 and is_misfit(motion, group):
+            yield reason
+        elif end < 0:
             yield f"{reason} between {driver} {values[begin]} and {values[begin + 1]}{unit}"
         else:
             yield f"{reason} at {driver} {values[begin]}{f' to {values[end]}' if end > begin else ''}{unit}"

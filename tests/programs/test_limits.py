@@ -70,6 +70,30 @@ def test_poses_not_assembled_are_told_and_are_no_numbers() -> None:
     assert np.isnan(found["B.position"][~found.assembled]).all()
 
 
+@pytest.mark.parametrize("backend", ["numpy", None])
+def test_designs_whose_wheels_do_not_fit_are_not_assembled(backend: str | None) -> None:
+    """By Willis's equation where they fit; where they do not, for the reason for which each is refused alone."""
+    path = ck.compile(ck.load("planetary-train"), ["sun.angle", "Q"], free="arm.P.x", backend=backend)
+    turn, places = np.linspace(0.0, 1.0, 5), np.array([[51.0], [52.0], [52.0004], [53.0]])
+    with pytest.warns(ck.errors.UnassembledPoses, match="10 of 20 poses"):
+        found = path(turn, {"arm.P.x": places})
+    assert found.assembled.tolist() == [[False] * 5, [True] * 5, [True] * 5, [False] * 5]
+    assert np.isnan(found["Q"][~found.assembled]).all()
+    np.testing.assert_allclose(np.ptp(found["sun.angle"][1:3], axis=1), 1.0 + 72 / 32, rtol=1e-12)
+    for design in (0, 3):
+        (gap,) = ck.gaps(found.motion(design))
+        with pytest.raises(ck.errors.InvalidMechanism, match=gap.reason):
+            path.mechanism({"arm.P.x": float(places[design, 0])})
+    with pytest.warns(ck.errors.UnassembledPoses, match="5 of 5 poses"):
+        assert not path(turn, {"arm.P.x": 53.0}).assembled.any()
+    with pytest.warns(ck.errors.UnassembledPoses, match="10 of 20 poses"):
+        slopes = path.derivatives(turn, {"arm.P.x": places}, by="arm.P.x")
+    # the tip of the planet goes out with its axis
+    rows = slopes["Q", "arm.P.x"]
+    assert np.isnan(rows[[0, 3]]).all()
+    np.testing.assert_allclose(rows[1:3], np.broadcast_to(np.exp(1j * turn), (2, 5)), atol=1e-12)
+
+
 @pytest.mark.parametrize("begin", [100.0, 190.0, 300.0])
 def test_modes_are_carried_from_the_drawing_to_a_part_of_the_motion(begin: float) -> None:
     drawn = ck.load("parallelogram").replace(ck.drawn(A=0, B=30j, C=60 + 30j, D=60))

@@ -181,6 +181,12 @@ def test_no_design_that_is_assembled_is_told_with_the_group_that_fails() -> None
         ck.optimise(LINKAGE, {"coupler.C.x": (0.1, 0.2)}, "rocker.angle.stroke", values=TURN[:3])
 
 
+def test_wheels_that_do_not_fit_are_told_by_name() -> None:
+    train = ck.load("planetary-train")
+    with pytest.raises(ck.errors.NotAssembled, match=r"none of 65537 designs .* fails at planet in annulus in 65537"):
+        ck.optimise(train, {"arm.P.x": (50.0, 51.0)}, ck.goals.least("sun.angle.stroke"), values=[0.0, 1.0])
+
+
 def test_guides_whose_ends_are_too_near_are_told_by_name() -> None:
     """The piston goes from 2 to 4, and the guide from 2.4 to 3 at most."""
     press = ck.Mechanism(

@@ -380,3 +380,18 @@ def test_a_length_that_comes_to_zero_has_no_slope_there() -> None:
     found = ck.tolerance(shaper, {"crank.A.x": 0.05}, least, count=100, percentiles=(50,))[least]
     assert (found.slopes["crank.A.x"], found.worst, found.deviation) == (0.0, 0.0, 0.0)
     assert found.sample.deviation < 1e-6
+
+
+def test_rows_whose_wheels_do_not_fit_are_not_assembled() -> None:
+    """The axes of the planetary train are 52 mm apart, to 1e-5 of it."""
+    dimensions = {"arm.P.x": (51.9992, 52.0008)}
+    studied = ck.study(ck.load("planetary-train"), dimensions, "Q.x", sample="grid", count=9, values=[0.0, 1.0])
+    found = studied.run(threads=1)
+    fits = np.abs(found["arm.P.x"] - 52.0) <= 1e-5 * found["arm.P.x"]
+    assert fits.sum() == 5
+    assert (found["assembled"] == fits).all()
+    assert np.isnan(found["Q.x"][~fits]).all()
+    assert [one is None for one in found["reason"]] == fits.tolist()
+    assert set(found["reason"][~fits]) == {"planet in annulus does not fit"}
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"require a distance of 52, but P and O on 'arm' are"):
+        found.mechanism(0)

@@ -324,3 +324,14 @@ def test_pins_of_three_links_want_to_know_which_are_loose() -> None:
         ck.tolerance(press, {}, "D.y", clearance={"B": 0.02})
     found = ck.tolerance(press, {}, "D.y", clearance={"BD.B": 0.02, "CB.B": 0.02})
     assert [source.name for source in found.sources] == ["clearance BD.B", "clearance CB.B"]
+
+
+def test_designs_whose_wheels_do_not_fit_are_left_out() -> None:
+    """Errors of the distance of axes to 3 sigmas of 0.0007 mm, and 0.00052 mm fit: by the normal distribution."""
+    train = ck.load("planetary-train")
+    share = 2.0 * stats.norm.sf(52e-5 / (1.0 + 1e-5) / (0.0007 / 3.0))
+    with pytest.warns(ck.errors.UnassembledPoses, match=r"planet in annulus does not fit in \d+"):
+        found = ck.tolerance(train, {"arm.P.x": 0.0007}, "Q.x", values=[0.0, 1.0], count=4096)
+    assert abs(found.unassembled / 4096 - share) < 4.0 * np.sqrt(share / 4096)
+    with pytest.raises(ck.errors.NotAssembled, match=r"random designs .* \(planet in annulus does not fit in \d+\)"):
+        ck.tolerance(train, {"arm.P.x": 50.0}, "Q.x", values=[0.0, 1.0], count=1024)

@@ -79,10 +79,12 @@ class _Groups(NamedTuple):
 
 
 def _groups_before(motion: Motion, number: int) -> _Groups:
-    """Return the groups before the cause of a gap by its number: a group, or the end of a guide."""
+    """Return the groups before the cause of a gap by its number: a group, the end of a guide, or none of what fits."""
     count = len(motion.structure.groups)
     if number <= count:
         return _Groups(number - 1, number)
+    if number > motion.solving_order.fits.first:
+        return _Groups(0, 0)
     known = motion.solving_order.guide_ends.known_by[number - count - 1] + 1
     return _Groups(known, known)
 
@@ -186,6 +188,7 @@ def _by_group(motion: Motion, beyond: Number) -> dict[str, Number]:
     """Return values at failed poses, by a link of the group that does not close or the pair with the passed end."""
     names = [group.links[0] for group in motion.structure.groups]
     names += [pair.name for pair in motion.solving_order.guide_ends.pairs]
+    names += [pair.name for pair in motion.solving_order.fits.pairs]
     return {name: np.where(motion.failed == k, beyond, 0.0) for k, name in enumerate(names, start=1)}
 
 
@@ -367,6 +370,7 @@ class GroupContinuation:
             with np.errstate(invalid="ignore"):
                 h = np.fmin(h, NEARER * np.sqrt(np.nanmin(apart**2 + wide**2, axis=1, initial=np.inf)))
         block, good = self._block(i, self.at[i] + h, 0), np.ones((len(i), 1), dtype=bool)
+        self.order.fits.mask(block)
         self.guide_ends.mask(block, BEFORE)
         powers = h[:, None, None] ** np.arange(ORDER + 1).reshape(-1, 1, 1, 1)
         found = []

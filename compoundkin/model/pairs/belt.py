@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import ClassVar
 
@@ -13,7 +12,7 @@ from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import constructor, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import BeltDrive, Ends, Poses
+from compoundkin.model.pairs.contract import BeltDrive, DimensionFit, Ends, Poses
 from compoundkin.model.pairs.geared import Geared, axes_of, line_of_action
 from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, known_range, strap_line
 
@@ -93,17 +92,12 @@ class Belt(Geared, BeltDrive):
             return np.maximum(transmitted, 0.0)[()], np.maximum(0.0 - transmitted, 0.0)[()]
         return pretension + transmitted * 0.5, pretension - transmitted * 0.5
 
-    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find axes that coincide, and pulleys that overlap."""
-        distance = self.distance(geometry)
-        if self.radii is None and np.all(distance > 0):
-            return
-        least = 0.0 if self.radii is None else np.asarray(self.radii[0]) + np.asarray(self.radii[1])
-        if not np.all(distance > least):
-            what = (
-                f"{self.first_at} and {self.second_at} are too near to each other on {self.carrier!r} for the pulleys"
-            )
-            yield Problem(f"{where}.radii", what, "the distance of the axes must exceed both radii together")
+    def fits(self, geometry: Geometry) -> tuple[DimensionFit, ...]:
+        """Return two axes that are apart, and pulleys that do not overlap."""
+        least = 0.0 if self.radii is None else self.radii[0] + self.radii[1]
+        what = f"{self.first_at} and {self.second_at} are too near to each other on {self.carrier!r} for the pulleys"
+        remedy = "the distance of the axes must exceed both radii together"
+        return (DimensionFit("radii", self.distance(geometry) - least, (what,), remedy),)
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the pulleys and the belt around them."""

@@ -17,7 +17,7 @@ from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
 from compoundkin.model.pairs.contact import FrictionContact, Touch, centre_of_curvature, passing_rates
-from compoundkin.model.pairs.contract import Ends, Equivalent, Guided, Osculation, Poses
+from compoundkin.model.pairs.contract import DimensionFit, Ends, Equivalent, Guided, Osculation, Poses
 from compoundkin.model.pairs.loop_terms import LoopTerms, ProfileVector, Sum, Unknown, angle_of
 from compoundkin.model.pairs.profile_contact import THINNED, Freedom, ProfileContact, path_crossings, relative_path
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
@@ -80,12 +80,13 @@ class Cam(ProfileContact, Guided, FrictionContact):
         if not np.all(np.asarray(self.radius) >= 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
 
-    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find a hollow run through from inside that is too narrow for the roller."""
-        if self.inside and self.profile.circle and not np.all(np.asarray(self.radius) < self.profile.circle[1]):
-            ring = self.profile.circle[1]
-            what = f"a roller of radius {self.roller:g} does not fit into a ring of radius {ring:g}"
-            yield Problem(f"{where}.radius", what, "take a smaller roller")
+    def fits(self, geometry: Geometry) -> tuple[DimensionFit, ...]:
+        """Return the roller in a round hollow, for which that is not too narrow."""
+        if not self.inside or not self.profile.circle:
+            return ()
+        ring = self.profile.circle[1]
+        words = ("a roller of radius ", self.radius, " does not fit into a ring of radius ", ring)
+        return (DimensionFit("radius", ring - self.radius, words, "take a smaller roller"),)
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return the profile's frame; the roller's middle with its radius."""

@@ -7,7 +7,7 @@ Each kind lives in one file; each optional answer has one function that asks for
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, NamedTuple, TypeAlias
 
@@ -43,6 +43,34 @@ class Line(NamedTuple):
     a: Number
     b: Number
     c: Number
+
+
+class DimensionFit(NamedTuple):
+    """What of a pair's dimensions must fit: `room` is above zero where it does.
+
+    Else `words`, texts and numbers, tell what is wrong with the key `key`, and `remedy` what to do.
+    """
+
+    key: str
+    room: Number
+    words: tuple[str | Number, ...]
+    remedy: str
+
+
+def misfit_problems(fits: Iterable[DimensionFit], where: str) -> Iterator[Problem]:
+    """Find the first of a pair's fits that no design has. The others of several designs are not assembled."""
+    for one in fits:
+        is_off = ~np.asarray(one.room > 0.0)
+        if np.all(is_off) if np.ndim(is_off) > 1 else np.any(is_off):
+            at = int(np.argmax(is_off))
+            yield Problem(
+                f"{where}.{one.key}", "".join(_word(word, is_off.shape, at) for word in one.words), one.remedy
+            )
+            return
+
+
+def _word(word: str | Number, shape: tuple[int, ...], at: int) -> str:
+    return word if isinstance(word, str) else f"{np.ravel(np.broadcast_to(word, shape))[at]:.6g}"
 
 
 # A pair's sides on its members, in the members' own frames; and the members' poses.
@@ -103,8 +131,12 @@ class Pair(ABC):
         return replace(self, **found) if found else self
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find problems of its dimensions, such as teeth that do not fit or a profile that crosses itself."""
+        """Find problems of its dimensions, such as a line without direction or a profile that crosses itself."""
         return iter(())
+
+    def fits(self, geometry: Geometry) -> tuple[DimensionFit, ...]:
+        """Return what must fit, such as teeth and axes. A design that does not is not assembled."""
+        return ()
 
     @abstractmethod
     def ends(self, geometry: Geometry) -> Ends:

@@ -14,8 +14,8 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TANGENTIAL
 from compoundkin.model.fields import constructor, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Poses, TransmittingPair
-from compoundkin.model.pairs.geared import Geared, axes_of, distance_problems, pressure_problems
+from compoundkin.model.pairs.contract import DimensionFit, Ends, Poses, TransmittingPair
+from compoundkin.model.pairs.geared import Geared, axes_of, pressure_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
 
 # The pressure angle of standard involute teeth.
@@ -75,24 +75,19 @@ class Gear(Geared, TransmittingPair):
         if self.module is not None and self.teeth is None:
             yield Problem(f"{where}.module", "a module says nothing without teeth", "give teeth = (20, 40)")
 
-    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find axes that coincide, and pitch circles that do not fit their distance."""
+    def fits(self, geometry: Geometry) -> tuple[DimensionFit, ...]:
+        """Return two axes that are apart, and pitch circles that fit their distance."""
         distance = self.distance(geometry)
-        if not np.all(distance > 0):
-            what = f"{self.first_at} and {self.second_at} are at one place on {self.carrier!r}"
-            yield Problem(f"{where}.carrier", what, "gears in mesh have two axes")
-            return
+        what = f"{self.first_at} and {self.second_at} are at one place on {self.carrier!r}"
+        apart = DimensionFit("carrier", distance, (what,), "gears in mesh have two axes")
         sign = -1.0 if self.internal else 1.0
         if self.module is not None and self.teeth is not None:
-            required = np.abs(np.asarray(self.teeth[1]) + sign * np.asarray(self.teeth[0])) * self.module / 2.0
-            yield from distance_problems(
-                self.axes, distance, required, f"{where}.teeth", "teeth and module require a distance of"
-            )
-        elif self.radii is not None:
-            required = np.abs(np.asarray(self.radii[1]) + sign * np.asarray(self.radii[0]))
-            yield from distance_problems(
-                self.axes, distance, required, f"{where}.radii", "pitch circles require a distance of"
-            )
+            required = np.abs(self.teeth[1] + sign * self.teeth[0]) * self.module / 2.0
+            return apart, self.distance_fit("teeth", distance, required, "teeth and module require a distance of")
+        if self.radii is not None:
+            required = np.abs(self.radii[1] + sign * self.radii[0])
+            return apart, self.distance_fit("radii", distance, required, "pitch circles require a distance of")
+        return (apart,)
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
         """Return the factors from teeth or radii to base circles."""

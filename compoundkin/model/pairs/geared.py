@@ -15,6 +15,7 @@ from compoundkin.base.series import Series
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import (
+    DimensionFit,
     DrawnPair,
     Ends,
     Osculation,
@@ -117,6 +118,14 @@ class Geared(TurnCounting, Replaceable):
         """Return the distance between the two axes on the carrier."""
         axes = geometry.points[self.carrier]
         return np.abs(axes[self.second_at] - axes[self.first_at])
+
+    def distance_fit(self, key: str, distance: Number, required: Number, reason: str) -> DimensionFit:
+        """Return what fits where the axes have the required distance, for a reason in words."""
+        room = FITS * np.abs(distance) - np.abs(required - distance)
+        words = (f"{reason} ", required, f", but {self.axes} are ", distance, " apart")
+        return DimensionFit(
+            key, room, words, "change the sizes or move an axis; give teeth alone for a distance as it is"
+        )
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return axes and sizes on the wheels, and on the carrier the phase, read off a drawing of all three links."""
@@ -326,16 +335,6 @@ def size_problems(teeth: Sizes, radii: Sizes, where: str) -> Iterator[Problem]:
     if teeth is not None and radii is not None and not _proportional(teeth, radii):
         what = f"teeth {_sizes_text(teeth)} and radii {_sizes_text(radii)} have different ratios"
         yield Problem(where, what, "leave one of them out")
-
-
-def distance_problems(axes: str, distance: Number, required: Number, where: str, reason: str) -> Iterator[Problem]:
-    """Find wheels whose sizes do not fit the distance of their axes. The axes are on the carrier."""
-    off = np.abs(required - distance) > FITS * np.abs(distance)
-    if np.any(off):
-        at = int(np.argmax(np.ravel(np.broadcast_to(off, np.shape(off)))))
-        a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (required, distance))
-        what = f"{reason} {a:.6g}, but {axes} are {b:.6g} apart"
-        yield Problem(where, what, "change the sizes or move an axis; give teeth alone for a distance as it is")
 
 
 def _proportional(one: Sequence[Number], two: Sequence[Number]) -> bool:

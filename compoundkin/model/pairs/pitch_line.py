@@ -13,7 +13,7 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import DrawnPair, Ends, Point, Poses, StraightLine, TurnCounting
+from compoundkin.model.pairs.contract import DimensionFit, DrawnPair, Ends, Point, Poses, StraightLine, TurnCounting
 from compoundkin.model.pairs.geared import FITS
 from compoundkin.model.pairs.symbols import Mark, Track, Wheel, known_range
 
@@ -42,20 +42,21 @@ class PitchLinePair(StraightLine, TurnCounting):
             yield Problem(f"{where}.side", what, "write 1 for the left of its direction, -1 for the right")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Find two coincident points of the line, or a radius that does not fit a drawing with all dimensions."""
-        problems = list(self.line_problems(geometry, where))
-        yield from problems
-        seen = None if problems else self._drawn_axis(geometry)
+        """Find two coincident points of the line."""
+        return self.line_problems(geometry, where)
+
+    def fits(self, geometry: Geometry) -> tuple[DimensionFit, ...]:
+        """Return the radius, which fits a drawing with all dimensions."""
+        seen = self._drawn_axis(geometry)
         if seen is None or not all(name in geometry.as_drawn or name == "frame" for name in geometry.points):
-            return
+            return ()
         away = self.side * (np.conjugate(seen[1]) * seen[0]).imag
-        off = np.abs(away - self.size) > FITS * np.abs(self.size)
-        if np.any(off):
-            at = int(np.argmax(np.ravel(off)))
-            a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (self.size, away))
-            what = f"the radius is {a:.6g}, but {self.at} is drawn {b:.6g} from the line"
-            remedy = "change the radius or move the axis" + ("; or is it on the other side?" if b < 0 else "")
-            yield Problem(f"{where}.radius", what, remedy)
+        room = FITS * np.abs(self.size) - np.abs(away - self.size)
+        words = ("the radius is ", self.size, f", but {self.at} is drawn ", away, " from the line")
+        remedy = "change the radius or move the axis"
+        return (
+            DimensionFit("radius", room, words, remedy + ("; or is it on the other side?" if np.any(away < 0) else "")),
+        )
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return the line with the phase; the axis with the radius.

@@ -15,9 +15,9 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block, rates, recorded_root
-from compoundkin.kinematics.solving_order import SolvingOrder, run
+from compoundkin.kinematics.solving_order import SolvingOrder, rooms_of, run
 from compoundkin.model.fields import changed_fields
-from compoundkin.model.geometry import Geometry
+from compoundkin.model.geometry import FRAME, Geometry
 from compoundkin.model.pairs.contract import Ends, Pair
 from compoundkin.model.pairs.travel_limits import bounds_name
 from compoundkin.programs.dimensions import FreeDimension, StatedDimensions
@@ -128,13 +128,23 @@ def recorded_ends(
 ) -> dict[str, Ends]:
     """Return the sides of all pairs with free numbers as inputs.
 
-    So are the ends of guides. `ends` are those of the mechanism's own motion.
+    So are the ends of guides, and what must fit. `ends` are those of the mechanism's own motion.
     """
     pairs = _recorded_pairs(graph, StatedDimensions(order.structure.mechanism, ends), free)
     sides = {name: _with_recorded(pair, pairs).ends(geometry) for name, pair in order.pairs.items()}
     for guide in order.guide_ends.pairs:
         sides[bounds_name(guide)] = tuple(End(value) for value in pairs[guide.name].bounds(geometry))
+    shown = _with_drawing(geometry, order.structure.mechanism.geometry, free)
+    for pair in order.fits.pairs:
+        sides.update(rooms_of(pairs[pair.name], shown))
     return sides
+
+
+def _with_drawing(geometry: Geometry, own: Geometry, free: Sequence[FreeDimension]) -> Geometry:
+    """Return the recorded points with the drawing of those links whose points are not free."""
+    freed = {one.owner for one in free if one.is_of_link} - {FRAME}
+    drawn = {name: pose for name, pose in own.drawn.items() if name not in freed}
+    return replace(geometry, drawn=drawn, as_drawn=own.as_drawn - freed)
 
 
 def _recorded_pairs(graph: OperationGraph, stated: StatedDimensions, free: Sequence[FreeDimension]) -> dict[str, Any]:

@@ -120,14 +120,20 @@ def _first(failed: Number, places: Number) -> tuple[Number, Number]:
     return failed[index, k].copy(), places[index, k].copy()
 
 
-def is_travel_limit(motion: Motion, number: int) -> bool:
-    """Return whether a failure is a guide beyond its travel limit; these are numbered after all groups."""
-    return number > len(motion.structure.groups)
+def failure(motion: Motion, number: int) -> str:
+    """Return a failure in words: of a group, of a guide beyond its travel limit, of wheels that do not fit."""
+    is_group = number <= len(motion.structure.groups)
+    why = "cannot be assembled" if is_group else "does not fit" if is_misfit(motion, number) else "is beyond an end"
+    return f"{failed_name(motion, number)} {why}"
+
+
+def is_misfit(motion: Motion, number: int) -> bool:
+    """Tell whether a failure is of wheels that do not fit; these are numbered after groups and guides."""
+    return number > motion.solving_order.fits.first
 
 
 def failed_name(motion: Motion, number: int) -> str:
-    """Return the name of the group that does not close, or of the guide."""
-    if is_travel_limit(motion, number):
-        ends = motion.solving_order.guide_ends
-        return str(ends.pairs[number - len(motion.structure.groups) - 1].name)
+    """Return the name of the group that does not close, of the guide, or of the pair that does not fit."""
+    if number > len(motion.structure.groups):
+        return motion.solving_order.named(number)
     return label(motion.structure, number - 1)

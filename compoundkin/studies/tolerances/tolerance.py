@@ -25,7 +25,7 @@ from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.attributes import AXES, PARTS, RADIANS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import Designs, Response, StudiedPath, studied_path
-from compoundkin.studies.responses.assembled_range import assembled_range
+from compoundkin.studies.responses.assembled_range import assembled_range, failure, is_misfit
 from compoundkin.studies.responses.designs import design_blocks, name_freeing_argument
 from compoundkin.studies.samples.random_sample import RandomSample
 from compoundkin.studies.tolerances.clearances import clearance_specs, with_stated_offsets
@@ -108,8 +108,9 @@ def output_tolerances(
     over the whole motion; warns UnassembledPoses of some.
     """
     _check_nominal(designs)
-    values, assembled = designs.values(responses)
-    _report_progress(assembled)
+    values, failed = designs.values(responses)
+    assembled = failed == 0
+    _report_progress(assembled, _misfits(designs, failed))
     outputs: dict[str, OutputTolerance] = {}
     for response in responses:
         for one in _outputs(designs, response, values[response.name][assembled], percents):
@@ -160,15 +161,23 @@ def _check_nominal(designs: TolerancedDesigns) -> None:
         raise NotAssembled(Problem("values", what, "give values at which it can, gaps(solve(...)) tells where"))
 
 
-def _report_progress(assembled: Number) -> None:
+def _misfits(designs: TolerancedDesigns, failed: Number) -> str:
+    """Return in how many designs which wheels do not fit, in words."""
+    motion = designs.path.reference
+    counted = zip(*np.unique(failed, return_counts=True), strict=True)
+    found = [f"{failure(motion, k)} in {count}" for k, count in counted if k and is_misfit(motion, k)]
+    return f" ({', '.join(found)})" if found else ""
+
+
+def _report_progress(assembled: Number, misfits: str) -> None:
     missing, count = np.count_nonzero(~assembled), len(assembled)
     if count - missing < 2:
-        what = f"{missing} of {count} random designs cannot be assembled over the whole motion"
+        what = f"{missing} of {count} random designs cannot be assembled over the whole motion{misfits}"
         raise NotAssembled(
             Problem("tolerances", what, "give closer tolerances, or values that are farther from limits")
         )
     if missing:
-        told = f"{missing} of {count} random designs cannot be assembled over the whole motion; "
+        told = f"{missing} of {count} random designs cannot be assembled over the whole motion{misfits}; "
         warn(told + "percentiles are those of the others", UnassembledPoses)
 
 
@@ -196,18 +205,19 @@ class TolerancedDesigns(ShortRepr):
         return self.path.designs(self.own)
 
     def values(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
-        """Return the values of responses by name, and which designs assemble."""
+        """Return the values of responses by name, and by what each design fails: 0 for one that assembles."""
         self._check_memory(responses)
         parts: dict[str, list[Number]] = {one.name: [] for one in responses}
-        assembled = []
+        failed = []
         for rows in design_blocks(self.sample.count, self.path.reference.inputs.poses):
             with suppress_pose_warnings():
                 designs = self.designs(rows)
-                assembled.append(assembled_range(designs).assembled)
+                found = assembled_range(designs)
+                failed.append(np.maximum(found.failed.max(axis=1), found.between))
                 for one in responses:
                     shape = (designs.number, designs.poses)[: 1 + one.is_course]
                     parts[one.name].append(np.broadcast_to(one.values(designs), shape))
-        return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(assembled)
+        return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(failed)
 
     def _check_memory(self, responses: Sequence[Response]) -> None:
         """Raise InvalidInput where the values of all designs do not fit in memory."""

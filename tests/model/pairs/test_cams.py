@@ -183,14 +183,23 @@ def test_a_roller_inside_a_ring(shape: str) -> None:
     assert ck.verify(found).passed
 
 
-@pytest.mark.parametrize("radius", [31, np.array([[10.0], [31.0]])], ids=["one", "of several designs"])
+@pytest.mark.parametrize("radius", [31, np.array([[32.0], [31.0]])], ids=["one", "of several designs"])
 def test_a_roller_that_does_not_fit_into_its_ring(radius: Any) -> None:
-    with pytest.raises(ck.errors.InvalidMechanism, match="of radius 31 does not fit into a ring of radius 30"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"of radius 3[12] does not fit into a ring of radius 30"):
         cam_and(
             *slider(),
             ck.cam("follower", on="cam", profile=ck.profiles.disc(30), radius=radius, inside=True),
             points={"X": 0},
         )
+
+
+def test_a_design_of_several_whose_roller_does_not_fit() -> None:
+    ring = ck.cam("follower", on="cam", profile=ck.profiles.disc(30), radius=np.array([[10.0], [31.0]]), inside=True)
+    with pytest.warns(ck.errors.UnassembledPoses):
+        motion = ck.solve(cam_and(*slider(), ring, points={"X": 0}))
+    assert motion.assembled[0].all()
+    assert not motion.assembled[1].any()
+    assert [gap.reason for gap in ck.gaps(motion)] == ["a roller of radius 31 does not fit into a ring of radius 30"]
 
 
 @pytest.mark.parametrize("shape", ["points", "formula"])

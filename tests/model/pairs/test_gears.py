@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from fractions import Fraction
 from typing import Any
 
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 
 import compoundkin as ck
 from compoundkin.kinematics.groups.general import GeneralSolver
+from compoundkin.kinematics.one_design import motion_of_design
 from tests.support import reference
 
 # Angles are sums and products of few terms: rounding of the largest of them.
@@ -798,9 +800,72 @@ def test_axes_at_one_place() -> None:
 
 
 def test_one_design_of_several_that_does_not_fit() -> None:
-    radii = np.array([[10.0], [11.0]]), np.array([[20.0], [20.0]])
-    with pytest.raises(ck.errors.InvalidMechanism, match="a distance of 31, but A and B on 'frame' are 30 apart"):
-        two_wheels(ck.gear("one", "two", radii=radii))
+    """It is not assembled, for the reason for which it is refused alone; the others are as they are alone."""
+    radii = np.array([[10.0], [11.0], [12.0]]), np.array([[20.0], [20.0], [18.0]])
+    with pytest.warns(ck.errors.UnassembledPoses, match="3 of 9 poses"):
+        motion = ck.solve(two_wheels(ck.gear("one", "two", radii=radii)), [0.0, 1.0, 2.0])
+    assert motion.assembled.tolist() == [[True] * 3, [False] * 3, [True] * 3]
+    assert np.isnan(motion.links["two"].angle[1]).all()
+    (gap,) = ck.gaps(motion)
+    assert (gap.design, gap.first, gap.last, gap.group, gap.pair) == ((1,), 0, 2, "", "one/two")
+    with pytest.raises(ck.errors.InvalidMechanism, match=f"gears.0..radii: {gap.reason}"):
+        two_wheels(ck.gear("one", "two", radii=(11.0, 20.0)))
+    for k, ratio in ((0, 2.0), (2, 1.5)):
+        np.testing.assert_allclose(motion.links["two"].angle[k], -motion.links["one"].angle[k] / ratio, atol=EXACT)
+    assert ck.verify(motion).passed
+    own = motion_of_design(motion, 1)
+    assert not own.assembled.any()
+    assert [one.reason for one in ck.gaps(own)] == [gap.reason]
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        ck.gear("one", "two", radii=(np.array([[10.0], [11.0]]), 21.0)),
+        ck.gear("one", "two", teeth=(20, np.array([[41], [42]])), module=1),
+        ck.belt("one", "two", radii=(np.array([[10.0], [11.0]]), 20.0)),
+    ],
+    ids=["gear", "by teeth", "belt"],
+)
+def test_designs_of_which_none_fits(pair: Any) -> None:
+    with pytest.raises(ck.errors.InvalidMechanism, match="A and B"):
+        two_wheels(pair)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(st.sampled_from([9.0, 10.0, 10.0001, 10.001, 30.0]), min_size=2, max_size=5), st.integers(0, 3))
+def test_designs_fit_that_can_be_built_alone(first: list[float], kind: int) -> None:
+    """Against each built by itself, and the reason against the text with which it is refused."""
+
+    def made(one: Any) -> ck.Mechanism:
+        if kind == 3:
+            links = ck.link("frame", "C", "Q"), ck.link("pinion", "C", "P"), ck.link("bar", "R", "T")
+            slide = ck.slide("bar", on="frame", through="Q", at="R", angle=0)
+            shown = ck.drawn(C=0, Q=(0, -10), P=(1, 0), R=(1, -10), T=(3, -10))
+            rack = ck.rack("bar", "pinion", through="R", toward="T", at="C", radius=one)
+            return ck.Mechanism("m", *links, slide, shown, rack, ck.drive("pinion"))
+        if kind == 2:
+            return two_wheels(ck.belt("one", "two", radii=(one, 19.9)))
+        sizes = ck.gear("one", "two", radii=(one, 20.0 if kind == 0 else 40.0), internal=kind == 1)
+        return two_wheels(sizes)
+
+    refused: list[str] = []
+    for one in first:
+        try:
+            made(one)
+            refused.append("")
+        except ck.errors.InvalidMechanism as error:
+            refused.append(error.problems[0].what)
+    if all(refused):
+        with pytest.raises(ck.errors.InvalidMechanism):
+            made(np.reshape(first, (-1, 1)))
+        return
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        motion = ck.solve(made(np.reshape(first, (-1, 1))), [0.0, 0.5])
+    assert motion.assembled.all(axis=1).tolist() == [not what for what in refused]
+    assert motion.assembled.any(axis=1).tolist() == [not what for what in refused]
+    assert [gap.reason for gap in ck.gaps(motion)] == [what for what in refused if what]
 
 
 @pytest.mark.parametrize("sizes", [20, (20,), (1, 2, 3), ("a", 2), ((1, 2), "x")])

@@ -107,14 +107,13 @@ class LiveData:
         }
 
     def _groups(self) -> Iterator[dict[str, Any]]:
-        """Yield what may keep a pose from being assembled: groups, then guides with ends, and why."""
-        guides = self.program.mechanism.order.guide_ends.pairs
-        named = [(group.name, group.links) for group in self.motion.structure.groups]
-        named += [(pair.name, pair.members) for pair in guides]
-        ended = {pair.name for pair in guides}
-        for (name, links), reasons in zip(named, self.program.reasons, strict=True):
+        """Yield what may keep a pose from being assembled: groups, guides with ends, pairs that do not fit; and why."""
+        order, groups = self.program.mechanism.order, self.motion.structure.groups
+        pairs = (*order.guide_ends.pairs, *(order.fits.pairs if order.fits.asked else ()))
+        named = [*((group.name, group.links) for group in groups), *((pair.name, pair.members) for pair in pairs)]
+        for k, ((name, links), reasons) in enumerate(zip(named, self.program.reasons, strict=True)):
             texts = [self._reason(one) for one in reasons]
-            yield {"name": name, "links": list(links), "guide": name in ended, "reasons": texts}
+            yield {"name": name, "links": list(links), "guide": k >= len(groups), "reasons": texts}
 
     def _reason(self, one: RecordedReason) -> dict[str, Any]:
         holds = None if one.holds is None else self.places[one.holds]
