@@ -221,3 +221,52 @@ def test_a_pinion_on_a_slide_keeps_the_turn_in_which_it_is_drawn(turns: int, pha
     motion = ck.solve(mechanism, ck.deg([120 + 360 * turns, 121 + 360 * turns]))
     for name, place in drawn.items():
         assert complex(motion.points[name].position[0]) == pytest.approx(place, abs=1e-12)
+
+
+# A four-bar linkage whose coupler turns on what is driven on it; no angle of a dyad's links counts by itself.
+COUPLED = {"A": 0j, "B": 1 + 1j, "C": 4 + 2j, "D": 5 + 0j, "E": 1.5 + 2j, "F": 2.7 + 2.3j}
+
+
+@pytest.mark.parametrize("turns", [-2, -1, 0, 1])
+def test_a_wheel_is_as_drawn_in_whichever_turn_the_arm_on_a_coupler_is_driven(turns: int) -> None:
+    """The arm is some turns ahead of its drawing, and so is the phase that this shows: the wheel goes on by Willis."""
+    drawn = {**COUPLED, "G": 2.2 + 4.2j, "H": 3 + 3.1j}
+    mechanism = ck.Mechanism(
+        "geared arm",
+        *(ck.link(n, *k) for n, k in (("frame", "AD"), ("crank", "AB"), ("coupler", "BCEF"), ("rocker", "DC"))),
+        *(ck.link(n, *k) for n, k in (("arm", "EG"), ("wheel", "FH"))),
+        ck.gear("arm", "wheel", carrier="coupler", first_at="E", second_at="F", teeth=(20, 41)),
+        ck.drive("crank"),
+        ck.drive("arm", on="coupler"),
+        ck.drawn(**drawn),
+    )
+    angles = {n: np.angle(drawn[k[1]] - drawn[k[0]]) for n, k in (("coupler", "BC"), ("arm", "EG"), ("wheel", "FH"))}
+    begin = angles["arm"] - angles["coupler"] + 2 * np.pi * turns
+    motion = ck.solve(mechanism, {"crank": np.pi / 4, "arm": begin + np.linspace(0.0, 6.0, 7)})
+    assert np.allclose(motion.links["wheel"].angle, angles["wheel"] - 20 / 41 * np.linspace(0.0, 6.0, 7), atol=1e-12)
+    assert np.allclose(motion.links["arm"].angle, angles["coupler"] + motion.drives["arm"].value, atol=1e-12)
+
+
+def test_a_pinion_is_as_drawn_beyond_half_a_turn_of_the_rack_that_slides_on_a_coupler() -> None:
+    """The coupler is drawn at 154 degrees, the rack on it at -154: the slide's own angles leave that turn out."""
+    drawn = {name: -place.conjugate() for name, place in COUPLED.items()}
+    axis = -4 + 4j + (0.5 + 2j) * np.exp(1j * np.angle(-2.5 - 1.2j))
+    drawn |= {"G": -4 + 4j, "H": -6.5 + 2.8j, "O": axis, "P": axis - 1 + 0.5j}
+    mechanism = ck.Mechanism(
+        "rack on a coupler",
+        *(ck.link(n, *k) for n, k in (("frame", "ADO"), ("crank", "AB"), ("coupler", "BCEF"), ("rocker", "DC"))),
+        *(ck.link(n, *k) for n, k in (("rack", "GH"), ("pinion", "OP"))),
+        ck.slide("rack", on="coupler", at="G", through="E", toward="F"),
+        ck.rack("rack", "pinion", through="G", toward="H", at="O", radius=2.0),
+        ck.drive("crank"),
+        ck.drive("rack", on="coupler"),
+        ck.drawn(**drawn),
+    )
+    guide, line = (np.exp(1j * np.angle(drawn[b] - drawn[a])) for a, b in ("EF", "GH"))
+    displacement = ((drawn["G"] - drawn["E"]) * np.conj(guide)).real
+    ahead = np.array([0.0, 0.5])
+    motion = ck.solve(mechanism, {"crank": 3 * np.pi / 4, "rack": displacement + ahead})
+    assert np.max(np.abs(motion.points["G"].position - drawn["G"] - ahead * guide)) < 1e-12
+    # the rack rolls off by as much of its way as is along its line
+    turned = np.angle(drawn["P"] - drawn["O"]) + ahead * (guide * np.conj(line)).real / 2.0
+    assert np.allclose(motion.links["pinion"].angle, turned, atol=1e-12)

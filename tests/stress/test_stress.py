@@ -57,6 +57,7 @@ FOUND = {
     "drawn between a pose and a limit, the pose was lost": (13, 83, False, "even"),
     "a later group's change points were found before an earlier group had its own": (5, 89, False, "stacked"),
     "stages many times as fast as the driver fell down at their common change point": (5, 132, False, "stacked"),
+    "a rack driven beyond half a turn on a coupler was a turn of its pinion away": (3000000, 1348, False, "even"),
     "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 

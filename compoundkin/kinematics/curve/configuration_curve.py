@@ -17,6 +17,7 @@ from compoundkin.base.arrays import TURN, Number, cross, whole_turns, wrapped
 from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics.block import NEAREST, Block, Root
 from compoundkin.kinematics.configuration import ONLY
@@ -679,13 +680,35 @@ class Turns:
 def turns_of(curve: ConfigurationCurve, k: int, link: str, known: tuple[Number, Block] | None = None) -> Turns:
     """Follow the angle of a link of group `k` from home. There it is nearest to the drawn one or to zero.
 
+    A driven link is as many turns ahead of its drawn angle as its driver is.
+
     `known` is what is solved already at the samples of the path, with others half way between.
     """
     places, angles = _Orientation(curve, k, link, known).samples()
-    drawn = curve.solving_order.structure.mechanism.drawn_poses.get(link)
     start = int(np.argmin(np.abs(places - curve.path.home)))
-    first = angles[:, start] if drawn is None else np.ravel(as_column(drawn).angle.c[0])
+    drawn = _drawn_angle(curve, k, link)
+    first = angles[:, start] if drawn is None else np.ravel(drawn)
     return Turns(places, _unwrapped(angles, start, first), start)
+
+
+def _drawn_angle(curve: ConfigurationCurve, k: int, link: str) -> Number | None:
+    """Return the angle at which a link of group `k` is drawn, by the turns of its driver. None where it is not."""
+    drawn = curve.solving_order.structure.mechanism.drawn_poses
+    if link not in drawn:
+        return None
+    angle = as_column(drawn[link]).angle.c[0]
+    body = next(body for body in curve.solving_order.solvers[k].group.bodies if link in body.links)
+    if body.links[0] not in drawn or link == body.links[0]:
+        return angle
+    first = curve.path.at_home()
+    local = curve.solving_order.start(first.ends, first.series(0), 0, (first.designs, 1)).local[link]
+    return angle + whole_turns(_ahead_of_drawing(drawn, body.links[0], link, local))
+
+
+def _ahead_of_drawing(drawn: Mapping[str, Pose], base: str, link: str, local: Pose) -> Number:
+    """Return the angle of a driven link less its drawn one, from its pose in the base of its composite link."""
+    ahead: Number = as_column(drawn[base]).angle.c[0] + local.angle.c[0] - as_column(drawn[link]).angle.c[0]
+    return ahead
 
 
 @dataclass(frozen=True)
@@ -827,5 +850,4 @@ def _turns_at(solving_order: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str,
             link for link in body.links[1:] if link in poses and base in poses and link in solving_order.turning
         ):
             pose = start.world.get(link) or start.local[link]
-            gap = as_column(poses[base]).angle.c[0] + pose.angle.c[0] - as_column(poses[link]).angle.c[0]
-            yield link, np.round(gap / TURN)
+            yield link, np.round(_ahead_of_drawing(poses, base, link, pose) / TURN)
