@@ -136,12 +136,14 @@ class Branch:
                 found.end, found.why = walk.s, "lost"
                 return None
             before, after = step
-            if walk.sense * (after[0][-1] - stop) >= 0.0 or walk.turns_back(after):
+            # a step may pass a limit and the next one after it, where the curve goes on as before
+            turns = walk.turns_back(after) or _wavers(before, after, walk.sense)
+            if walk.sense * (after[0][-1] - stop) >= 0.0 or turns:
                 landed = self._landed(before, after, stop, here.sign, walk.sense)
                 if landed is not None:
                     return landed
                 found.end = _extreme(before, after, walk.sense)
-                found.why = "limit" if walk.turns_back(after) else "not landed"
+                found.why = "limit" if turns else "not landed"
                 if walk.sense * (found.end - stop) > 0.0:
                     found.why = "near limit"
                 return None
@@ -261,6 +263,12 @@ def _hermite(before: tuple[Array, Array], after: tuple[Array, Array], share: Arr
     h = t * t * (3.0 - 2.0 * t)
     bend = length * (t * (1.0 - t) ** 2 * before[1] - t * t * (1.0 - t) * after[1])
     return before[0] * (1.0 - h) + after[0] * h + bend
+
+
+def _wavers(before: tuple[Array, Array], after: tuple[Array, Array], sense: float) -> bool:
+    """Whether s turns back between two points of the curve."""
+    s = sense * _hermite(before, after, np.linspace(0.0, 1.0, 65))[:, -1]
+    return bool(np.any(np.diff(s) < 0.0))
 
 
 def _extreme(before: tuple[Array, Array], after: tuple[Array, Array], sense: float) -> float:

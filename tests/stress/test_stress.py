@@ -58,6 +58,10 @@ FOUND = {
     "a later group's change points were found before an earlier group had its own": (5, 89, False, "stacked"),
     "stages many times as fast as the driver fell down at their common change point": (5, 132, False, "stacked"),
     "a rack driven beyond half a turn on a coupler was a turn of its pinion away": (3000000, 1348, False, "even"),
+    "a stated phase turned a wheel past half a turn, where a second pair has its phase of the drawing": (
+        *(3000000, 1635, False),
+        "even",
+    ),
     "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 

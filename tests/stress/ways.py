@@ -127,8 +127,11 @@ KEEP_ENDS = frozenset({"repeated", "shuffled", "uneven"})
 
 
 def spaced(way: Way, kind: str, rng: np.random.Generator) -> Way:
-    """The same way with its poses in another order and spacing."""
-    return replace(way, s=SPACINGS[kind](rng, way.s), whole=way.whole and kind in KEEP_ENDS)
+    """The same way with its poses in another order and spacing; none of them alone is the drawn one after a turn."""
+    s = SPACINGS[kind](rng, way.s)
+    if way.s.min() <= 0.0 <= way.s.max() and not s.min() <= 0.0 <= s.max():
+        s = np.append(0.0, s)
+    return replace(way, s=s, whole=way.whole and kind in KEEP_ENDS)
 
 
 def bent(way: Way, rng: np.random.Generator) -> Way:

@@ -791,6 +791,7 @@ def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Input
     """
     drawn, rounds = _as_drawn(solving_order, pose)
     turns = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
+    turns = _with_stated_turns(solving_order, drawn, turns)
     return tuple(_blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in ways)
 
 
@@ -838,6 +839,30 @@ def _counted_on(
         elif counting and any(np.any(turn != 0.0) for turn in ahead):
             ends[name] = counting.with_link_turns(ends[name], geometry, ahead)
     return replace(way, ends=ends)
+
+
+def _with_stated_turns(solving_order: SolvingOrder, drawn: Inputs, turns: Mapping[str, Number]) -> Mapping[str, Number]:
+    """Return also by how many turns links are ahead of their drawn angle by stated phases, in the solving order."""
+    poses, found = solving_order.structure.mechanism.drawn_poses, dict(turns)
+    counting = [
+        pair
+        for pair in map(as_turn_counting, solving_order.pairs.values())
+        if pair and all(k in poses for k in pair.members)
+    ]
+    last = {link: solver.index for solver in solving_order.solvers for link in solver.group.links}
+    for solver in solving_order.solvers:
+        mine = [pair for pair in counting if max(last.get(k, -1) for k in pair.members) == solver.index]
+        for body in solver.group.bodies:
+            for pair in mine:
+                own = [i for i, k in enumerate(pair.members) if k in body.links]
+                if any(last.get(k, -1) == solver.index and k not in body.links for k in pair.members):
+                    continue
+                angles = tuple(as_column(poses[k]).angle.c[0] + TURN * found.get(k, 0.0) for k in pair.members)
+                ahead = pair.stated_turns(drawn.ends[pair.name], angles, own)
+                if np.any(ahead != 0.0):
+                    found |= {link: found.get(link, 0.0) + ahead for link in body.links}
+                    break
+    return found
 
 
 def _turns_at(solving_order: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:

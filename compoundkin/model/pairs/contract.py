@@ -7,7 +7,7 @@ Each kind lives in one file; each optional answer has one function that asks for
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, NamedTuple, TypeAlias
 
@@ -348,6 +348,13 @@ class TurnCounting(DrawnPhase, Orienting):
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """Return the ends for members' angles that are whole `turns` from the drawn ones."""
         return ends
+
+    def stated_turns(self, ends: Ends, angles: tuple[Number, ...], own: Sequence[int]) -> Number:
+        """Return the whole turns by which members, one body, are ahead of all members' drawn angles, by a stated phase.
+
+        Zero without one, or where it does not tell.
+        """
+        return 0.0
 
     def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
         """Return the ends of a driven pair for whole `turns` of its coordinate from the drawn one."""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
@@ -29,6 +29,9 @@ from compoundkin.model.pairs.contract import (
 )
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference
 from compoundkin.model.pairs.symbols import known_range
+
+# A drawing shows the angles of wheels to this part of a turn.
+DRAWN_TURN = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +158,17 @@ class Geared(TurnCounting, Replaceable):
         one, two, carrier = turns
         ahead = 2.0 * np.pi * ((two - carrier) + (one - carrier) * ratio(ends))
         return *ends[:2], ends[2]._replace(measure=ends[2].measure + ahead)
+
+    def stated_turns(self, ends: Ends, angles: tuple[Number, ...], own: Sequence[int]) -> Number:
+        """Return the turns by which the phase, where it is stated, puts members ahead of their drawn angles."""
+        n = ratio(ends)
+        by_angle = (n, 1.0, -1.0 - n)
+        ahead = sum(by_angle[k] for k in own)
+        if self.phase is None or np.any(ahead == 0.0):
+            return 0.0
+        missing = ends[2].measure - sum(a * b for a, b in zip(by_angle, angles, strict=True))
+        turns = missing / (TURN * ahead)
+        return np.where(np.abs(turns - np.round(turns)) < DRAWN_TURN, np.round(turns), 0.0)
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Return the angle of the second wheel less that by the first."""
