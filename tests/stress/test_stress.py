@@ -62,6 +62,8 @@ FOUND = {
         *(3000000, 1635, False),
         "even",
     ),
+    "a change point of a stage five times as fast as the driver lay between two samples": (9, 1555, False, "stacked"),
+    "a short drive of long tongs had no samples on its way": (9, 723, False, "stacked"),
     "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 

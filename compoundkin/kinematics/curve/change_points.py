@@ -231,13 +231,29 @@ def _near_samples(curve: ConfigurationCurve, groups: Sequence[int]) -> dict[int,
     """Return at which samples, (designs, samples), groups come near a limit position, or are beside such."""
     path = curve.path
     found = {k: np.zeros((path.designs, len(path.samples)), dtype=bool) for k in groups}
+    sines = {k: np.zeros(near.shape) for k, near in found.items()}
     for d, m, margins in _margins(curve, max(groups) + 1):
         for k in groups:
             found[k][d, m] = np.abs(margins[k]) < NEAR
-    for near in found.values():
+            sines[k][d, m] = np.sqrt(np.abs(margins[k]))
+    for k, near in found.items():
+        passed = _may_pass(sines[k])
+        near[:, 1:] |= passed
+        near[:, :-1] |= passed
         before = near.copy()
         near[:, 1:] |= before[:, :-1]
         near[:, :-1] |= before[:, 1:]
+    return found
+
+
+# Between two samples a sine may pass zero where both together are less than so many times its change before or after.
+QUICKLY = 3.0
+
+
+def _may_pass(sines: Number) -> Number:
+    """Return between which samples, (designs, samples - 1), a sine that turns quickly may pass zero."""
+    change = np.pad(np.abs(np.diff(sines, axis=1)), ((0, 0), (1, 1)))
+    found: Number = sines[:, 1:] + sines[:, :-1] < QUICKLY * np.fmax(change[:, :-2], change[:, 2:])
     return found
 
 
@@ -618,6 +634,8 @@ def near_groups(curve: ConfigurationCurve) -> set[int]:
     found: set[int] = set()
     for _, _, margins in _margins(curve, upto) if upto else ():
         found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
+        sines = {k: np.sqrt(np.abs(np.atleast_2d(margin))) for k, margin in margins.items() if k not in found}
+        found |= {k for k, sine in sines.items() if sine.shape[1] > 1 and np.any(_may_pass(sine))}
     return found
 
 

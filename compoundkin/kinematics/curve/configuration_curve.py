@@ -520,9 +520,13 @@ class FollowedPoses(ShortRepr):
             steps = np.diff(places, axis=1)
         widest = max(float(np.abs(steps).max(initial=0.0)), float(np.max(places.min(axis=1) - first)),
                      float(np.max(last - places.max(axis=1))))  # fmt: skip
-        return widest <= 1.0 + CLOSE
+        between = np.diff(self.curve.path.samples)
+        return widest <= DENSE * float(between.max(initial=0.0)) or widest <= CLOSE
 
 
+# Poses are dense where they are this part of the distance of two samples from each other: what turns four times as fast as
+# the driver does not pass a change point between them unseen.
+DENSE = 0.25
 # Followers whose coordinates (parts of the size, or radians) change by more than this from one sample to the next, and
 # by so many times more than before or after it, may leap to another contact.
 LEAP, UNEVEN = 0.02, 3.0
@@ -790,8 +794,8 @@ def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Input
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
     """
     drawn, rounds = _as_drawn(solving_order, pose)
-    turns = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
-    turns = _with_stated_turns(solving_order, drawn, turns)
+    driven = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
+    turns = _with_stated_turns(solving_order, drawn, driven)
     return tuple(_blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in ways)
 
 

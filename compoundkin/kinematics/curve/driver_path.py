@@ -30,6 +30,9 @@ CLOSE = 1e-6
 SAME = 2e-12
 # Values of several drivers lie on a line if they are aside of it by no more than this part of its length.
 ASIDE = 1e-12
+# A driver of a length goes at least so many places each way: the mechanism's size, by which they are spaced, may be that
+# of a chain of many short links.
+FEWEST = 12
 # Where dimensions change along the motion a pose is at least so many places from the next one.
 APART = 1.0
 
@@ -40,13 +43,14 @@ class DriverPath:
 
     `knots` are its inputs, designs x knots, at the increasing `places`, a SPACING of the fastest driver apart from each
     other; at `home` the mechanism is as it is drawn. Where it `wraps`, values that differ by a whole turn are the same
-    pose.
+    pose. Each way from home has `fewest` samples.
     """
 
     knots: Inputs
     places: Number
     home: float
     wraps: bool = False
+    fewest: int = 1
 
     @property
     def designs(self) -> int:
@@ -74,7 +78,9 @@ class DriverPath:
         if len(self.places) == 1:
             return self.places
         knots = np.union1d(self.places, [self.home])
-        counts = np.maximum(np.ceil(np.diff(knots) - CLOSE).astype(int), 1)
+        lengths = np.diff(knots)
+        sides = np.where(knots[1:] > self.home, knots[-1] - self.home, self.home - knots[0])
+        counts = np.maximum(np.ceil(np.maximum(lengths, self.fewest * lengths / sides) - CLOSE).astype(int), 1)
         pieces = zip(knots[:-1], knots[1:], counts, strict=True)
         return np.append(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in pieces]), knots[-1])
 
@@ -200,6 +206,14 @@ def driver_path(
     Values of one driver, or of several on a line, make a straight path, however they are asked for; others are joined
     in their order.
     """
+    path, poses = _path(solving_order, given, drawn, sketch)
+    angles = solving_order.structure.driven_angles
+    return replace(path, fewest=1 if all(angles[name] for name in path.moving) else FEWEST), poses
+
+
+def _path(
+    solving_order: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+) -> PathOfPoses:
     shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}
     if given.is_rigid:
