@@ -524,8 +524,8 @@ class FollowedPoses(ShortRepr):
         return widest <= DENSE * float(between.max(initial=0.0)) or widest <= CLOSE
 
 
-# Poses are dense where they are this part of the distance of two samples from each other: what turns four times as fast as
-# the driver does not pass a change point between them unseen.
+# Poses are dense where they are this part of the distance of two samples from each other: what turns four times as fast
+# as the driver does not pass a change point between them unseen.
 DENSE = 0.25
 # Followers whose coordinates (parts of the size, or radians) change by more than this from one sample to the next, and
 # by so many times more than before or after it, may leap to another contact.
