@@ -30,8 +30,8 @@ CLOSE = 1e-6
 SAME = 2e-12
 # Values of several drivers lie on a line if they are aside of it by no more than this part of its length.
 ASIDE = 1e-12
-# A driver of a length has at least so many samples each way: the mechanism's size, by which they are spaced, may be that
-# of a chain of many short links.
+# A driver of a length has at least so many samples each way: the mechanism's size, by which they are spaced, may be
+# that of a chain of many short links.
 FEWEST = 12
 # Where dimensions change along the motion a pose is at least so many places from the next one.
 APART = 1.0
