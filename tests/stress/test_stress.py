@@ -64,6 +64,10 @@ FOUND = {
     ),
     "a change point of a stage five times as fast as the driver lay between two samples": (9, 1555, False, "stacked"),
     "a short drive of long tongs had no samples on its way": (9, 723, False, "stacked"),
+    "drawn near the limit of a face, the contact leapt at once, and later groups were lost": (
+        *(7200000, 1206, False),
+        "cams",
+    ),
     "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 

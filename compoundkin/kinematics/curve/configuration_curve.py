@@ -566,6 +566,9 @@ class _ContactCoordinate:
         # at an end of the path there is but the one within
         beside = np.pad(steps, ((0, 0), (1, 1)), mode="reflect" if steps.shape[1] > 1 else "constant")
         uneven = (steps > LEAP) & (steps > UNEVEN * np.minimum(beside[:, :-2], beside[:, 2:]))
+        # at home it is told apart best: a mechanism that is drawn near a limit leaps there at once
+        home = self.curve.path.home
+        uneven |= (steps > LEAP) & ((samples[:-1] == home) | (samples[1:] == home))
         designs, i = np.nonzero(uneven)
         if self._remains(designs, samples[i], samples[i + 1], values[designs, i], values[designs, i + 1]):
             return True
@@ -586,6 +589,8 @@ class _ContactCoordinate:
             later = self._change(here, last) > self._change(first, here)
             low, first = np.where(later, middle, low), np.where(later, here, first)
             high, last = np.where(later, high, middle), np.where(later, last, here)
+            if not np.any((begin > LEAP) & (self._change(first, last) > REMAINS * begin)):
+                return False
         # what is not assembled in between is a gap
         return bool(np.any((begin > LEAP) & (self._change(first, last) > REMAINS * begin)))
 
@@ -595,7 +600,8 @@ class _ContactCoordinate:
 
     def _of(self, block: Block) -> Number:
         scale = 1.0 if self.solver.is_angular else self.curve.solving_order.size
-        good = np.broadcast_to(block.failed == 0, block.shape)
+        # later groups may have none
+        good = np.broadcast_to((block.failed == 0) | (block.failed > self.solver.index + 1), block.shape)
         return np.where(good, np.broadcast_to(self.solver.state(block)[0] / scale, block.shape), np.nan)
 
     def _change(self, one: Number, other: Number) -> Number:
