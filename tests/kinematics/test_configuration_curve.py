@@ -161,20 +161,29 @@ def test_the_two_stages_of_a_scissor() -> None:
 
 @pytest.mark.parametrize("poses", [13, 73, 400])
 def test_a_knife_edge_that_drives_its_cam_does_not_leap(poses: int) -> None:
-    """Just before its limit another contact appears beyond the one that is drawn: 0.33 instead of -0.07."""
+    """Just before its limit the other contact lies beyond the cut of the angles: 0.33 instead of -0.07.
+
+    As the cam turns on, the edge comes into it at the one and out of it at the other, behind the gap too.
+    """
     mechanism = hard_mechanism("knife-edge-drives-cam")
     drawn = -332.530506657952
     values = np.linspace(drawn - 60.0, drawn + 60.0, poses)
     motion = quietly(mechanism, {"d0": values}, order=1)
-    cam = motion.links["L1"]
-    good = motion.assembled
-    # without a leap it turns the same way on and on, and there is nothing behind the gap
-    assert good[-1]
-    assert not good[0]
-    assert np.ptp(np.sign(np.diff(cam.angle[good]))) == 0.0
-    assert np.count_nonzero(np.diff(good.astype(int))) == 1
+    cam, good = motion.links["L1"], motion.assembled
+    gaps = np.flatnonzero(np.diff(good.astype(int)))
+    assert len(gaps) == 2
+    # without a leap it turns the same way on and on
+    assert (np.diff(cam.angle[gaps[1] + 1 :]) < 0.0).all()
+    assert (np.diff(cam.angle[: gaps[0] + 1]) > 0.0).all()
     beside = quietly(mechanism, {"d0": drawn - np.array([0.0, 0.35, 1.0])}, order=0).links["L1"].angle
     assert beside == pytest.approx([-0.1225, -0.069, 0.108], abs=2e-3)
+    (pair,) = (pair for pair in mechanism.written_pairs if pair.name == "c1")
+    outline = pair.profile.curve.at(np.linspace(pair.profile.curve.low, pair.profile.curve.high, 4000)).c[0]
+    for turned, winds in ((-1e-3, True), (1e-3, False)):
+        arm = motion.points["P5"].position[good] - motion.points["P1"].position[good]
+        edge = mechanism.links["L1"].points["P1"] + arm * np.exp(-1j * (cam.angle[good] + turned))
+        seen = np.unwrap(np.angle(outline - edge[:, None]), axis=1)
+        assert (np.abs(seen[:, -1] - seen[:, 0]) > np.pi).tolist() == [winds] * good.sum()
 
 
 def parallelogram(beyond: float = 0.0) -> ck.Mechanism:

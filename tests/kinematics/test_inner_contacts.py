@@ -98,6 +98,32 @@ def test_inner_contacts_are_followed_both_ways(way: Callable[[np.ndarray], np.nd
     assert inner == 2
 
 
+@pytest.mark.parametrize(("way", "follower"), [(on_slide, SLIDING), (on_arm, TURNING)])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_outer_contact_does_not_leap_to_another_one(
+    way: Callable[[np.ndarray], np.ndarray], follower: list[object], side: float
+) -> None:
+    """Where it ends another one is the outer one; the drawn one is reached the other way round only."""
+    drawn = met(way, 0.0)
+    start = complex(drawn[np.argmax(side * drawn.real)])
+    last = followed(way, start, -1.0 * side)[-1][0]
+    assert abs(last) < 0.8
+    around = followed(way, start, side * (2.0 * np.pi - 1.0))
+    assert abs(around[-1][0]) > 5.2
+    angles = np.linspace(0.0, -1.0 * side, 21)
+    motion = ck.solve(mechanism(start, follower), {"cam": angles}, order=0)
+    assert motion.solving_order.numbered == (0,)
+    for angle, position in zip(angles, motion.points["P"].position, strict=True):
+        before = abs(angle) <= abs(last)
+        known = (
+            followed(way, start, float(angle))[-1]
+            if before
+            else min(around, key=lambda one: abs(one[0] - angle - side * 2.0 * np.pi))
+        )
+        here = met(way, float(angle))
+        assert abs(position - here[np.argmin(np.abs(here - known[1]))]) < 1e-9
+
+
 def wave(**drawn: complex) -> ck.Mechanism:
     """A plate with a groove like a W, moved across a slide: contacts at squares 1 +- sqrt(1 - s)."""
     groove = ck.profiles.formula(lambda t: t + 1j * (t**4 - 2.0 * t**2), -1.7, 1.7, closed=False)

@@ -68,6 +68,8 @@ FOUND = {
         *(7200000, 1206, False),
         "cams",
     ),
+    "a face on a pin changed its mode next to a limit position": (5000000, 235, False, "even"),
+    "a face on a pin changed its mode, drawn next to a limit": (7000000, 2818, False, "even"),
     "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 

@@ -175,7 +175,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
         side = poses[0].carry(ends[0])
         path = relative_path(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
         away = np.asarray(ends[1].measure) * self.outward
-        least, greatest = path_crossings(path, self._samples, away, self.curve.closed)
+        least, greatest = path_crossings(path, self._samples, away, self._turns)
         forward = (freedom.sense > 0) == path.straight
         return np.where(forward, least, greatest), np.where(forward, greatest, least)
 

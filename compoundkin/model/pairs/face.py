@@ -172,7 +172,7 @@ class Face(ProfileContact, FrictionContact):
             rise = dot(facing, path.centre)
             found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
-        right, left = face_tangencies(path, self._samples, facing, self.curve.closed)
+        right, left = face_tangencies(path, self._samples, facing, self._turns)
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
 

@@ -119,6 +119,11 @@ class ProfileContact(Contact):
         """Parameters that the contact leaps over."""
         return tuple(float(self.curve.wrapped(0.5 * (a + b))) for a, b in self.bridged)
 
+    @property
+    def _turns(self) -> float:
+        """+1 for a closed profile that goes counterclockwise, -1 for a clockwise one, 0 for an open one."""
+        return side_of(self.curve) if self.curve.closed else 0.0
+
     def _bend(self, s: Number) -> Number:
         """The curvature by the profile's size, negative in a hollow."""
         return self.outward * self.curve.curvature(s) * self.curve.size
@@ -198,11 +203,12 @@ def relative_path(frame: Pose, point: Number, own: int, freedom: Freedom) -> Poi
 
 
 def path_crossings(
-    path: PointPath, samples: tuple[Number, Number], away: Number, closed: bool
+    path: PointPath, samples: tuple[Number, Number], away: Number, turns: float
 ) -> tuple[Number, Number]:
     """Return the least and the greatest coordinate at which a point crosses the parallel curve of a profile.
 
-    `samples` are points of the profile and its normals there, `away` how far the parallel is from it.
+    `samples` are points of the profile and its normals there, `away` how far the parallel is from it. `turns` is +1
+    where they go counterclockwise around a closed profile, -1 clockwise, 0 for an open one.
     """
     middle = complex(np.mean(samples[0]))
 
@@ -212,15 +218,18 @@ def path_crossings(
     def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
         return PointPath(path.straight, *at[:3]).coordinate(of[0] + of[1] * at[3], middle)
 
-    return extreme_contacts(level, coordinate, (*path[1:], away), samples, closed)
+    # at the least angle the circle about the pin comes into the profile, where this goes out of the circle
+    slope = 0.0 if path.straight else turns * np.sign(path.sense)
+    return extreme_contacts(level, coordinate, (*path[1:], away, slope), samples, turns != 0.0)
 
 
 def face_tangencies(
-    path: PointPath, samples: tuple[Number, Number], facing: Number, closed: bool
+    path: PointPath, samples: tuple[Number, Number], facing: Number, turns: float
 ) -> tuple[Number, Number]:
     """Return the least and the greatest angle at which a turning face touches a profile.
 
-    `samples` are points of the profile and its outward normals there, `facing` the normal of the face.
+    `samples` are points of the profile and its outward normals there, `facing` the normal of the face. `turns` is +1
+    where they go counterclockwise around a closed profile, -1 clockwise, 0 for an open one.
     """
     middle = complex(np.mean(samples[0]))
 
@@ -231,8 +240,9 @@ def face_tangencies(
         # seen from the pin the two tangents are on either side of the profile's middle
         return nearest_angle(of[1] / at[2], (at[0] - middle) / at[2])
 
-    numbers = (path.centre, dot(facing, path.start - path.centre), facing)
-    return extreme_contacts(level, coordinate, numbers, samples, closed)
+    # the slope by the angle is how far the contact is from the pin's foot on the face, to the left of its normal
+    numbers = (path.centre, dot(facing, path.start - path.centre), facing, -turns)
+    return extreme_contacts(level, coordinate, numbers, samples, turns != 0.0)
 
 
 # Poses times samples that are evaluated together: their arrays stay in a second-level cache.
@@ -253,7 +263,9 @@ def extreme_contacts(
     Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a
     limit position, is found from there.
 
-    `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
+    `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile. The last number is
+    the sign of the level's slope along the samples at the least coordinate. By it the only two contacts are told apart
+    whose coordinates are angles, as on a circle there is no least one; 0 for coordinates that have an order.
     """
     shape = np.broadcast_shapes(*(np.shape(v) for v in numbers))
     flat = [np.broadcast_to(v, shape).ravel() for v in numbers]
@@ -265,16 +277,36 @@ def extreme_contacts(
         found = level([v[first : first + step, None] for v in flat], [v[None] for v in around])
         pose, side = np.nonzero((found[:, :-1] <= 0) != (found[:, 1:] <= 0))
         before, after = found[pose, side], found[pose, side + 1]
-        share = before / (before - after)
+        share = _apart(pose, side, before / (before - after), found.shape[1] - 1 if closed else 0)
+        are_two = np.bincount(pose, minlength=len(found))[pose] == 2
         pose = pose + first
         at = coordinate([v[pose] for v in flat], [v[side] + share * (v[side + 1] - v[side]) for v in around])
         np.minimum.at(least, pose, at)
         np.maximum.at(greatest, pose, at)
+        slope = np.where(are_two, np.sign(after - before) * flat[-1][pose], 0.0)
+        least[pose[slope > 0.0]], greatest[pose[slope < 0.0]] = at[slope > 0.0], at[slope < 0.0]
         without = first + np.setdiff1d(np.arange(len(found)), pose - first)
-        both = _neighbouring_samples(np.abs(found[without - first]), without, coordinate, flat, around, closed)
-        least[without], greatest[without] = np.fmin(*both), np.fmax(*both)
+        both = _neighbouring_samples(found[without - first], without, coordinate, flat, around, closed)
+        least[without], greatest[without] = both
     least, greatest = (np.where(np.isfinite(v), v, np.nan).reshape(shape) for v in (least, greatest))
     return least, greatest
+
+
+def _apart(pose: Number, side: Number, share: Number, period: int) -> Number:
+    """Return the shares of the way between two samples at which contacts are looked for.
+
+    Two with one sample between them, near a limit position, are looked for from the samples beyond them: a chord may
+    end on the other side of the extreme between them. `period` is the number of samples of a closed profile.
+    """
+    is_next = (pose[1:] == pose[:-1]) & (side[1:] == side[:-1] + 1)
+    one, other = np.append(is_next, False), np.append(False, is_next)
+    if period and len(pose):
+        begins = np.flatnonzero(np.append(True, pose[1:] != pose[:-1]))
+        ends = np.append(begins[1:], len(pose)) - 1
+        is_next = (side[begins] == 0) & (side[ends] == period - 1)
+        one[ends] |= is_next
+        other[begins] |= is_next
+    return np.where(one == other, share, np.where(one, 0.0, 1.0))
 
 
 def _neighbouring_samples(
@@ -285,9 +317,13 @@ def _neighbouring_samples(
     around: Sequence[Number],
     closed: bool,
 ) -> tuple[Number, Number]:
-    """Return the coordinates of the samples beside that of the smallest level, for some poses."""
-    nearest, last = np.argmin(found, axis=1), found.shape[1] - 1
+    """Return the least and greatest coordinate of the samples beside that of the smallest level, for some poses."""
+    nearest, last = np.argmin(np.abs(found), axis=1), found.shape[1] - 1
     before = np.where(nearest > 0, nearest - 1, last - 1 if closed else 0)
     after = np.where(nearest < last, nearest + 1, 1 if closed else last)
     at = [v[pose] for v in flat]
-    return coordinate(at, [v[before] for v in around]), coordinate(at, [v[after] for v in around])
+    one, other = coordinate(at, [v[before] for v in around]), coordinate(at, [v[after] for v in around])
+    # a level that is negative rises from the first to zero
+    slope = at[-1] * np.where(found[np.arange(len(found)), nearest] <= 0, 1.0, -1.0)
+    first = np.where(slope == 0.0, one < other, slope > 0.0)
+    return np.where(first, one, other), np.where(first, other, one)

@@ -133,6 +133,39 @@ def test_an_oscillating_face_on_an_eccentric(shape: str, sign: int, side: int, b
     assert np.max(np.abs(found.angular_acceleration - exact.angular_acceleration)) < 4 * limit
 
 
+@modes
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_an_oscillating_face_on_an_ellipse_keeps_its_mode_up_to_its_limits(sign: int, side: int, sense: int) -> None:
+    """By the ellipse's support function h: h(phi) - n . c = d, c being the pin; the contact is h' - (i n) . c ahead.
+
+    At a limit position both contacts meet in a direction that is not opposite to the middle of the ellipse.
+    """
+    a, b, away, far = 3.0, 2.0, 5.0, 7.5
+    profile = ck.profiles.formula(lambda s: a * np.cos(sense * s) + 1j * b * np.sin(sense * s), 0.0, 2 * np.pi)
+    arm = ck.link("follower", H=0, P=-1j * side * far)
+    pair = ck.face("follower", on="cam", at="P", profile=profile, side=side)
+    mechanism = cam_and(arm, pair, ck.mode(sign, "follower"), points={"H": away})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
+        motion = ck.solve(mechanism, {"cam": np.linspace(0.0, 2 * np.pi, 241)}, order=0)
+    good, phi = motion.assembled, np.linspace(-np.pi, np.pi, 4001)
+    turned = motion.drives["cam"].value
+
+    def gap(phi: Any, turned: Any) -> Any:
+        h = np.sqrt((a * np.cos(phi - turned)) ** 2 + (b * np.sin(phi - turned)) ** 2)
+        return h - away * np.cos(phi) - far
+
+    highest = gap(phi, turned[:, None]).max(axis=1)
+    assert np.array_equal(good, highest > 0)
+    assert 0.2 < good.mean() < 0.8
+    n = np.exp(1j * motion.links["follower"].angle[good]) * -1j * side
+    assert np.abs(gap(np.angle(n), turned[good])).max() < 1e-9
+    slope = (gap(np.angle(n) + 1e-6, turned[good]) - gap(np.angle(n) - 1e-6, turned[good])) / 2e-6
+    assert (sign * side * slope > 0).all()
+    assert np.abs(slope).min() < 0.5
+
+
 @pytest.mark.parametrize("shape", ["disc", "formula", "points"])
 @modes
 @pytest.mark.parametrize("kind", ["slide", "reversed slide", "pin", "profile on the slide", "profile on the pin"])
