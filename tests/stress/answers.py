@@ -85,7 +85,7 @@ class Answer:
                 samples = np.linspace(-np.pi, np.pi, SAMPLES, endpoint=False)
                 middle = oval.at(samples) + numbers["away"] * oval.normal(samples)
                 s = samples[np.argmin(np.abs(point[:, None] - middle), axis=1)]
-                s = _foot(oval, numbers["away"], point, s)
+                s = _foot(oval, point, s)
             home = numbers["s"]
             s = s - _turns(s - home)
             order = np.flatnonzero(self.assembled)
@@ -143,12 +143,9 @@ def _turns(angle: Any) -> Any:
     return 2.0 * np.pi * np.round(angle / (2.0 * np.pi))
 
 
-def _foot(oval: Oval, away: float, point: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Newton on the distance of a point from the parallel curve along it."""
-    h = 1e-4
+def _foot(oval: Oval, point: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Newton on the way of a point from the oval along its tangent, which is none of its parallel curve either."""
     for _ in range(8):
-        near = [oval.at(s + d) + away * oval.normal(s + d) - point for d in (-h, 0.0, h)]
-        squares = [np.abs(gap) ** 2 for gap in near]
-        slope, bend = (squares[2] - squares[0]) / (2 * h), (squares[2] - 2 * squares[1] + squares[0]) / h**2
-        s = s - np.where(bend > 0, slope / np.where(bend > 0, bend, 1.0), 0.0)
+        gap, first, second = point - oval.at(s), oval.slope(s), oval.bend(s)
+        s = s + (np.conj(first) * gap).real / (np.abs(first) ** 2 - (np.conj(second) * gap).real)
     return s

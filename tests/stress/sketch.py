@@ -233,6 +233,12 @@ class Oval:
     def at(self, s: Any) -> Any:
         return self.middle + np.exp(1j * self.tilt) * (self.a * np.cos(s) + 1j * self.b * np.sin(s))
 
+    def slope(self, s: Any) -> Any:
+        return np.exp(1j * self.tilt) * (-self.a * np.sin(s) + 1j * self.b * np.cos(s))
+
+    def bend(self, s: Any) -> Any:
+        return self.middle - self.at(s)
+
     def normal(self, s: Any) -> Any:
         n = self.b * np.cos(s) + 1j * self.a * np.sin(s)
         return np.exp(1j * self.tilt) * n / np.abs(n)
