@@ -270,3 +270,28 @@ def test_a_pinion_is_as_drawn_beyond_half_a_turn_of_the_rack_that_slides_on_a_co
     # the rack rolls off by as much of its way as is along its line
     turned = np.angle(drawn["P"] - drawn["O"]) + ahead * (guide * np.conj(line)).real / 2.0
     assert np.allclose(motion.links["pinion"].angle, turned, atol=1e-12)
+
+
+@pytest.mark.parametrize("turns", [-1, 0, 1])
+def test_a_rack_is_as_drawn_whichever_turn_of_its_wheel_a_stated_phase_of_a_gear_means(turns: int) -> None:
+    """The rack's own phase is known within a turn of the wheel only; the gear's puts the wheel turns ahead of it."""
+    drawn = {"A": 0j, "B": 2 + 1j, "C": 3 + 3j, "G": -1 - 2j, "H": 1 - 1j}
+    wheel, crank, line = (np.angle(drawn[b] - drawn[a]) for a, b in ("BC", "AB", "GH"))
+    ahead = wheel + 2 * np.pi * turns
+    place = (drawn["B"] - drawn["G"]) * np.exp(-1j * line)
+    radius, phase = float(place.imag), float(place.real + place.imag * (wheel - line))
+    mechanism = ck.Mechanism(
+        "rack on a planet",
+        *(ck.link(n, *k) for n, k in (("frame", "A"), ("crank", "AB"), ("planet", "BC"), ("rack", "GH"))),
+        ck.gear("frame", "planet", carrier="crank", first_at="A", teeth=(40, 20), phase=ahead - crank - 2.0 * crank),
+        ck.slide("rack", on="frame", at="G", through="A", angle=line),
+        ck.rack("rack", "planet", through="G", toward="H", at="B", radius=radius, phase=phase),
+        ck.drive("crank"),
+        ck.drawn(**drawn),
+    )
+    values = crank + np.linspace(0.0, 1.0, 5)
+    motion = ck.solve(mechanism, values)
+    # the planet turns three times as fast as the crank, and the rack goes with its axis and by what it rolls off
+    assert np.allclose(motion.links["planet"].angle, ahead + 3.0 * (values - crank), atol=1e-12)
+    along = ((motion.points["B"].position - drawn["B"]) * np.exp(-1j * line)).real + 3.0 * radius * (values - crank)
+    assert np.abs(motion.points["G"].position - drawn["G"] - along * np.exp(1j * line)).max() < 1e-12

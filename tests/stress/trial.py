@@ -102,11 +102,14 @@ def near_limit(sketch: Sketch, way: Way, distance: float) -> Sketch:
 
 
 def redrawn(sketch: Sketch, equations: Equations, x: np.ndarray) -> Sketch:
-    """The sketch in another pose. Dimensions stay; what joints drew in the world is turned along."""
+    """The sketch in another pose. Dimensions stay; what joints drew in the world is turned along.
+
+    A drawing shows angles within half a turn: phases stated by others would be those of another mechanism.
+    """
     placed, new = Placed(sketch), sketch.copy()
     poses = {
         **{
-            k: (complex(*x[3 * i : 3 * i + 2]) * equations.unit, float(x[3 * i + 2]))
+            k: (complex(*x[3 * i : 3 * i + 2]) * equations.unit, float(np.angle(np.exp(1j * x[3 * i + 2]))))
             for k, i in equations.index.items()
         }
     }
