@@ -566,9 +566,6 @@ class _ContactCoordinate:
         # at an end of the path there is but the one within
         beside = np.pad(steps, ((0, 0), (1, 1)), mode="reflect" if steps.shape[1] > 1 else "constant")
         uneven = (steps > LEAP) & (steps > UNEVEN * np.minimum(beside[:, :-2], beside[:, 2:]))
-        # at home it is told apart best: a mechanism that is drawn near a limit leaps there at once
-        home = self.curve.path.home
-        uneven |= (steps > LEAP) & ((samples[:-1] == home) | (samples[1:] == home))
         designs, i = np.nonzero(uneven)
         if self._remains(designs, samples[i], samples[i + 1], values[designs, i], values[designs, i + 1]):
             return True
