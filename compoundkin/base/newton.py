@@ -81,7 +81,7 @@ class ChordStop(NamedTuple):
     """
 
     converged: float
-    closed: float
+    closed: Number
     chord: float
     steps: int
     longest: float = np.inf

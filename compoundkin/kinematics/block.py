@@ -42,6 +42,20 @@ def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
     return Series((clipped, *discriminant.c[1:])).sqrt(), margin
 
 
+# The name under which the sizes of designs go with the sides of pairs, where they are not alike. No pair has it.
+SIZES = ""
+
+
+def size_in(ends: Mapping[str, Ends], size: float) -> Number:
+    """Return the length scale of each design by the sides of pairs, (designs, 1); or that which all share.
+
+    >>> float(size_in({SIZES: (End(np.array([[2.0], [3.0]])),)}, 3.0)[0, 0]), size_in({}, 3.0)
+    (2.0, 3.0)
+    """
+    own = ends.get(SIZES)
+    return size if own is None else own[0].point
+
+
 # Corrections above this (of the size, or radians) leave the region where Newton's answer is a neighbour.
 LEAP = 0.5
 

@@ -273,7 +273,7 @@ class Configurations(DisplaysHtml):
         return f"Configurations({', '.join(map(repr, self.names))})"
 
 
-def state_distance(one: Number, other: Number, size: float) -> Number:
+def state_distance(one: Number, other: Number, size: Number) -> Number:
     """Return how far states (..., 3 n) are from each other.
 
     It is in parts of the size, radians; whole turns do not count.

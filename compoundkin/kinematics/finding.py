@@ -84,7 +84,7 @@ def rounded_by(
     the limit: it is the limit there, and values are made less accordingly.
     """
     with np.errstate(all="ignore"):
-        error = motion.error(k).reshape(motion.failed.shape) / (motion.size if scale is None else scale)
+        error = motion.error(k).reshape(motion.failed.shape) / (motion.sizes if scale is None else scale)
     allowed = np.nan_to_num(LEFT * error, nan=0.0, posinf=np.inf)
     share = limit / np.maximum(limit, allowed)
     return {name: part * share for name, part in parts.items()}

@@ -16,7 +16,7 @@ from compoundkin.base.display import DisplaysPicture, display_function
 from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import Block, blocks, places, with_poses
+from compoundkin.kinematics.block import Block, blocks, places, size_in, with_poses
 from compoundkin.kinematics.curve.change_points import rates_at
 from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
 from compoundkin.kinematics.curve.modes import GroupMode, modes_of
@@ -101,8 +101,13 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
 
     @property
     def size(self) -> float:
-        """The mechanism's length scale."""
+        """The mechanism's length scale, that of the greatest design."""
         return self.solving_order.size
+
+    @property
+    def sizes(self) -> Number:
+        """The length scale of each design, (designs, 1); a number if all share it."""
+        return size_in(self.inputs.ends, self.size)
 
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
@@ -443,7 +448,7 @@ def errors_of(followed: FollowedPoses, given: Inputs, order: int) -> list[Number
         designs, index, poses = rates_at(given, followed, order)
         if len(designs):
             part = _differences(
-                lambda other: rates_at(other, followed, order)[2], given, poses, order, followed.solving_order
+                lambda other: rates_at(other, followed, order)[2], given, poses, order, followed.solving_order, designs
             )
             for whole, errors in zip(found, _largest(part, order), strict=True):
                 whole[designs, index] = np.broadcast_to(errors, (len(designs), 1))[:, 0]
@@ -478,9 +483,14 @@ def _differences(
     poses: Mapping[str, Pose],
     order: int,
     solving_order: SolvingOrder,
+    designs: Number | None = None,
 ) -> LinkErrors:
-    """Return how far links are from where they are when dimensions change by rounding."""
-    rng, size = np.random.default_rng(SEED), solving_order.size
+    """Return how far links are from where they are when dimensions change by rounding.
+
+    The poses are those of the inputs, or a column of some designs.
+    """
+    rng, size = np.random.default_rng(SEED), size_in(given.ends, solving_order.size)
+    size = size if designs is None or not np.ndim(size) else size[designs]
     moving = {link: pose for link, pose in poses.items() if pose is not FIXED}
     squares: dict[str, list[Number]] = {link: [0.0] * (order + 1) for link in moving}
     closed: dict[str, list[Number]] = {link: [0.0] * (order + 1) for link in moving}
@@ -504,7 +514,7 @@ def _mean(squares: Number, closed: Number, k: int) -> Number:
     return np.where(closed > (COPIES - 1 if k else 0), squares / closed, np.inf)
 
 
-def _gap(one: Pose, other: Pose, k: int, size: float) -> Number:
+def _gap(one: Pose, other: Pose, k: int, size: Number) -> Number:
     """Return by how much two poses of a link differ in a derivative."""
     away: Number = np.abs(_coefficient(one.z, k) - _coefficient(other.z, k))
     turned: Number = np.abs(_coefficient(one.u, k) - _coefficient(other.u, k)) * size
@@ -517,7 +527,7 @@ def _coefficient(series: Series, k: int) -> Number:
 
 def _rounded(given: Inputs, solving_order: SolvingOrder, rng: np.random.Generator) -> Inputs:
     """Return inputs whose every dimension is changed by rounding: of the size, or of itself if it is larger."""
-    size = solving_order.size
+    size = size_in(given.ends, solving_order.size)
     # not the ends of guides, which change no pose
     sides_of = {*solving_order.pairs, *(name for solver in solving_order.solvers for name in solver.ends)}
 

@@ -30,7 +30,7 @@ from compoundkin.base.errors import (
 )
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at
+from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at, size_in
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.curve.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
 from compoundkin.kinematics.curve.configuration_curve import FollowedPoses, follow, leaping_groups
@@ -440,7 +440,7 @@ def diagnosing(structure: Structure) -> Iterator[None]:
 def check_redundant(motion: Motion) -> None:
     """Raise NotAssembled, naming them, unless every redundant pair is closed at all assembled poses."""
     opened = [(pair, opening(motion, pair)) for pair in motion.structure.redundant]
-    wrong = [_problem(motion, pair, gap) for pair, gap in opened if np.nanmax(gap) > ROUNDED.closed * motion.size]
+    wrong = [_problem(motion, pair, gap) for pair, gap in opened if np.any(gap > ROUNDED.closed * motion.sizes)]
     if wrong:
         raise NotAssembled(wrong, heading=f"{motion.mechanism.title!r} does not move like this")
 
@@ -452,9 +452,9 @@ def opening(motion: Motion, pair: Pair) -> Number:
     """
     poses = tuple(motion.poses[name] for name in pair.members)
     held = pair.closure(motion.inputs.ends[pair.name], poses)
-    parts = [one.c[0] / scale for one, scale in zip(held, constraint_scales(pair, motion.size), strict=True)]
+    parts = [one.c[0] / scale for one, scale in zip(held, constraint_scales(pair, motion.sizes), strict=True)]
     squares = sum(np.abs(np.broadcast_to(part, motion.failed.shape)) ** 2 for part in parts)
-    return np.where(motion.failed == 0, np.sqrt(squares) * motion.size, 0.0)
+    return np.where(motion.failed == 0, np.sqrt(squares) * motion.sizes, 0.0)
 
 
 def _problem(motion: Motion, pair: Pair, gap: Number) -> Problem:
@@ -499,7 +499,7 @@ def doubtful(solving_order: SolvingOrder, part: Inputs, block: Block, near: Iter
     fast = FAST * _pace(solving_order, part) if silent else 0.0
     for name in (body.links[0] for solver in silent for body in solver.group.bodies):
         pose = block.world[name]
-        for series, size in ((pose.u, 1.0), (pose.z, solving_order.size)):
+        for series, size in ((pose.u, 1.0), (pose.z, size_in(part.ends, solving_order.size))):
             found = found | (np.abs(series.c[1]) > fast * size) if series.order else found
     return found
 
@@ -509,7 +509,7 @@ def _pace(solving_order: SolvingOrder, part: Inputs) -> Number:
     fastest: Number = 0.0
     for name, values in part.drives.items():
         speed = values[1] if len(values) > 1 else 0.0
-        fastest = np.maximum(fastest, np.abs(speed) / solving_order.unit(name))
+        fastest = np.maximum(fastest, np.abs(speed) / solving_order.unit_in(part.ends, name))
     return fastest
 
 
@@ -527,7 +527,7 @@ def without_imprecise_rates(motion: Motion, where: Number) -> Description:
     with np.errstate(all="ignore"):
         errors = errors_at(motion.followed, part, motion.order, s, designs[:, None])
         poses = poses_at(motion.poses, motion.failed.shape, designs, index)
-        allowed = _natural(poses, motion.order, motion.size)
+        allowed = _natural(poses, motion.order, size_in(part.ends, motion.size))
         lost = {name: [~(e <= a) for e, a in zip(found, allowed, strict=True)] for name, found in errors.items()}
         few = _any(errors, [UNCERTAIN * a for a in allowed]) & ~_any(errors, allowed)
     if not any(np.any(one) for found in lost.values() for one in found[1:]):
@@ -540,7 +540,7 @@ def uncertain(motion: Motion) -> Number:
     """Return the poses at which some rates have fewer than three digits, (designs, poses)."""
     found: Number = np.zeros(motion.failed.shape, dtype=bool)
     with np.errstate(all="ignore"):
-        allowed = _natural(motion.poses, motion.order, motion.size)
+        allowed = _natural(motion.poses, motion.order, motion.sizes)
         for k in range(1, motion.order + 1):
             error = motion.error(k).reshape(motion.failed.shape)
             found = found | (np.isfinite(error) & ~(error <= UNCERTAIN * allowed[k]))
@@ -556,7 +556,7 @@ def _any(errors: LinkErrors, allowed: list[Number]) -> Number:
     return found
 
 
-def _natural(poses: Mapping[str, Pose], order: int, size: float) -> list[Number]:
+def _natural(poses: Mapping[str, Pose], order: int, size: Number) -> list[Number]:
     """Return the largest derivative of any link at each pose, in each order; no less than speeds to that power."""
     found, speed = list[Number](), 0.0
     for k in range(order + 1):

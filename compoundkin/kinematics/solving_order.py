@@ -14,7 +14,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, constant
-from compoundkin.kinematics.block import CLIPPED, Block, LimitRule
+from compoundkin.kinematics.block import CLIPPED, SIZES, Block, LimitRule, size_in
 from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.groups.pair_sides import Reason, Words, reason_text, spot
 from compoundkin.model.geometry import Geometry
@@ -54,6 +54,8 @@ class SolvingOrder(ShortRepr):
         for solver in self.solvers:
             self.ends.update(solver.ends)
         self.ends.update(own or {})
+        if ends is None and np.ndim(geometry.sizes):
+            self.ends[SIZES] = (End(geometry.sizes),)
 
     @cached_property
     def dimension_arrays(self) -> tuple[tuple[str, Number], ...]:
@@ -92,6 +94,10 @@ class SolvingOrder(ShortRepr):
     def unit(self, name: str) -> float:
         """Return by how much a driver goes where it goes far. It is a radian, or the mechanism's size."""
         return 1.0 if self.structure.driven_angles[name] else self.size
+
+    def unit_in(self, ends: Mapping[str, Ends], name: str) -> Number:
+        """Return by how much a driver goes in each design where it goes far: the number, or an array (designs, 1)."""
+        return 1.0 if self.structure.driven_angles[name] else size_in(ends, self.size)
 
     @cached_property
     def four_bars(self) -> Mapping[int, FourBarLoops]:
@@ -208,6 +214,7 @@ def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | N
 def residual(pairs: Sequence[Pair], block: Block, size: float) -> Number:
     """Return the sum of squares of what left-out pairs ought to hold. Lengths are parts of the size."""
     total: Number = 0.0
+    size = size_in(block.ends, size)
     for pair in pairs:
         poses = tuple(block.world[name] for name in pair.members)
         held = pair.closure(block.ends[pair.name], poses)
@@ -362,7 +369,7 @@ class GuideEnds(ShortRepr):
         return [self._margin(block, pair) for pair in self.pairs]
 
     def _margin(self, block: Block, pair: TravelLimited) -> Number:
-        scale = 1.0 if pair.free_is_angle else self.size
+        scale = 1.0 if pair.free_is_angle else size_in(block.ends, self.size)
         return np.minimum(*self._distances(block, pair)) / scale + AT_END
 
     def _distances(self, block: Block, pair: TravelLimited) -> tuple[Number, Number]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -35,25 +36,47 @@ class Geometry(ShortRepr):
 
     @property
     def size(self) -> float:
-        """The length scale, the greatest distance on a link or size of a profile."""
-        spans = [_span(list(points.values())) for points in self.points.values()]
-        spans.append(_span(list(self.sketch.values())))
-        return max(*spans, self.profiles) or 1.0
+        """The length scale, the greatest distance on a link or size of a profile; that of the greatest design."""
+        return float(np.max(self.sizes))
+
+    @property
+    def sizes(self) -> Number:
+        """The length scale of each design, an array over their axes with a last one of 1; a number if all share it."""
+        found = spans_of(points.values() for points in (*self.points.values(), self.sketch))
+        found = np.maximum(found, self.profiles) if np.ndim(found) else max(found, self.profiles)
+        if not np.ndim(found):
+            return found or 1.0
+        found = np.where(found > 0.0, found, 1.0)
+        return found if np.any(found != found.flat[0]) else found.item(0)
 
 
-def _span(points: list[Number]) -> float:
-    """Return the diagonal of the box around some points, over all designs."""
+def spans_of(many: Iterable[Collection[Number]]) -> Number:
+    """Return the greatest diagonal of the boxes around points, over the axes of designs."""
+    found: Number = 0.0
+    for points in many:
+        span = _span(list(points))
+        found = np.maximum(found, span) if np.ndim(found) or np.ndim(span) else max(found, span)
+    return found
+
+
+def _span(points: list[Number]) -> Number:
+    """Return the diagonal of the box around some points of each design, along the whole motion."""
     if len(points) < 2:
         return 0.0
     if all(isinstance(p, complex) for p in points):
         # without arrays: a mechanism may have tens of thousands of links
         across, up = [p.real for p in points], [p.imag for p in points]
         return float(np.hypot(max(across) - min(across), max(up) - min(up)))
-    x = [np.real(p) for p in points]
-    y = [np.imag(p) for p in points]
-    wide = max(float(np.max(v)) for v in x) - min(float(np.min(v)) for v in x)
-    high = max(float(np.max(v)) for v in y) - min(float(np.min(v)) for v in y)
-    return float(np.hypot(wide, high))
+    wide, high = (_extent([part(p) for p in points]) for part in (np.real, np.imag))
+    found = np.hypot(wide, high)
+    return found.item() if found.ndim < 2 else found
+
+
+def _extent(values: list[Number]) -> Number:
+    """Return how far apart numbers of each design are. The last axis is the motion."""
+    whole = [np.atleast_1d(value) for value in values]
+    greatest = reduce(np.maximum, (np.max(value, axis=-1, keepdims=True) for value in whole))
+    return greatest - reduce(np.minimum, (np.min(value, axis=-1, keepdims=True) for value in whole))
 
 
 def link_from_drawing(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:

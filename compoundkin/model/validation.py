@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Iterable, Iterator, Mapping
+from functools import reduce
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -228,9 +229,9 @@ def _quantity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
 
 def point_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     """Find points that are misspelt in the drawing, not numbers, or coincident."""
-    size = _size(mechanism)
-    if 0.0 < size < SHORTEST:
-        yield _off_scale("links", f"the farthest point is at {size:g}")
+    size = _sizes(mechanism)
+    if np.any((size > 0.0) & (size < SHORTEST)):
+        yield _off_scale("links", f"the farthest point is at {np.min(size, where=size > 0.0, initial=np.inf):g}")
     for name, link in mechanism.links.items():
         if not link.points and name not in mechanism.auxiliary_links:
             yield Problem(f"links.{name}.points", "a link needs at least one point")
@@ -278,7 +279,7 @@ def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
     return f"add {letter} to the drawing; {suggestion(letter, list(sketch))}"
 
 
-def _lengths(mechanism: MechanismDefinition, name: str, size: float) -> Iterator[Problem]:
+def _lengths(mechanism: MechanismDefinition, name: str, size: Number) -> Iterator[Problem]:
     """Find pinned points of one link that coincide: a link of no length between two pairs."""
     link = mechanism.links[name]
     place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
@@ -291,10 +292,10 @@ def _lengths(mechanism: MechanismDefinition, name: str, size: float) -> Iterator
         )
 
 
-def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
+def _coincident(points: list[Any], nearer: Number) -> Iterator[tuple[int, int]]:
     """Yield the pairs of points that coincide in any design."""
     if all(isinstance(p, _SCALARS) for p in points):
-        yield from sorted(_close_along_line(points, nearer))
+        yield from sorted(_close_along_line(points, float(np.max(nearer))))
     else:
         for i, p in enumerate(points):
             yield from ((i, j) for j in range(i + 1, len(points)) if np.any(np.abs(points[j] - p) <= nearer))
@@ -313,16 +314,24 @@ def _close_along_line(points: list[complex], nearer: float) -> Iterator[tuple[in
                 yield min(i, j), max(i, j)
 
 
-def _size(mechanism: MechanismDefinition) -> float:
+def _sizes(mechanism: MechanismDefinition) -> Number:
+    """Return the greatest finite coordinate of each design."""
     values = [p for link in mechanism.links.values() for p in link.points.values() if p is not None]
-    return max(map(_largest_value, [*values, *mechanism.sketch.values()]), default=0.0)
+    found = [_largest_value(value) for value in (*values, *mechanism.sketch.values())]
+    single = max((one for one in found if not np.ndim(one)), default=0.0)
+    try:
+        return reduce(np.maximum, (one for one in found if np.ndim(one)), single)
+    except ValueError:
+        # designs whose shapes differ are another problem
+        return max(float(np.max(one)) for one in found)
 
 
-def _largest_value(value: Any) -> float:
-    """Return the greatest finite absolute value."""
+def _largest_value(value: Any) -> Number:
+    """Return the greatest finite absolute value, of each design."""
     if isinstance(value, _SCALARS):
         return abs(value) if cmath.isfinite(value) else 0.0
-    return float(np.max(np.abs(np.asarray(value))[np.isfinite(value)], initial=0.0))
+    known = np.where(np.isfinite(value), np.abs(value), 0.0)
+    return np.max(known, axis=-1, keepdims=True, initial=0.0) if known.ndim > 1 else float(np.max(known, initial=0.0))
 
 
 def invalid_numbers(pair: Pair, where: str) -> Iterator[Problem]:

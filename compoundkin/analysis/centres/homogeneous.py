@@ -63,36 +63,43 @@ def sine_between(a: Number, b: Number) -> Number:
 class OwnCoordinates:
     """Own coordinates, a place p of the world at ``(p - origin) / size``.
 
-    Homogeneous vectors of order one then have errors of rounding size, wherever and however large the mechanism.
+    Homogeneous vectors of order one then have errors of rounding size, wherever and however large the mechanism. Both
+    are arrays where designs are of different sizes.
     """
 
-    origin: complex
-    size: float
+    origin: Number
+    size: Number
+
+    def in_one_axis(self, shape: tuple[int, ...]) -> OwnCoordinates:
+        """Return them for arrays in which designs and poses, a shape, are one axis."""
+        if not np.ndim(self.size):
+            return self
+        return OwnCoordinates(*(np.broadcast_to(one, shape).ravel() for one in (self.origin, self.size)))
 
     def own(self, x: Number, y: Number, w: Number) -> Number:
         """Return a point, or a twist, of the world in own coordinates, (3, ...)."""
-        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(w))
+        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(w), np.shape(self.size))
         out = np.empty((3, *shape))
-        out[0] = (x - self.origin.real * w) / self.size
-        out[1] = (y - self.origin.imag * w) / self.size
+        out[0] = (x - np.real(self.origin) * w) / self.size
+        out[1] = (y - np.imag(self.origin) * w) / self.size
         out[2] = w
         return out
 
     def own_line(self, line: Line) -> Number:
         """Return a line of the world in own coordinates, (3, ...)."""
         a, b, c = line
-        shape = np.broadcast_shapes(np.shape(a), np.shape(b), np.shape(c))
+        shape = np.broadcast_shapes(np.shape(a), np.shape(b), np.shape(c), np.shape(self.size))
         out = np.empty((3, *shape))
         out[0] = a * self.size
         out[1] = b * self.size
-        out[2] = a * self.origin.real + b * self.origin.imag + c
+        out[2] = a * np.real(self.origin) + b * np.imag(self.origin) + c
         return out
 
     def world(self, point: Number) -> Number:
         """Return own homogeneous coordinates in the world's, (3, ...)."""
-        out = np.empty_like(point)
-        out[0] = point[0] * self.size + self.origin.real * point[2]
-        out[1] = point[1] * self.size + self.origin.imag * point[2]
+        out = np.empty((3, *np.broadcast_shapes(point.shape[1:], np.shape(self.size))), point.dtype)
+        out[0] = point[0] * self.size + np.real(self.origin) * point[2]
+        out[1] = point[1] * self.size + np.imag(self.origin) * point[2]
         out[2] = point[2]
         return out
 

@@ -26,6 +26,7 @@ from compoundkin.base.display import DisplaysHtml, ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.driver_values import fit
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.contract import Line
 
@@ -59,7 +60,7 @@ class Centre(ShortRepr):
     homogeneous: Number
     conditioning: Number
     status: Number
-    size: float
+    size: Number
     elsewhere: tuple[Number, tuple[str, ...]]
 
     @cached_property
@@ -222,12 +223,14 @@ class Centres(CentreVectors, DisplaysHtml):
         failed = np.broadcast_to(self.motion.failed != 0, (designs, poses)).ravel()
         resting = np.broadcast_to(self._at_rest, (count,)) & (len(self.places.rates) > 1)
         status = np.select([failed, found, resting], [Status.NOT_ASSEMBLED, Status.FOUND, Status.AT_REST], otherwise)
-        point = np.where(status == Status.FOUND, self.scale.world(unit), np.nan)
+        scale = self.scale.in_one_axis((designs, poses))
+        point = np.where(status == Status.FOUND, scale.world(unit), np.nan)
         shape = self.motion.shape
+        size = scale.size.reshape(shape) if np.ndim(scale.size) else scale.size
         shown = np.where(failed, np.nan, conditioning)
         return Centre(
             names, how, point.T.reshape(*shape, 3), shown.reshape(shape),
-            status.astype(np.int8).reshape(shape), self.scale.size, elsewhere,
+            status.astype(np.int8).reshape(shape), size, elsewhere,
         )  # fmt: skip
 
 
@@ -319,7 +322,10 @@ def centred_coordinates(motion: Motion) -> OwnCoordinates:
     """Return own coordinates around the middle of the frame's points."""
     points = list(motion.mechanism.geometry.points[FRAME].values())
     middle = np.mean([np.mean(p) for p in points]) if points else 0.0
-    return OwnCoordinates(complex(middle), motion.size)
+    if not np.ndim(motion.sizes):
+        return OwnCoordinates(complex(middle), motion.size)
+    own = [np.mean(np.atleast_2d(fit(motion.shape)(p)), axis=1, keepdims=True) for p in points]
+    return OwnCoordinates(sum(own) / max(len(own), 1), motion.sizes)
 
 
 def primary_centres(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> PrimaryCentres:
@@ -364,7 +370,7 @@ def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
     motion.grid.require(1)
     count = motion.inputs.designs * motion.inputs.poses
     shape = (motion.inputs.designs, motion.inputs.poses)
-    found = np.zeros((len(motion.mechanism.links), 3, count))
+    found, scale = np.zeros((len(motion.mechanism.links), 3, count)), scale.in_one_axis(shape)
     for k, name in enumerate(motion.mechanism.links):
         pose = motion.poses[name]
         u, du = pose.u.derivative(0), pose.u.derivative(1)
@@ -402,7 +408,8 @@ class Velocities(ShortRepr):
     def at(self, link: str, position: Number) -> Number:
         """Return the velocity of a link's point at a place, complex, length/s."""
         x, y, w = self.twists[link]
-        scale = self.centres.scale
+        motion = self.centres.motion
+        scale = self.centres.scale.in_one_axis((motion.inputs.designs, motion.inputs.poses))
         own = (np.broadcast_to(position, self.centres.motion.shape).reshape(-1) - scale.origin) / scale.size
         return (1j * (w * own - (x + 1j * y)) * scale.size).reshape(self.centres.motion.shape)
 
@@ -459,6 +466,7 @@ def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
     shape = motion.shape
     regular = np.broadcast_to(motion.regular, (motion.inputs.designs, motion.inputs.poses)).reshape(shape)
     links, points = {}, {}
+    size = motion.grid.shaped(motion.sizes) if np.ndim(motion.sizes) else motion.size
     usable = {n: regular & (c.reshape(shape) >= LEAST_CONDITIONING) for n, c in found.conditioning.items()}
     slowest = SLOWEST * float(np.max(found.fastest, where=np.all(list(usable.values()), axis=0).ravel(), initial=0.0))
     scale = np.maximum(found.fastest, slowest if slowest > 0.0 else 1.0).reshape(shape)
@@ -467,12 +475,12 @@ def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
             link = motion.links[name]
             turning = np.abs(found.angular_velocity(name) - link.angular_velocity)
             going = np.abs(found.at(name, np.asarray(link.origin.position)) - np.asarray(link.origin.velocity))
-            gap = np.maximum(turning, going / motion.size)
+            gap = np.maximum(turning, going / size)
             links[name] = np.where(usable[name], _certain(gap / scale), np.nan)
         for letter, carriers in motion.mechanism.carriers.items():
             point = motion.points[letter]
             gap = np.abs(found.at(carriers[0], np.asarray(point.position)) - np.asarray(point.velocity))
-            points[letter] = np.where(usable[carriers[0]], _certain(gap / (scale * motion.size)), np.nan)
+            points[letter] = np.where(usable[carriers[0]], _certain(gap / (scale * size)), np.nan)
     return VelocityCheck(links, points)
 
 

@@ -23,7 +23,7 @@ from compoundkin.base.linear import inverted
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.block import Block, places, poses_at, rates
+from compoundkin.kinematics.block import Block, places, poses_at, rates, size_in
 from compoundkin.kinematics.curve.modes import distance, drawn_letters
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
@@ -55,7 +55,7 @@ def continuation_findings(motion: Motion) -> Iterator[Finding]:
     for steps in _steps_between_poses(motion, usable):
         walk = _walk(motion, steps)
         arrived = walk.follow()
-        gaps = _apart(motion, walk.poses(), known_at(motion, steps.designs, steps.end))
+        gaps = _apart(motion, steps.designs, walk.poses(), known_at(motion, steps.designs, steps.end))
         for link, part in parts.items():
             np.maximum.at(part, (steps.designs, steps.end), np.where(arrived, gaps[link], 0.0))
     yield worst(motion, "continuity", SAME, rounded_by(motion, 0, parts, SAME), motion.failed == 0)
@@ -174,11 +174,12 @@ def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
     return poses_at(leading, motion.failed.shape, designs, index)
 
 
-def _apart(motion: Motion, found: Mapping[str, Pose], poses: Mapping[str, Pose]) -> dict[str, Number]:
+def _apart(motion: Motion, designs: Number, found: Mapping[str, Pose], poses: Mapping[str, Pose]) -> dict[str, Number]:
     """Return the distances of links, in parts of the size or radians, whichever is larger."""
     apart = {}
+    sizes = np.broadcast_to(motion.sizes, (motion.inputs.designs, 1))[designs]
     for link, pose in poses.items():
-        away = np.abs(found[link].z.c[0] - pose.z.c[0]) / motion.size
+        away = np.abs(found[link].z.c[0] - pose.z.c[0]) / sizes
         turned = np.abs(found[link].u.c[0] - pose.u.c[0])
         apart[link] = np.ravel(np.maximum(away, turned))
     return apart
@@ -239,7 +240,7 @@ def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
         return np.zeros(block.shape)
 
     def away(trial: Block) -> Number:
-        return np.sqrt(distance(motion.solving_order, letters, drawing, trial)) / motion.size
+        return np.sqrt(distance(motion.solving_order, letters, drawing, trial)) / size_in(block.ends, motion.size)
 
     own, nearest = away(block), np.full(block.shape, np.inf)
     # including those without a sign, between the outer contacts of a follower
@@ -272,7 +273,7 @@ def _distance_of_poses(motion: Motion, solver: GroupSolver, world: Mapping[str, 
     far: Number = np.zeros(motion.failed.shape)
     for link in (body.links[0] for body in solver.group.bodies):
         one, other = motion.poses[link], world[link]
-        far = np.fmax(far, np.abs(one.z.c[0] - other.z.c[0]) / motion.size)
+        far = np.fmax(far, np.abs(one.z.c[0] - other.z.c[0]) / motion.sizes)
         far = np.fmax(far, np.abs(one.u.c[0] - other.u.c[0]))
     return far
 
@@ -301,7 +302,7 @@ def own_equations(solver: GroupSolver, size: float) -> GroupEquations:
 
 def sharpness(equations: GroupEquations, state: Number, block: Block) -> Number:
     """Return the norm of the inverse Jacobian with rows of unit length: one over the distance from singular."""
-    matrix = equations.matrix(state, block) / equations.weights
+    matrix = equations.matrix(state, block) / equations.weights_in(block.ends)[..., None, :]
     lengths = np.sqrt((matrix**2).sum(axis=-1, keepdims=True))
     return np.abs(inverted(np.nan_to_num(matrix / np.where(lengths > 0.0, lengths, 1.0)))).sum(axis=-1).max(axis=-1)
 

@@ -45,7 +45,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
         weights, fewer = _weights(k, OFFSETS), np.pad(_weights(k, OFFSETS[1:-1]), 1)
         parts: dict[str, Number] = {}
         for link, pose in motion.poses.items():
-            for what, size in (("z", motion.size), ("u", 1.0)):
+            for what, size in (("z", motion.sizes), ("u", 1.0)):
                 series = getattr(pose, what)
                 found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
                 # the truncation error of the differences is below the change by two neighbours fewer
@@ -58,8 +58,8 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
 
 def _rounded(motion: Motion, k: int, step: Number, parts: dict[str, Number]) -> dict[str, Number]:
     """Return the differences beyond rounding of the positions and of the derivative itself."""
-    parts = rounded_by(motion, 0, parts, LIMITS[k], motion.size * STEP**k)
-    return rounded_by(motion, k, parts, LIMITS[k], motion.size * (STEP / step) ** k)
+    parts = rounded_by(motion, 0, parts, LIMITS[k], motion.sizes * STEP**k)
+    return rounded_by(motion, k, parts, LIMITS[k], motion.sizes * (STEP / step) ** k)
 
 
 def _beyond(gap: Number, rest: Number) -> Number:
@@ -94,7 +94,7 @@ def _largest(motion: Motion, k: int) -> Number:
     """Return the largest k-th coefficient of any pose, in parts of the size."""
     found: Number = np.zeros(motion.failed.shape)
     for pose in motion.poses.values():
-        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
+        for series, size in ((pose.z, motion.sizes), (pose.u, 1.0)):
             if series.order >= k:
                 found = np.maximum(found, np.abs(series.c[k]) / size)
     for pair in filter(None, map(as_profile_contact, motion.structure.pairs)):

@@ -8,6 +8,7 @@ derivative. Drivers: the driven coordinate must be the prescribed one.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import reduce
 from math import factorial
 
 import numpy as np
@@ -97,7 +98,7 @@ def _pair(motion: Motion, pair: Pair, k: int) -> Number:
     ends = motion.inputs.ends[pair.name]
     poses = tuple(motion.poses[member] for member in pair.members)
     # an angle that ought to be zero counts as the length by which it moves a point at the mechanism's size
-    lengths = [motion.size / scale for scale in constraint_scales(pair, motion.size)]
+    lengths = [motion.sizes / scale for scale in constraint_scales(pair, motion.sizes)]
     if k == 1:
         rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
         rows = pair.jacobian(ends, poses)[..., : pair.held, :]
@@ -114,7 +115,7 @@ def _twist(velocity: Number, u: Series) -> tuple[Number, Number, Number]:
 
 def _rigid(motion: Motion, link: str, k: int) -> Number:
     length = motion.poses[link].u.abs2().derivative(k)
-    return np.abs(length - (1.0 if k == 0 else 0.0)) * motion.size
+    return np.abs(length - (1.0 if k == 0 else 0.0)) * motion.sizes
 
 
 def _driver(motion: Motion, name: str, k: int) -> Number:
@@ -123,13 +124,13 @@ def _driver(motion: Motion, name: str, k: int) -> Number:
     gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - prescribed
     if not driven.pair.free_is_angle:
         return np.abs(gap)
-    return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
+    return np.abs(wrapped(gap) if k == 0 else gap) * motion.sizes
 
 
 def _still(motion: Motion, passive: DrivenPair, k: int) -> Number:
     """Return the rotation of a passive link relative to the link that carries it."""
     gap = motion.pairs[passive.pair.name].coordinate.derivative(k)
-    return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
+    return np.abs(wrapped(gap) if k == 0 else gap) * motion.sizes
 
 
 def _largest(values: list[Number]) -> Number:
@@ -141,10 +142,11 @@ def _largest(values: list[Number]) -> Number:
 
 def _scale(motion: Motion, k: int, counted: Number) -> Number:
     """Return the size, or the fastest link's k-th derivative, at each pose."""
-    size = motion.size
+    size = motion.sizes
     if k == 0:
         places = (np.abs(np.broadcast_to(pose.z.c[0], counted.shape)) for pose in motion.poses.values())
-        return size + max((float(np.max(place, where=counted, initial=0.0)) for place in places), default=0.0)
+        far = [_greatest(place, counted, size) for place in places]
+        return size + reduce(np.maximum, far, 0.0)
     largest: Number = np.zeros(counted.shape)
     for pose in motion.poses.values():
         for j in range(1, k + 1):
@@ -152,8 +154,14 @@ def _scale(motion: Motion, k: int, counted: Number) -> Number:
             weight = factorial(k) * (np.abs(pose.u.derivative(j)) * size / factorial(j))
             largest = np.maximum(largest, np.maximum(weight, np.abs(pose.z.derivative(j)) if j == k else 0.0))
             largest = np.maximum(largest, size * np.abs(pose.u.derivative(1)) ** k)
-    fastest = float(np.max(largest, where=counted, initial=0.0))
-    return np.maximum(largest, SLOWEST * fastest) if fastest > 0 else np.ones(counted.shape)
+    fastest = _greatest(largest, counted, size)
+    return np.where(fastest > 0.0, np.maximum(largest, SLOWEST * fastest), 1.0)
+
+
+def _greatest(values: Number, counted: Number, size: Number) -> Number:
+    """Return the greatest value that counts, of each design where their sizes differ."""
+    axis = 1 if np.ndim(size) else None
+    return np.max(values, where=counted, initial=0.0, axis=axis, keepdims=axis is not None)
 
 
 def centre_findings(motion: Motion) -> Iterator[Finding]:

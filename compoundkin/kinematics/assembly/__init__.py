@@ -69,7 +69,8 @@ def all_configurations(geometry: GroupGeometry) -> Configurations:
     x, real = np.take_along_axis(x, order[..., None], axis=1), np.take_along_axis(real, order, axis=1)
     turns, origins = loops.bodies(x)
     batch = batch_loops.batch
-    turns, origins = (v.reshape(*batch, *v.shape[1:]) for v in (turns, geometry.size * origins))
+    turns, origins = (v.reshape(*batch, *v.shape[1:]) for v in (turns, origins))
+    origins = geometry.unit * origins
     count = np.isfinite(x).all(axis=-1).sum(axis=-1).reshape(batch)[()]
     return Configurations(
         {body: Pose.of(origins[..., body], turns[..., body]) for body in range(geometry.n)},

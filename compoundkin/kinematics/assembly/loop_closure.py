@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
 from compoundkin.kinematics.assembly.rotation_equations import BodyRotations, RotationEquations, isotropic
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, size_in
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_turn_counting
 from compoundkin.structure.mobility_count import Group
@@ -29,7 +29,7 @@ def rotation_equations_of(geometry: GroupGeometry) -> RotationEquations:
     (array([-4.+0.j]), [(3+0j), (2+0j)])
     """
     found = geometry.connections
-    points = [np.stack(np.broadcast_arrays(*map(isotropic, c.points)), axis=-2) / geometry.size for c in found]
+    points = [np.stack(np.broadcast_arrays(*map(isotropic, c.points)), axis=-2) / geometry.unit for c in found]
     ones = isotropic(np.ones(2))
     directions = [
         ones if c.directions is None else np.stack(np.broadcast_arrays(*map(isotropic, c.directions)), axis=-2)
@@ -173,7 +173,7 @@ class Connection:
 class GroupGeometry:
     """Bodies 0 to `n` - 1 with the `connections` that fix them all.
 
-    There are exactly as many as needed; `size` is a typical length.
+    There are exactly as many as needed; `size` is a typical length, perhaps of each pose.
 
     Raises `InvalidInput` where the number of connections does not fit.
 
@@ -185,7 +185,7 @@ class GroupGeometry:
 
     n: int
     connections: tuple[Connection, ...]
-    size: float = 1.0
+    size: Number = 1.0
 
     def __post_init__(self) -> None:
         if 2 * len(self.connections) != 3 * self.n:
@@ -196,6 +196,11 @@ class GroupGeometry:
     def loops(self) -> int:
         """The number of independent loops."""
         return len(self.connections) - self.n
+
+    @property
+    def unit(self) -> Number:
+        """The size, at each pose of an array with two more axes."""
+        return np.reshape(self.size, (*np.shape(self.size), 1, 1))
 
     def pins(self) -> tuple[tuple[int, int], ...]:
         """Number the points of connections on each body, both sides: coinciding points have one."""
@@ -285,7 +290,7 @@ def from_group(group: Group, block: Block, size: float) -> GroupGeometry:
     """
     where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
     connections = tuple(_connection(pair, where, block) for pair in (*group.inner, *group.outer))
-    return GroupGeometry(len(group.bodies), connections, size)
+    return GroupGeometry(len(group.bodies), connections, size_in(block.ends, size))
 
 
 def _connection(pair: Pair, where: dict[str, int], block: Block) -> Connection:

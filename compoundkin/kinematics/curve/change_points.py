@@ -22,6 +22,7 @@ from compoundkin.kinematics.block import (
     recorded_root,
     root_of_square,
     signed_root,
+    size_in,
 )
 from compoundkin.kinematics.curve.configuration_curve import (
     ConfigurationCurve,
@@ -180,7 +181,7 @@ class _BesideChangePoints:
         passes &= np.abs(roots @ MIDDLE) < IN_COMMON * np.abs(roots @ SLOPE)
         line = trial.meetings.get(k)
         if line is not None:
-            lines, middle = _beside(line.c[0] / curve.solving_order.size, len(self.places))
+            lines, middle = _beside(line.c[0] / size_in(trial.ends, curve.solving_order.size), len(self.places))
             opposite = (lines[:, 2] * lines[:, 3].conj()).real < 0.0
             passes |= (np.abs(middle) < INTERPOLATED / self.share) & opposite
             moved = np.fmin(moved, np.abs(lines[:, 0]))
@@ -218,7 +219,9 @@ def _some_slopes(curve: ConfigurationCurve, k: int, designs: Number, places: Num
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
     spots = (places + SAME * sense)[:, None] if groups else places[:, None], designs[:, None]
     for name in curve.path.moving:
-        rates = {n: (v[0], curve.solving_order.unit(n) if n == name else 0.0) for n, v in part.drives.items()}
+        rates = {
+            n: (v[0], curve.solving_order.unit_in(part.ends, n) if n == name else 0.0) for n, v in part.drives.items()
+        }
         along = part.driven(rates)
         roots, _ = roots_along(curve, along, spots, groups, onward)
         found.append(squares(curve, along, spots, k, roots, 2 + (EXTRA if roots else 0)))
@@ -459,7 +462,7 @@ def squares(
         return [np.broadcast_to(np.reshape(x, (-1,)) if np.ndim(x) else x, (len(places),)) for x in padded]
 
     line = block.meetings.get(k)
-    size = curve.solving_order.size
+    size = size_in(part.ends, curve.solving_order.size)
     meeting = None if line is None else column(tuple(c / size**2 for c in line.abs2().c))
     return Squares(column(notes[0].c), meeting)
 
@@ -489,7 +492,7 @@ def roots_along(
 
 def _side(curve: ConfigurationCurve, part: Inputs, spots: Spots, k: int, onward: Number) -> Number:
     """Return +1 where, from a change point, a group's root changes in one sense by a part's speeds and by steps."""
-    units = [curve.solving_order.unit(name) for name in part.drives]
+    units = [curve.solving_order.unit_in(part.ends, name) for name in part.drives]
     columns = [
         np.broadcast_to(v[1] / unit, (len(onward), 1)) for v, unit in zip(part.drives.values(), units, strict=True)
     ]
@@ -607,10 +610,11 @@ class StraightPath(NamedTuple):
 
 def straight_path(curve: ConfigurationCurve, part: Inputs, onward: Number) -> StraightPath:
     """Return how drivers go on: by their first rate, else by steps `onward`."""
-    units = np.array([curve.solving_order.unit(name) for name in part.drives])
+    units = [curve.solving_order.unit_in(part.ends, name) for name in part.drives]
+    units = np.concatenate([np.broadcast_to(unit, (len(onward), 1)) for unit in units], axis=-1)
     padded = ((*vs, *[0.0] * (HIGHEST_ORDER + 1 - len(vs))) for vs in part.drives.values())
     columns = [np.stack([np.broadcast_to(v, (len(onward), 1))[:, 0] for v in vs], axis=-1) for vs in padded]
-    moves = np.stack(columns, axis=1)[..., 1:] / units[:, None]
+    moves = np.stack(columns, axis=1)[..., 1:] / units[..., None]
     ahead = onward
     for way in (moves[..., k] for k in reversed(range(moves.shape[-1]))):
         ahead = np.where(np.any(way != 0.0, axis=-1, keepdims=True), way, ahead)
@@ -620,7 +624,7 @@ def straight_path(curve: ConfigurationCurve, part: Inputs, onward: Number) -> St
     in_time = aside & np.any(moves[..., 0] != 0.0, axis=-1)
     terms = np.zeros_like(moves)
     terms[..., 0] = ahead
-    terms = np.where(in_time[:, None, None], moves, terms) * units[:, None]
+    terms = np.where(in_time[:, None, None], moves, terms) * units[..., None]
     gone = np.where(in_time[:, None], np.eye(moves.shape[-1])[0], gone)
     drives = {name: (v[0], *(terms[:, i, k, None] for k in range(terms.shape[-1])))
               for i, (name, v) in enumerate(part.drives.items())}  # fmt: skip
@@ -683,5 +687,5 @@ def _pace(followed: FollowedPoses, part: Inputs) -> Number:
     """Return how many places a second the fastest driver goes."""
     found: Number = 0.0
     for name, (_, speed, *_) in part.drives.items():
-        found = np.fmax(found, np.abs(speed) / (followed.solving_order.unit(name) * SPACING))
+        found = np.fmax(found, np.abs(speed) / (followed.solving_order.unit_in(part.ends, name) * SPACING))
     return found

@@ -19,7 +19,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
-from compoundkin.kinematics.block import NEAREST, Block, Root
+from compoundkin.kinematics.block import NEAREST, Block, Root, size_in
 from compoundkin.kinematics.configuration import ONLY
 from compoundkin.kinematics.curve.driver_path import (
     CLOSE,
@@ -164,7 +164,7 @@ class ConfigurationCurve(ShortRepr):
         values = self.driver_values(designs, places[designs, which]) if k in self.branches else None
         for value in self.branches.get(k, ()):
             assert values is not None
-            found[designs, which] |= np.abs(self._driver_gap(values - value)) < AT_BRANCH
+            found[designs, which] |= np.abs(self._driver_gap(values - value, designs)) < AT_BRANCH
         return found
 
     def driver_values(self, designs: Number, places: Number) -> Number:
@@ -174,11 +174,12 @@ class ConfigurationCurve(ShortRepr):
             raise InvalidInput(Problem("branch", "change points are named by the value of the only driver that moves"))
         return np.broadcast_to(self.path.pick(designs, places).drives[moving[0]][0], (len(places), 1))[:, 0]
 
-    def _driver_gap(self, gap: Number) -> Number:
-        """Return differences of the moving driver's values, in places."""
+    def _driver_gap(self, gap: Number, designs: Number) -> Number:
+        """Return differences of the moving driver's values in designs, in places."""
         (name,) = self.path.moving
         gap = wrapped(gap) if self.path.wraps else gap
-        return gap / (self.solving_order.unit(name) * SPACING)
+        unit = np.broadcast_to(self.solving_order.unit_in(self.path.knots.ends, name), (self.path.designs, 1))
+        return gap / (unit[designs, 0] * SPACING)
 
     @property
     def change_points(self) -> Mapping[int, Number]:
@@ -194,7 +195,7 @@ class ConfigurationCurve(ShortRepr):
             )
             designs, which = np.nonzero(np.isfinite(every))
             values = self.driver_values(designs, every[designs, which])
-            missing = [v for v in asked if not np.any(np.abs(self._driver_gap(values - v)) < AT_BRANCH)]
+            missing = [v for v in asked if not np.any(np.abs(self._driver_gap(values - v, designs)) < AT_BRANCH)]
             if missing:
                 found[k] = missing[0], tuple(np.unique(values.round(12)).tolist())
         return found
@@ -596,7 +597,7 @@ class _ContactCoordinate:
         return self._of(self.curve.run(part, 0, *spots, self.solver.index + 1))[:, 0]
 
     def _of(self, block: Block) -> Number:
-        scale = 1.0 if self.solver.is_angular else self.curve.solving_order.size
+        scale = 1.0 if self.solver.is_angular else size_in(block.ends, self.curve.solving_order.size)
         # later groups may have none
         good = np.broadcast_to((block.failed == 0) | (block.failed > self.solver.index + 1), block.shape)
         return np.where(good, np.broadcast_to(self.solver.state(block)[0] / scale, block.shape), np.nan)

@@ -158,7 +158,9 @@ def _by_place(change: Number, length: Number) -> Number:
 
 def _speeds(solving_order: SolvingOrder, part: Inputs, count: int) -> Number:
     """Return the drivers' speeds as pure numbers, (count, drivers)."""
-    columns = [np.broadcast_to(v[1] / solving_order.unit(name), (count, 1)) for name, v in part.drives.items()]
+    columns = [
+        np.broadcast_to(v[1] / solving_order.unit_in(part.ends, name), (count, 1)) for name, v in part.drives.items()
+    ]
     return np.concatenate(columns, axis=-1)
 
 
@@ -238,7 +240,7 @@ def _of_one_driver(solving_order: SolvingOrder, given: Inputs, name: str, drawn:
     home = value[:, :1] if drawn is None else drawn + np.zeros_like(low)
     if drawn is not None and is_angle:
         home = home + _turns_into(home, low, high)
-    unit = SPACING * solving_order.unit(name) * np.where(_falls(value), -1.0, 1.0)[:, None]
+    unit = SPACING * solving_order.unit_in(given.ends, name) * np.where(_falls(value), -1.0, 1.0)[:, None]
     away = (value - home) / unit
     one, two = (low - home) / unit, (high - home) / unit
     begin, end = np.minimum(np.minimum(one, two), 0.0), np.maximum(np.maximum(one, two), 0.0)
@@ -292,9 +294,8 @@ def _line(
     """Return the path of several drivers whose values lie on a line. None where they do not, or all rest."""
     if not moving:
         return None
-    units = np.array([solving_order.unit(name) for name in moving])
-    columns = np.broadcast_arrays(*(given.drives[name][0] for name in moving))
-    value = np.stack(columns, axis=-1) / units
+    columns = (given.drives[name][0] / solving_order.unit_in(given.ends, name) for name in moving)
+    value = np.stack(np.broadcast_arrays(*columns), axis=-1)
     way = value - value[:, :1]
     farthest = np.argmax(np.sum(way**2, axis=-1), axis=1)
     along = way[np.arange(len(way)), farthest][:, None]
@@ -338,7 +339,7 @@ def _polyline(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, N
     steps = np.zeros(max(given.poses - 1, 0))
     for name, (value, *_) in given.drives.items():
         if np.ndim(value) > 1 and value.shape[1] > 1:
-            far = np.max(np.abs(np.diff(value, axis=1)), axis=0) / (solving_order.unit(name) * SPACING)
+            far = np.max(np.abs(np.diff(value, axis=1)) / (solving_order.unit_in(given.ends, name) * SPACING), axis=0)
             steps = np.maximum(steps, far if solving_order.structure.driven_angles[name] else np.minimum(far, MOST))
     if not given.is_rigid:
         steps = np.maximum(steps, APART)
@@ -367,7 +368,7 @@ def _with_stem(
         is_angle = solving_order.structure.driven_angles[name]
         way = way - whole_turns(way) if is_angle else way
         drawn[name] = foot.drives[name][0] - way
-        far = float(np.max(np.abs(way))) / (solving_order.unit(name) * SPACING)
+        far = float(np.max(np.abs(way) / (solving_order.unit_in(foot.ends, name) * SPACING)))
         length = max(length, far if is_angle else min(far, MOST))
     if length <= CLOSE:
         return path, poses
@@ -436,7 +437,7 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Nu
         return 0.0
     # from each pose to the next the drivers go straight on: the foot of the perpendicular to that line
     here = [_off(solving_order, given, name, value)[:, :-1] for name, value in values.items()]
-    steps = [_step(given.drives[name][0]) / solving_order.unit(name) for name in values]
+    steps = [_step(given.drives[name][0]) / solving_order.unit_in(given.ends, name) for name in values]
     square = sum((step**2).sum(axis=0) for step in steps)
     back = sum((step * off).sum(axis=0) for step, off in zip(steps, here, strict=True))
     share = np.divide(-back, square, out=np.zeros(given.poses - 1), where=square > 0.0)
@@ -460,7 +461,7 @@ def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number, t
     off = given.drives[name][0] - value
     if solving_order.structure.driven_angles[name] and not turns:
         off = off - whole_turns(off)
-    off = np.atleast_2d(off / solving_order.unit(name))
+    off = np.atleast_2d(off / solving_order.unit_in(given.ends, name))
     return off if off.shape[1] == given.poses else np.broadcast_to(off, (len(off), given.poses))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.block import Block, poses_at
+from compoundkin.kinematics.block import Block, poses_at, size_in
 from compoundkin.kinematics.curve.driver_path import CLOSE, DriverPath, as_column, first_of
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
@@ -220,7 +220,13 @@ def _march(onward: KnownSurroundings, toward: KnownSurroundings, k: int, state: 
     curve = onward.curve
     equations = equations_of(curve.solving_order.solvers[k])
     return GroupMarch(
-        equations, partial(onward.around, k), partial(toward.around, k), curve.path.places, LONGEST, state
+        equations,
+        partial(onward.around, k),
+        partial(toward.around, k),
+        curve.path.places,
+        LONGEST,
+        state,
+        equations.weights_in(curve.path.knots.ends),
     )
 
 
@@ -288,6 +294,7 @@ class GroupMarch:
 
     `onward(designs, s)` is what surrounds the group of some designs, each at its own place, with `TERMS` derivatives by
     s on the way from there, `toward` that on the way to it: they differ at `knots`. No step is longer than `longest`.
+    The `weights` of each design make changes of its state pure numbers.
     """
 
     def __init__(
@@ -298,12 +305,14 @@ class GroupMarch:
         knots: Number,
         longest: float,
         state: Number,
+        weights: Number,
     ) -> None:
         self.equations, self.onward, self.toward, self.knots, self.longest = equations, onward, toward, knots, longest
         self.state, self.origin = np.array(state), state
         self.alive = np.isfinite(state).all(axis=(1, 2))
         # which numbers of a state are lengths
         self.lengths = np.arange(equations.width) % 3 < 2
+        self.weights = np.broadcast_to(weights, state.shape)
         self.rates = [np.full(state.shape, np.nan) for _ in range(TERMS)]
         self.side = np.full(state.shape[:2], np.nan)
         # how many sizes the farthest body of each design is from where it started, at least one
@@ -359,13 +368,13 @@ class GroupMarch:
         self.here[i], self.reached[i], self.state[i], self.side[i] = place, place, state, side
         for known, rate in zip(self.rates, rates, strict=True):
             known[i] = rate
-        moved = np.abs((state - self.origin[i]) * self.equations.weights * self.lengths)
+        moved = np.abs((state - self.origin[i]) * self.weights[i] * self.lengths)
         self.spread[i] = np.fmax(moved.max(axis=(1, 2)), 1.0)
         self.nodes.append(Node(i, place, state[:, 0], rates[0][:, 0]))
 
     def _weights(self, i: Number) -> Number:
         """Return the weights of changes of the state: parts of the size, or of how far a body has gone, and radians."""
-        return np.where(self.lengths, self.equations.weights / self.spread[i][:, None, None], self.equations.weights)
+        return np.where(self.lengths, self.weights[i] / self.spread[i][:, None, None], self.weights[i])
 
     def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
         """Return the state's coefficients by s, and on which side of a singularity the configuration is."""
@@ -656,7 +665,7 @@ class ClosedStates:
         held, middles = self._held(), self.equations.middles
         for number in range(STARTS):
             # far guides lead beyond the places where the group is attached
-            wide = reach if number % 2 else np.maximum(reach, self.equations.size)
+            wide = reach if number % 2 else np.maximum(reach, size_in(self.block.ends, self.equations.size))
             bodies = []
             for guess, pin, middle in zip(self.guesses, held, middles, strict=True):
                 spot = centre + complex(*rng.standard_normal(2)) * wide / 2.0

@@ -11,9 +11,9 @@ import numpy as np
 from compoundkin.base.arguments import real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
-from compoundkin.base.poses import Pose
-from compoundkin.base.series import Series, as_series
-from compoundkin.kinematics.block import Block
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series, as_series, constant
+from compoundkin.kinematics.block import Block, size_in
 from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
 from compoundkin.kinematics.curve.driver_path import DriverPath, first_of
 from compoundkin.kinematics.curve.group_paths import COMPARED, ClosedStates, Followed, every_state
@@ -179,11 +179,30 @@ def stated_by(
         return StatedModes("configuration", modes.points, modes.poses, modes.points)
     if hinted:
         return StatedModes("hint", hinted, {}, {})
-    points = {**(relaxation.places if relaxation else {}), **mechanism.sketch}
+    places, placed = _relaxed(solving_order)
+    points = {**places, **mechanism.sketch}
     if isinstance(modes, str):
         return StatedModes("drawing", points, {}, {})
-    poses = relaxation.poses if relaxation and not mechanism.sketch else mechanism.drawn_poses
+    poses = placed if relaxation and not mechanism.sketch else mechanism.drawn_poses
     return StatedModes("drawing", points, poses, mechanism.geometry.sketch)
+
+
+def _relaxed(solving_order: SolvingOrder) -> tuple[Mapping[str, Number], Mapping[str, Pose]]:
+    """Return where what is redundant in an overconstrained mechanism was found: places of points, poses of links.
+
+    They are those of the first design. Of designs of other sizes only a drawing shows where their points are, or else
+    the first design, as large as they are.
+    """
+    relaxation, geometry = solving_order.structure.relaxation, solving_order.structure.mechanism.geometry
+    sizes = geometry.sizes
+    if relaxation is None or (np.ndim(sizes) and solving_order.structure.mechanism.sketch):
+        return {}, {}
+    if not np.ndim(sizes):
+        return relaxation.places, relaxation.poses
+    ratio = sizes / sizes.flat[0]
+    poses = {name: pose if pose is FIXED else Pose(constant(pose.z.c[0] * ratio), pose.u, pose.theta)
+             for name, pose in relaxation.poses.items()}  # fmt: skip
+    return {letter: place * ratio for letter, place in relaxation.places.items()}, poses
 
 
 def read_hint(solving_order: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:
@@ -273,7 +292,7 @@ def _ahead(curve: AtHome, k: int, order: int) -> Block:
         curve.signs[k] = 1
         margin = curve.run(first, 0, *at, upto=k + 1).margins[k]
         sense = {name: np.where(margin < FLAT, one, 1.0) for name, one in sense.items()}
-    rates = {name: curve.solving_order.unit(name) * sense[name] for name in first.drives}
+    rates = {name: curve.solving_order.unit_in(first.ends, name) * sense[name] for name in first.drives}
     part = first.driven({name: (v[0], rates[name]) for name, v in first.drives.items()})
     return curve.run(part, order, *at, upto=k)
 
@@ -380,7 +399,7 @@ def distance(solving_order: SolvingOrder, letters: Letters, shown: StatedModes, 
     for link in links:
         if links.count(link) == 1:
             gap = block.world[link].u.c[0] - first_of(shown.poses[link].u.c[0])
-            total = total + TURNED * (solving_order.size * np.abs(gap)) ** 2
+            total = total + TURNED * (size_in(block.ends, solving_order.size) * np.abs(gap)) ** 2
     return total
 
 
@@ -399,7 +418,7 @@ def nearest_sign(
         cost.append(
             residual(closing, trial, solving_order.size) if closing else distance(solving_order, letters, shown, trial)
         )
-    rounding = 0.0 if closing else TIED[1] * solving_order.size**2
+    rounding = 0.0 if closing else TIED[1] * size_in(block.ends, solving_order.size) ** 2
     tied = np.abs(cost[1] - cost[0]) <= TIED[0] * np.maximum(*cost) + rounding
     best = np.where(cost[1] < cost[0], -1.0, 1.0)
     if np.any(tied) and not closing:
@@ -441,7 +460,7 @@ def shows_inner(solving_order: SolvingOrder, solver: GroupSolver, block: Block, 
         trial = block.copy()
         solver.close(trial, sign)
         outer = np.fmin(outer, np.sqrt(distance(solving_order, letters, shown, trial)))
-    nearer = NEARER * solving_order.size
+    nearer = NEARER * size_in(block.ends, solving_order.size)
     if np.all(outer < nearer):
         return False
     inner = np.sqrt(_nearest_state(solving_order, followed, block, shown)[1])

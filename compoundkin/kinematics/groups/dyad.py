@@ -12,7 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.kinematics.block import Block, Root, clipped_root
+from compoundkin.kinematics.block import Block, Root, clipped_root, size_in
 from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.dyad_loci import Loci, place_of
 from compoundkin.kinematics.groups.contract import GroupSolver
@@ -143,7 +143,7 @@ class DyadSolver(GroupSolver):
         poses, margin, meeting = self.assemble(*self.arguments(block), mode, block.root(self.index))
         if meeting is not None:
             block.meetings[self.index] = meeting
-            margin = np.fmin(margin, np.sqrt(meeting.abs2().c[0]) / self.size - COINCIDENT)
+            margin = np.fmin(margin, np.sqrt(meeting.abs2().c[0]) / size_in(block.ends, self.size) - COINCIDENT)
         block.margins[self.index] = margin
         block.fail(margin >= 0, self.index)
         for body, pose in zip(self.bodies, poses, strict=True):
@@ -174,7 +174,8 @@ class DyadSolver(GroupSolver):
         modes = [self.assemble(*asked, sign).poses for sign in signs]
         k = 0 if self.bodies[0] in self.group.bodies else 1
         own = block.world[self.bodies[k].links[0]]
-        modes.sort(key=lambda poses: abs(place_of(poses[k].z - own.z)) / self.size + abs(place_of(poses[k].u - own.u)))
+        size = float(np.max(size_in(block.ends, self.size)))
+        modes.sort(key=lambda poses: abs(place_of(poses[k].z - own.z)) / size + abs(place_of(poses[k].u - own.u)))
         found = [self.loci(AssembledDyad(*asked, poses, self.letters)) for poses in modes]
         return tuple(loci for loci in found if loci is not None)
 

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.linear import Inverse
 from compoundkin.base.series import Series, constant
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, size_in
 from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, alone
@@ -46,8 +46,7 @@ class GearTrainSolver(GroupSolver):
         highers: tuple[Pair, ...],
     ) -> None:
         super().__init__(index, group)
-        # of several bodies all coordinates are angles
-        self.flat = FLAT * constraint_scales(highers[0], size)[0] / (1.0 if lowers[0][0].free_is_angle else size)
+        self.size = size
         self.mounted = tuple(MountedBody(pair, highers[0], body) for pair, body in lowers)
         self.highers = highers
         self.counted_from = tuple(mounted.side.other for mounted in self.mounted)
@@ -90,7 +89,7 @@ class GearTrainSolver(GroupSolver):
         lead = self._closures(block.leading(self.links), [UNIT])[0].c[1]
         rates = (self._closures(block.copy(), [constant(1.0)])[0] - start[0]).c[1:]
         slope = Series((lead, *rates) if any(np.any(rate != 0.0) for rate in rates) else (lead,))
-        free = np.abs(lead) <= self.flat
+        free = np.abs(lead) <= self._flat(block)
         if np.any(free):
             slope = Series((np.where(free, np.nan, lead), *slope.c[1:]))
             block.fail(~free, self.index)
@@ -103,13 +102,20 @@ class GearTrainSolver(GroupSolver):
         slopes = [[_second(c) for c in self._closures(block.leading(self.links), unit)] for unit in units]
         # the closures are rows, the coordinates columns
         inverse = Inverse([dict(enumerate(row)) for row in zip(*slopes, strict=True)], len(rest))
-        good = inverse.largest < 1.0 / self.flat
+        good = inverse.largest < 1.0 / self._flat(block)
         block.fail(good, self.index)
         solved = []
         for k in range(max(len(c.c) for c in start)):
             found = inverse.times([c.c[k] if len(c.c) > k else 0.0 for c in start])
             solved.append([np.where(good, -value, np.nan)[()] for value in found])
         return [Series(coefficients) for coefficients in zip(*solved, strict=True)]
+
+    def _flat(self, block: Block) -> Number:
+        """Return the slope below which a closure does not determine a coordinate; of several bodies all are angles."""
+        size = size_in(block.ends, self.size)
+        return (
+            FLAT * constraint_scales(self.highers[0], size)[0] / (1.0 if self.mounted[0].lower.free_is_angle else size)
+        )
 
     def _closures(self, block: Block, coordinates: list[Series]) -> list[Series]:
         self._place(block, coordinates)

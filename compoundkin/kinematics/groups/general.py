@@ -13,7 +13,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, size_in
 from compoundkin.kinematics.configuration import Configurations, state_distance
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.force_transmission import PassedForce, forces_of, worst_transmission
@@ -119,7 +119,7 @@ class GeneralSolver(GroupSolver):
 
     def _searched(self, block: Block) -> Configurations:
         """Return what Newton finds from random states around the places where the group is attached."""
-        n, size = len(self.equations.kept), self.equations.size
+        n, size = len(self.equations.kept), size_in(block.ends, self.equations.size)
         rng = np.random.default_rng(self.equations.n)
         centre, reach = surroundings(self.equations, block)
         shape = block.extent(self.group.uses)
@@ -174,10 +174,11 @@ def known_configurations(group: Group, block: Block, size: float, most: int = MO
         return None
 
 
-def _once(states: Number, size: float) -> Number:
+def _once(states: Number, size: Number) -> Number:
     """Return each state once, in the order of the angles of the bodies; padded with NaN."""
     shape = states.shape[:-2]
-    lists = [_distinct(found, size) for found in states.reshape(-1, *states.shape[-2:])]
+    sizes = np.broadcast_to(size, shape).ravel()
+    lists = [_distinct(found, own) for found, own in zip(states.reshape(-1, *states.shape[-2:]), sizes, strict=True)]
     most = max((len(found) for found in lists), default=0)
     out = np.full((len(lists), most, states.shape[-1]), np.nan)
     for row, found in zip(out, lists, strict=True):

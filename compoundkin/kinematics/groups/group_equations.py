@@ -14,7 +14,7 @@ from compoundkin.base.linear import Elimination, Inverse, Row, stacked
 from compoundkin.base.newton import ChordStop, chord_newton, elementwise_largest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, as_series, constant
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, size_in
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, Poses, constraint_scales
 from compoundkin.structure.mobility_count import Body, Group
@@ -68,12 +68,21 @@ class GroupEquations:
         pins = {pin.number for bar in self.bars for pin in bar.pins}
         self.others = tuple(k for k in range(len(pairs)) if k not in pins)
         # what makes a change of the state a pure number: parts of the size, radians
-        self.weights = np.tile([1.0 / size, 1.0 / size, 1.0], len(self.kept))
+        self.weights = self._weights(size)
 
     @property
     def width(self) -> int:
         """How many numbers a state has."""
         return 3 * len(self.kept)
+
+    def weights_in(self, ends: Mapping[str, Ends]) -> Number:
+        """Return the weights of each design, (..., width)."""
+        size = size_in(ends, self.size)
+        return self.weights if size is self.size else self._weights(size)
+
+    def _weights(self, size: Number) -> Number:
+        part = np.ones(np.shape(size)) / size
+        return np.moveaxis(np.array([part, part, np.ones_like(part)] * len(self.kept)), 0, -1)
 
     def state(self, bodies: list[Pose]) -> Number:
         """Return the state of all bodies' poses, at their leading coefficients."""
@@ -86,7 +95,7 @@ class GroupEquations:
 
         No single correction is longer than `longest` (of the size, or radians).
         """
-        leading, weights = block.leading(), self.weights
+        leading, weights = block.leading(), np.moveaxis(self.weights_in(block.ends), -1, 0)
         start = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
         bodies: dict[int, Pose] = {}
 
@@ -95,7 +104,7 @@ class GroupEquations:
             bodies = here = self.kept_poses(values)
             return self.residual(here, leading, 0), lambda: Inverse(self._rows(here, leading), self.width)
 
-        stop = ChordStop(CONVERGED, CLOSED * self.size, CHORD, steps, longest)
+        stop = ChordStop(CONVERGED, CLOSED * size_in(block.ends, self.size), CHORD, steps, longest)
         found, closed = chord_newton(system, start, weights, stop)
         closed = closed & self._properly_assembled(bodies, leading)
         moved = elementwise_largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
@@ -165,7 +174,9 @@ class GroupEquations:
         for number in self.others:
             pair = self.pairs[number]
             closure = pair.closure(block.ends[pair.name], self._links(number, bodies, block, k))
-            found += [c.c[k] * w if len(c.c) > k else 0.0 for c, w in zip(closure, self._lengths(pair), strict=True)]
+            found += [
+                c.c[k] * w if len(c.c) > k else 0.0 for c, w in zip(closure, self._lengths(pair, block), strict=True)
+            ]
         return found
 
     def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
@@ -182,7 +193,7 @@ class GroupEquations:
         pair = self.pairs[number]
         poses = self._links(number, bodies, block, 0)
         table = pair.jacobian(block.ends[pair.name], poses)
-        for r, length in enumerate(self._lengths(pair)):
+        for r, length in enumerate(self._lengths(pair, block)):
             row: Row = {}
             for side, member in enumerate(self.members[number]):
                 if member.body is not None:
@@ -193,9 +204,10 @@ class GroupEquations:
                     add(row, start, (x, y, theta + y * arm.real - x * arm.imag))
             yield row
 
-    def _lengths(self, pair: Pair) -> Iterator[float]:
+    def _lengths(self, pair: Pair, block: Block) -> Iterator[Number]:
         """Yield by what a pair's equations are multiplied, so that all are lengths and close alike in any unit."""
-        return (self.size / scale for scale in constraint_scales(pair, self.size))
+        size = size_in(block.ends, self.size)
+        return (size / scale for scale in constraint_scales(pair, size))
 
     def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
         """Return the poses of a pair's members, to order k at most."""
@@ -435,7 +447,7 @@ def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Numbe
     reach = 0.0
     for span in (*spans, *(np.abs(place - centre) for place in attached)):
         reach = np.maximum(reach, span)
-    return centre, np.where(reach > 0.0, reach, equations.size)
+    return centre, np.where(reach > 0.0, reach, size_in(block.ends, equations.size))
 
 
 def middle_of(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:

@@ -491,7 +491,7 @@ def as_transmitting_pair(pair: Pair) -> TransmittingPair | None:
     return pair if isinstance(pair, TransmittingPair) else None
 
 
-def constraint_scales(pair: Pair, size: float) -> tuple[float, ...]:
+def constraint_scales(pair: Pair, size: Number) -> tuple[Number, ...]:
     """Return the scale of each held coordinate: 1 for angles, the size for lengths."""
     return tuple(1.0 if k in pair.held_angles else size for k in range(pair.held))
 
