@@ -610,8 +610,8 @@ class StraightPath(NamedTuple):
 
 def straight_path(curve: ConfigurationCurve, part: Inputs, onward: Number) -> StraightPath:
     """Return how drivers go on: by their first rate, else by steps `onward`."""
-    units = [curve.solving_order.unit_in(part.ends, name) for name in part.drives]
-    units = np.concatenate([np.broadcast_to(unit, (len(onward), 1)) for unit in units], axis=-1)
+    each = (curve.solving_order.unit_in(part.ends, name) for name in part.drives)
+    units = np.concatenate([np.broadcast_to(unit, (len(onward), 1)) for unit in each], axis=-1)
     padded = ((*vs, *[0.0] * (HIGHEST_ORDER + 1 - len(vs))) for vs in part.drives.values())
     columns = [np.stack([np.broadcast_to(v, (len(onward), 1))[:, 0] for v in vs], axis=-1) for vs in padded]
     moves = np.stack(columns, axis=1)[..., 1:] / units[..., None]

@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, size_in
 from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.force_transmission import contact_transmission
@@ -81,7 +81,7 @@ class FollowerSolver(GroupSolver):
         at_zero, freedom = self.mounted.poses(leading, constant(0.0)), self.mounted.freedom(leading)
         other, one = self.pair.contact_candidates(ends, at_zero, self.own, freedom)
         start = np.where(mode > 0, one, other)
-        found, closed, slope = self._polished(ends, lambda q: self.mounted.poses(leading, q), start)
+        found, closed, slope = self._polished(block, lambda q: self.mounted.poses(leading, q), start)
         block.fail(closed, self.index)
         self._published(block, found, slope)
 
@@ -113,25 +113,27 @@ class FollowerSolver(GroupSolver):
         # no turns are counted: the angle found may leap by one between poses
         block.publish(self.group.bodies[0], Pose(pose.z, pose.u))
 
-    def _polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
+    def _polished(self, block: Block, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
         """Return the coordinate, where it closes the contact, and the slope of the contact's distance there."""
         # one unknown: a division makes a step, for which the matrices of the workbench would be slow
+        ends, closes = block.ends[self.pair.name], CLOSED * size_in(block.ends, self.size)
         coordinate, before = start, np.inf
         for k in range(HALVINGS):
             gap, slope = self._gap(ends, placing, coordinate)
             coordinate = coordinate - gap / slope
             size = np.abs(gap)
-            nearing = (size > CLOSED * self.size) & ((size < 0.5 * before) | (k < APPROACH))
+            nearing = (size > closes) & ((size < 0.5 * before) | (k < APPROACH))
             if not np.any(nearing):
                 break
             before = size
-        return self._checked(ends, placing, coordinate)
+        return self._checked(block, placing, coordinate)
 
-    def _checked(self, ends: Ends, placing: Placing, coordinate: Number) -> tuple[Number, Number, Number]:
+    def _checked(self, block: Block, placing: Placing, coordinate: Number) -> tuple[Number, Number, Number]:
         """Return a coordinate, NaN where it does not close; whether it does; and the slope there."""
+        ends = block.ends[self.pair.name]
         gap, slope = self._gap(ends, placing, coordinate)
         assembled = self.pair.is_properly_assembled(ends, placing(Series((coordinate,))))
-        closed = (np.abs(gap) <= CLOSED * self.size) & assembled
+        closed = (np.abs(gap) <= CLOSED * size_in(block.ends, self.size)) & assembled
         return np.where(closed, coordinate, np.nan), closed, slope
 
     def _series(self, block: Block, ends: Ends, coordinate: Number, slope: Number) -> Series:
@@ -180,6 +182,6 @@ class FollowerFromState(FollowerSolver):
             return self.mounted.poses(leading, coordinate)
 
         gap, slope = self._gap(ends, placing, mode[0])
-        found, closed, slope = self._checked(ends, placing, mode[0] - gap / slope)
+        found, closed, slope = self._checked(block, placing, mode[0] - gap / slope)
         block.fail(closed, self.index)
         self._published(block, found, slope)
