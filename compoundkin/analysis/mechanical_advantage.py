@@ -21,6 +21,7 @@ from compoundkin.kinematics.derived.velocity_ratio import (
     no_turning,
     rate_of,
     rate_of_link,
+    sizes_of,
 )
 from compoundkin.model.geometry import FRAME
 
@@ -85,7 +86,7 @@ def _rate(motion: Motion, port: Port, where: str) -> PortRate:
     if isinstance(port, TorquePort):
         return PortRate(np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale)
     velocity = np.asarray(relative_point(motion, port.link, port.point, port.on).velocity)
-    return PortRate(dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * motion.size)
+    return PortRate(dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * sizes_of(motion))
 
 
 def _named(motion: Motion, name: str, where: str) -> PortRate:

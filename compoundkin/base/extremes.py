@@ -314,13 +314,16 @@ def best_of(offers: Sequence[Offers], largest: Number, squared: Number) -> tuple
     return best, place, vertex
 
 
-def crossings(f: ValuesAtPlaces, low: Number, high: Number, largest: float) -> Number:
-    """Return the parameters at which functions 0, 1 ... pass zero, between `low` and `high` (n,)."""
+def crossings(f: ValuesAtPlaces, low: Number, high: Number, largest: Number) -> Number:
+    """Return the parameters at which functions 0, 1 ... pass zero, between `low` and `high` (n,).
+
+    They are at most as large as `largest`, perhaps (n,).
+    """
     t: Number = 0.5 * (low + high)
-    which = np.arange(len(low))
+    which, largest = np.arange(len(low)), np.broadcast_to(largest, t.shape)
     for _ in range(NARROWINGS_TO_ZERO if len(which) else 0):
         windows, _ = f.windows(which, low, high)
-        good = windows.right(TRUSTED_AT_ZERO, np.asarray(largest)) & np.isfinite(windows.polynomials).all(axis=-1)
+        good = windows.right(TRUSTED_AT_ZERO, largest[which]) & np.isfinite(windows.polynomials).all(axis=-1)
         some = windows.some(good)
         t[which[good]] = some.at(some.roots())
         which = which[~good]

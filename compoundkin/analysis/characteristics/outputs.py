@@ -65,7 +65,7 @@ class Output:
             return self.names
         is_angle = self.kind == "links" or (self.kind != "points" and getattr(motion, self.kind)[self.owner].is_angle)
         dimension, is_length = coordinate_dimension(is_angle), not is_angle
-        scales = [(motion.size if is_length else 1.0) * driver_pace(motion) ** k for k in range(3)]
+        scales = [(motion.sizes if is_length else 1.0) * driver_pace(motion) ** k for k in range(3)]
         return tuple(
             Measure(name, unit_of(motion.mechanism.unit, dimension, k), k, partial(self._values, k=k),
                     self.is_point, scales[k], dimension)

@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.block import size_in
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.attributes import Dimension, Kind, coordinate_dimension, ratio_unit
 from compoundkin.model.geometry import FRAME
@@ -67,10 +68,16 @@ def balance(output: PortRate, input: PortRate, regular: Number) -> Advantage:
 
 def fastest(motion: HasQuantities) -> Number:
     """Return the rate of the fastest link or driver at each pose, in rad/s. What rounding is relative to."""
-    size = motion.solving_order.size
+    size = sizes_of(motion)
     rates = [np.abs(d.rate) / (1.0 if d.is_angle else size) for d in motion.drives.values()]
     rates += [np.abs(link.angular_velocity) for link in motion.links.values()]
     return reduce(np.maximum, rates, np.zeros(motion.grid.shape))
+
+
+def sizes_of(motion: HasQuantities) -> Number:
+    """Return the length scale at each pose, a number where all designs share it."""
+    sizes = size_in(motion.inputs.ends, motion.solving_order.size)
+    return motion.grid.shaped(sizes) if np.ndim(sizes) else sizes
 
 
 def ratio_of(motion: HasQuantities, kind: Kind, name: str) -> Advantage:
@@ -105,16 +112,16 @@ def _translates(motion: HasQuantities, name: str) -> bool:
     link, scale = motion.links[name], fastest(motion)
     turns = np.abs(link.angular_velocity) > UNTURNED * scale
     if motion.grid.order > 1:
-        drivers = (d.second if d.is_angle else d.second / motion.solving_order.size for d in motion.drives.values())
+        drivers = (d.second if d.is_angle else d.second / sizes_of(motion) for d in motion.drives.values())
         hardest = reduce(np.maximum, map(np.abs, drivers), scale**2)
         turns = turns | (np.abs(link.angular_acceleration) > UNTURNED * hardest)
-    moves = np.abs(link.origin.velocity) > SMALL * scale * motion.solving_order.size
+    moves = np.abs(link.origin.velocity) > SMALL * scale * sizes_of(motion)
     return bool(np.any(moves) and not np.any(turns))
 
 
 def rate_of(motion: HasQuantities, table: Mapping[str, Any], name: str) -> PortRate:
     """Return the rate of a pair or a driver. They are listed in a table of the motion."""
-    return PortRate(table[name].rate, fastest(motion) * (1.0 if table[name].is_angle else motion.solving_order.size))
+    return PortRate(table[name].rate, fastest(motion) * (1.0 if table[name].is_angle else sizes_of(motion)))
 
 
 def mover(motion: HasQuantities, where: str) -> str:

@@ -241,7 +241,7 @@ class ExtremeSearch(Course):
     @cached_property
     def _largest(self) -> Number:
         """How large values are, (quantities, groups)."""
-        scale = np.array([one.scale for one in self.measures])[:, None]
+        scale = np.array([one.scales(self.motion.inputs.designs)[self.designs] for one in self.measures])
         return np.maximum(self._by_group(np.fmax.reduce(self._known, axis=-1)), np.maximum(scale, 0.0))
 
     @property
@@ -302,9 +302,20 @@ class ExtremeSearch(Course):
 
     def _through_poles(self, offers: Offers) -> Number:
         """Return samples, infinite where they are so large that they pass through infinity."""
-        typical = [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.inf for row in self._known]
-        typical = np.fmax(typical, self._slack.max(axis=1))[offers.kind // (len(SIGNS) * len(self.designs))]
+        m, group = offers.kind // (len(SIGNS) * len(self.designs)), offers.kind % len(self.designs)
+        typical = self._typical[m, group]
         return np.where(np.abs(offers.value) > POLE * typical, np.sign(offers.value) * np.inf, offers.value)
+
+    @cached_property
+    def _typical(self) -> Number:
+        """How large values mostly are, (quantities, groups): of all designs, or of each where their sizes differ."""
+        if not np.ndim(self.motion.sizes):
+            found = [_median(row) for row in self._known]
+            return np.broadcast_to(np.fmax(found, self._slack.max(axis=1))[:, None], self._slack.shape)
+        in_order = np.argsort(self.stretches.design, kind="stable")
+        ends = np.searchsorted(self.stretches.design[in_order], [self.designs, self.designs + 1])
+        of_designs = [[_median(row[in_order[a:b]]) for a, b in ends.T] for row in self._known]
+        return np.fmax(of_designs, self._slack)
 
     def _without_limit(self) -> Iterator[Offers]:
         """Offer infinity where rates grow without limit next to a limit position, or a pole at a pose."""
@@ -321,6 +332,11 @@ class ExtremeSearch(Course):
         at = np.where(end == 1, s.high[which], s.low[which])[k]
         sign = (second[m, k] > 0).astype(int)
         yield Offers(self._kinds(m, sign, which[k]), np.full(len(k), np.inf), at)
+
+
+def _median(values: Number) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else np.inf
 
 
 # The least values are the greatest of the opposite.

@@ -333,7 +333,7 @@ def same_pose(motion: Motion, one: int, other: int) -> Number:
     shape = motion.inputs.designs, motion.inputs.poses
     same: Number = np.ones(shape[0], dtype=bool)
     for pose in motion.poses.values():
-        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
+        for series, size in ((pose.z, np.ravel(motion.sizes)), (pose.u, 1.0)):
             value = np.broadcast_to(series.c[0], shape)
             same &= np.abs(value[:, one] - value[:, other]) <= SAME_POSE * size
     return same
@@ -344,7 +344,7 @@ class Measure(ShortRepr):
     """A real quantity of any motion: its name and its function.
 
     `order` is how many time derivatives the motion must have. A length of a vector is `squared` to be smooth where it
-    passes zero. Values below the part 1e-12 of `scale` are rounding.
+    passes zero. Values below the part 1e-12 of `scale`, perhaps one of each design, are rounding.
     """
 
     name: str
@@ -352,8 +352,12 @@ class Measure(ShortRepr):
     order: int
     of: Callable[[Motion], Number]
     squared: bool = False
-    scale: float = 0.0
+    scale: Number = 0.0
     dimension: Dimension = "number"
+
+    def scales(self, designs: int) -> Number:
+        """Return the scale of each design, (designs,)."""
+        return np.broadcast_to(np.ravel(self.scale), designs)
 
     def at_poses(self, motion: Motion) -> Number:
         """Return its values at all poses of a motion, (designs, poses)."""
@@ -373,7 +377,7 @@ def measure_of(motion: Motion, name: str) -> Measure:
         raise InvalidInput(Problem(name, "a vector has no least and no greatest value", f"take {parts}"))
     owner, _, word = whole.name.rpartition(".")
     is_length = part == LENGTH or (word == SPEED and owner in motion.points)
-    size = motion.size if whole.dimension == "length" else 1.0
+    size = motion.sizes if whole.dimension == "length" else 1.0
     scale = whole.scale or size * driver_pace(motion) ** whole.order
 
     def of(at: Motion) -> Number:
@@ -390,7 +394,8 @@ def measures_of(motion: Motion, asked: Sequence[str | Measure]) -> tuple[Measure
 
 def driver_pace(motion: Motion) -> float:
     """Return the rate of the fastest driver. Slides count by the mechanism's size."""
-    rates = (np.abs(v[1]) / motion.solving_order.unit(k) for k, v in motion.inputs.drives.items() if len(v) > 1)
+    order, given = motion.solving_order, motion.inputs
+    rates = (np.abs(v[1]) / order.unit_in(given.ends, k) for k, v in given.drives.items() if len(v) > 1)
     return max((float(np.max(rate)) for rate in rates), default=0.0)
 
 

@@ -142,20 +142,22 @@ class ZeroSearch(Course):
         return self.ends[0]
 
     @property
-    def _tiny(self) -> float:
+    def _tiny(self) -> Number:
+        """What is rounding in each design."""
         return ROUNDING * self._largest
 
     @cached_property
-    def _largest(self) -> float:
-        largest = np.max(np.abs(self._values), initial=0.0, where=np.isfinite(self._values))
-        return max(float(largest), self.measures[0].scale)
+    def _largest(self) -> Number:
+        """How large values are in each design."""
+        largest = np.max(np.abs(self._values), axis=1, initial=0.0, where=np.isfinite(self._values))
+        return np.maximum(largest, self.measures[0].scales(len(largest)))
 
     def _candidates(self) -> Number:
         """Return the stretches that may have zeros inside."""
         ends = self._ends
         bends = np.nan_to_num(self.stretches.bends(self._values), nan=np.inf)
         near = np.abs(ends).min(axis=-1) <= NEAR_ZERO * bends
-        zero = np.abs(ends).max(axis=-1) <= self._tiny
+        zero = np.abs(ends).max(axis=-1) <= self._tiny[self.stretches.design]
         return np.isnan(ends).any(axis=-1) | (ends[:, 0] * ends[:, 1] < 0) | (near & ~zero)
 
     def _samples(self) -> _SampledValues:
@@ -172,7 +174,7 @@ class ZeroSearch(Course):
         found = found[:, np.isfinite(found[2])]
         stretch, t, value = found[:, np.lexsort((found[1], found[0]))]
         index = stretch.astype(int)
-        sign = np.where(np.abs(value) <= self._tiny, 0.0, np.sign(value))
+        sign = np.where(np.abs(value) <= self._tiny[self.stretches.design[index]], 0.0, np.sign(value))
         place = self.stretches.places(t[:, None], index)[:, 0]
         return _SampledValues(index, t, np.where(np.abs(t) > 1.0, np.round(place), place), sign)
 
@@ -185,7 +187,7 @@ class ZeroSearch(Course):
         outer = (s.first < 0) & (s.low <= 2.0 * ASIDE), (s.last < 0) & (s.high >= last - 2.0 * ASIDE)
         rows = [np.empty((3, 0))]
         for side, (odd, pose) in enumerate(zip(outer, (0, last), strict=True)):
-            zero = odd & (np.abs(self._values[s.design, pose]) <= self._tiny) & (self.measures[0].order < 2)
+            zero = odd & (np.abs(self._values[s.design, pose]) <= self._tiny[s.design]) & (self.measures[0].order < 2)
             which = np.flatnonzero(zero & ~s.limits[:, side])
             rows.append(np.stack([which, np.full(len(which), (2.0 * side - 1.0) * (1.0 + 2.0 * ASIDE)), 0.0 * which]))
         return np.concatenate(rows, axis=1)
@@ -214,7 +216,8 @@ class ZeroSearch(Course):
         place = 0.5 * (samples.place[k] + samples.place[k + 1])
         within = k[inside]
         parts = CourseParts(self, np.zeros(len(within), dtype=int), samples.which[within])
-        t = crossings(parts, samples.t[within], samples.t[within + 1], self._largest)
+        largest = self._largest[self.stretches.design[samples.which[within]]]
+        t = crossings(parts, samples.t[within], samples.t[within + 1], largest)
         place[inside] = parts.places(np.arange(len(within)), t)
         design = self.stretches.design[samples.which[k]]
         return list(zip(design, place, place, sign[k + 1], strict=True))
