@@ -240,7 +240,7 @@ def _of_one_driver(solving_order: SolvingOrder, given: Inputs, name: str, drawn:
     home = value[:, :1] if drawn is None else drawn + np.zeros_like(low)
     if drawn is not None and is_angle:
         home = home + _turns_into(home, low, high)
-    unit = SPACING * solving_order.unit_in(given.ends, name) * np.where(_falls(value), -1.0, 1.0)[:, None]
+    unit = SPACING * _unit(solving_order, given, name, len(home)) * np.where(_falls(value), -1.0, 1.0)[:, None]
     away = (value - home) / unit
     one, two = (low - home) / unit, (high - home) / unit
     begin, end = np.minimum(np.minimum(one, two), 0.0), np.maximum(np.maximum(one, two), 0.0)
@@ -259,6 +259,12 @@ def _of_one_driver(solving_order: SolvingOrder, given: Inputs, name: str, drawn:
     places = np.array([place for place, _ in kept])
     path = DriverPath(knots.of_poses(len(kept)), places, 0.0, is_angle and not solving_order.turning)
     return path, PosePlaces(away)
+
+
+def _unit(solving_order: SolvingOrder, given: Inputs, name: str, rows: int) -> Number:
+    """Return by how much a driver goes where it goes far; of designs that share one row, where the least does."""
+    unit = solving_order.unit_in(given.ends, name)
+    return float(np.min(unit)) if rows == 1 else unit
 
 
 def _falls(value: Number) -> Number:
@@ -294,7 +300,8 @@ def _line(
     """Return the path of several drivers whose values lie on a line. None where they do not, or all rest."""
     if not moving:
         return None
-    columns = (given.drives[name][0] / solving_order.unit_in(given.ends, name) for name in moving)
+    count = max(len(given.drives[name][0]) for name in moving)
+    columns = (given.drives[name][0] / _unit(solving_order, given, name, count) for name in moving)
     value = np.stack(np.broadcast_arrays(*columns), axis=-1)
     way = value - value[:, :1]
     farthest = np.argmax(np.sum(way**2, axis=-1), axis=1)
