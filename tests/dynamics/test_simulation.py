@@ -395,3 +395,49 @@ def test_friction_of_several_drivers_is_refused() -> None:
         ck.simulate(
             five_bar().replace(ck.friction("P", 0.1, radius=0.01)), start={"left": 1.7, "right": 1.0}, until=1.0
         )
+
+
+# --- loads that count turns ---
+
+# A rotor on a clock spring: J q'' = -k q. It makes a turn and a half to each side.
+CLOCK = 0.5
+SWINGS = {
+    "a function of the coordinate": ck.effort("O", lambda q: -CLOCK * q),
+    "a function of the driver's": ck.effort("rotor", lambda q: -CLOCK * q),
+    "a table": ck.effort("O", {"at": [-40.0, 40.0], "values": [40.0 * CLOCK, -40.0 * CLOCK]}),
+    "a spring": ck.spring(pair="O", stiffness=CLOCK),
+    "a function of the extension": ck.spring(pair="O", stiffness=lambda q: CLOCK * q),
+}
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("load", SWINGS)
+def test_loads_go_by_the_angle_with_its_turns(load: str, sense: float) -> None:
+    rotor = ck.Mechanism(
+        "Rotor",
+        *(ck.link("frame", O=0), ck.link("rotor", O=0, P=1), ck.drive("rotor")),
+        *(ck.mass("rotor", 1.0, at="O", inertia=0.05), SWINGS[load]),
+        units={"length": "m", "mass": "kg", "force": "N"},
+    )
+    swung = ck.simulate(rotor, start={"rotor": (0.0, 30.0 * sense)}, until=3.0)
+    rate = np.sqrt(CLOCK / 0.05)
+    exact = sense * 30.0 / rate * np.sin(rate * swung.times)
+    assert np.ptp(exact) > 18.0
+    assert np.abs(np.ravel(swung.motion.inputs.drives["rotor"][0]) - exact).max() < 1e-8
+    assert swung.energy.worst < 1e-8
+
+
+@pytest.mark.parametrize("pin", ["A", "D"])
+def test_a_clock_spring_at_any_pin_that_turns_fully(pin: str) -> None:
+    """The cranks of a parallelogram without masses but that of one of them turn alike."""
+    parallelogram = ck.Mechanism(
+        "Clock",
+        *(ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("coupler", B=0, C=4)),
+        *(ck.link("rocker", D=0, C=1), ck.drive("crank"), ck.drawn(B=1j, C=4 + 1j)),
+        *(ck.mass("crank", 1.0, at="A", inertia=0.05), ck.spring(pair=pin, stiffness=CLOCK)),
+        units={"length": "m", "mass": "kg", "force": "N"},
+    )
+    swung = ck.simulate(parallelogram, start={"crank": (0.0, 30.0)}, until=2.0)
+    rate = np.sqrt(CLOCK / 0.05)
+    exact = 30.0 / rate * np.sin(rate * swung.times)
+    assert np.abs(np.ravel(swung.motion.inputs.drives["crank"][0]) - exact).max() < 1e-7

@@ -12,7 +12,7 @@ from __future__ import annotations
 import warnings
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -23,7 +23,7 @@ from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
-from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import Rates, loaded_state
@@ -60,14 +60,17 @@ class TabulatedChart(DriverChart):
         self._tabulate(first, self.start.poses)
 
     def _is_timeless(self, load: Load) -> bool:
-        """Whether a load depends on the pose alone."""
+        """Whether a load depends on the pose alone, not on how many turns were made."""
         if load.needs_rates:
             return False
+        block = next(iter(loaded_blocks(self.start)))
         try:
-            list(load.wrenches(next(iter(loaded_blocks(self.start)))))
+            list(load.wrenches(block))
         except InvalidInput:  # it needs the time, and the first pose has none
             return False
-        return True
+        amounts = load.amounts_held
+        comes_again = bool(amounts) and all(map(_comes_again, amounts))
+        return comes_again or not _counts_turns(load, block)
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state."""
@@ -155,6 +158,32 @@ class TabulatedChart(DriverChart):
                 if not abs(row[-1] - row[0]) < SAME * scale:
                     return False
         return True
+
+
+# A period is a part of a turn but for rounding of the degrees it was written in.
+PART_OF_A_TURN = 1e-9
+
+
+def _comes_again(amount: Any) -> bool:
+    """Return whether an amount is a table that repeats after a turn at the latest."""
+    period = getattr(amount, "period", None)
+    return period is not None and abs(TURN / period - round(TURN / period)) < PART_OF_A_TURN
+
+
+def _counts_turns(load: Load, block: LoadedBlock) -> bool:
+    """Return whether a load depends on an angle that is counted along the motion: it has none where that is unknown."""
+    unknown = replace(block, counted=_UnknownAngles())
+    return any(np.any(np.isnan(wrench.force) | np.isnan(wrench.moment)) for _, wrench in load.wrenches(unknown))
+
+
+class _UnknownAngles(dict[str, Number]):
+    """Angles of pairs, of which none is known."""
+
+    def __contains__(self, name: object) -> bool:
+        return True
+
+    def __missing__(self, name: str) -> Number:
+        return np.full((1, 1), np.nan)
 
 
 class _Columns(dict[str, Pose]):

@@ -125,6 +125,11 @@ class Load(ShortRepr, ABC):
         return tuple(getattr(self, key) for key in link_fields(type(self)))
 
     @property
+    def amounts_held(self) -> tuple[Any, ...]:
+        """Its amounts: numbers, functions, tables."""
+        return tuple(getattr(self, key) for key in self.amounts)
+
+    @property
     def needs_rates(self) -> bool:
         """Whether it depends on velocities."""
         return False
