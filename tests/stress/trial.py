@@ -241,11 +241,19 @@ class Trial:
             return
         first, last = np.sort(rng.choice(self.case.way.poses + 1, 2, replace=False))
         window = slice(int(first), int(last), int(rng.integers(1, 4)))
+        if self._half_a_turn_away(window):
+            return
         motion = self._attempted(self.placed, {name: v[window] for name, v in values.items()})
         if motion is not None:
             branch = self.answer.branch
             part = Answer(motion, self.equations, self.placed, branch, self.case.way.s[window])
             self._same("window", part.raw, part.assembled, window)
+
+    def _half_a_turn_away(self, window: slice) -> bool:
+        """Whether some driver may be nearer to its drawn value by turns than from where the whole motion is drawn."""
+        way = self.case.way
+        s, offsets = way.s[window], np.abs(way.offsets()[:, window][~self.equations.lengths])
+        return not s.min() <= 0.0 <= s.max() and bool(np.max(offsets, initial=0.0) >= np.pi)
 
     def _resized(self, values: dict[str, np.ndarray]) -> None:
         """The mechanism drawn in another size moves alike."""
