@@ -295,3 +295,27 @@ def test_a_rack_is_as_drawn_whichever_turn_of_its_wheel_a_stated_phase_of_a_gear
     assert np.allclose(motion.links["planet"].angle, ahead + 3.0 * (values - crank), atol=1e-12)
     along = ((motion.points["B"].position - drawn["B"]) * np.exp(-1j * line)).real + 3.0 * radius * (values - crank)
     assert np.abs(motion.points["G"].position - drawn["G"] - along * np.exp(1j * line)).max() < 1e-12
+
+
+def test_a_wheel_whose_phase_is_stated_is_as_drawn_on_an_arm_that_slides_on_a_crank() -> None:
+    """The arm is drawn at 69 degrees on a crank at -158: the slide's own angles would put it a turn behind."""
+    crank, arm = -2.75, 1.2
+    drawn = {"A": 0j, "B": 3 * np.exp(1j * crank), "C": -1 + 1j, "E": 2 + 3j, "D": 4 + 0j, "F": 0.5 + 3j, "H": 1 + 4j}
+    drawn["G"] = drawn["C"] + 2 * np.exp(1j * arm)
+    bar, wheel = (np.angle(drawn[b] - drawn[a]) for a, b in ("CE", "FH"))
+    mechanism = ck.Mechanism(
+        "wheel on an arm",
+        *(ck.link(n, *k) for n, k in (("frame", "AD"), ("crank", "AB"), ("arm", "CG"), ("bar", "CEF"))),
+        *(ck.link(n, *k) for n, k in (("rocker", "ED"), ("wheel", "FH"))),
+        ck.slide("arm", on="crank", at="C", through="A", toward="B"),
+        ck.gear("arm", "wheel", carrier="bar", teeth=(30, 40), phase=(wheel - bar) + 0.75 * (arm - bar)),
+        ck.drive("crank"),
+        ck.drive("arm", on="crank"),
+        ck.drawn(**drawn),
+    )
+    place = (drawn["C"] * np.exp(-1j * crank)).real
+    motion = ck.solve(mechanism, {"crank": crank + np.linspace(0.0, 0.3, 4), "arm": place + np.linspace(0.0, 0.5, 4)})
+    turned = {name: motion.links[name].angle - angle for name, angle in (("arm", arm), ("bar", bar), ("wheel", wheel))}
+    assert np.allclose(turned["arm"], np.linspace(0.0, 0.3, 4), atol=1e-12)
+    assert abs(np.exp(1j * turned["bar"][0]) - 1.0) < 1e-12
+    assert np.allclose(turned["wheel"], 1.75 * turned["bar"] - 0.75 * turned["arm"], atol=1e-12)

@@ -70,6 +70,12 @@ FOUND = {
     ),
     "a face on a pin changed its mode next to a limit position": (5000000, 235, False, "even"),
     "a face on a pin changed its mode, drawn next to a limit": (7000000, 2818, False, "even"),
+    "wheels with stated phases on an arm that slides on another link, beyond half a turn": (
+        3000000,
+        4186,
+        False,
+        "even",
+    ),
     "tongs folded down where the motion ended just beyond their closed pose": (5, 144, False, "stacked"),
 }
 

@@ -49,7 +49,7 @@ from compoundkin.kinematics.curve.modes import (
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
-from compoundkin.model.pairs.contract import as_turn_counting
+from compoundkin.model.pairs.contract import Drivable, Ends, as_turn_counting
 
 
 class NearMiss(NamedTuple):
@@ -797,10 +797,31 @@ def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Input
 
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
     """
+    pose, *counted = (_slides_counted(solving_order, way) for way in (pose, *ways))
     drawn, rounds = _as_drawn(solving_order, pose)
     driven = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
     turns = _with_stated_turns(solving_order, drawn, driven)
-    return tuple(_blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in ways)
+    return tuple(
+        _blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in counted
+    )
+
+
+def _slides_counted(solving_order: SolvingOrder, way: Inputs) -> Inputs:
+    """A way with driven blocks that count turns as they are drawn: phases of what gears with them are stated so."""
+    drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
+    slides = [driven.pair for body in solving_order.structure.bodies for driven in body.driven]
+    for pair in (
+        pair for pair in slides if pair.is_simple and not pair.free_is_angle and drawn.keys() >= {*pair.members}
+    ):
+        guide, block = (as_column(drawn[k]).angle.c[0] for k in pair.members)
+        ends[pair.name] = _with_turns(pair, ends[pair.name], block - guide)
+    return replace(way, ends=ends)
+
+
+def _with_turns(slide: Drivable, ends: Ends, ahead: Number) -> Ends:
+    """Return the ends of a slide whose block is ahead of its guide by an angle, known to less than half a turn."""
+    turned = slide.placed(ends, constant(0.0)).angle.c[0]
+    return ends[0], ends[1]._replace(measure=np.round((ahead - turned) / TURN))
 
 
 def _blocks_counted(solving_order: SolvingOrder, way: Inputs, turns: Mapping[str, Number]) -> Inputs:
@@ -813,8 +834,7 @@ def _blocks_counted(solving_order: SolvingOrder, way: Inputs, turns: Mapping[str
         guide, block = (
             as_column(drawn[k]).angle.c[0] + TURN * (turns.get(k, 0.0) if k == other else 0.0) for k in links
         )
-        turned = mounted.lower.placed(ends[name], constant(0.0)).angle.c[0]
-        ends[name] = ends[name][0], ends[name][1]._replace(measure=np.round((block - guide - turned) / TURN))
+        ends[name] = _with_turns(mounted.lower, ends[name], block - guide)
     return replace(way, ends=ends)
 
 
