@@ -441,3 +441,45 @@ def test_a_clock_spring_at_any_pin_that_turns_fully(pin: str) -> None:
     rate = np.sqrt(CLOCK / 0.05)
     exact = 30.0 / rate * np.sin(rate * swung.times)
     assert np.abs(np.ravel(swung.motion.inputs.drives["crank"][0]) - exact).max() < 1e-7
+
+
+def rotor_under(load: object) -> ck.Mechanism:
+    """A rotor of J = 0.05 under one load."""
+    rotor = ck.link("frame", O=0), ck.link("rotor", O=0, P=1), ck.drive("rotor")
+    units = {"length": "m", "mass": "kg", "force": "N"}
+    return ck.Mechanism("Rotor", *rotor, ck.mass("rotor", 1.0, at="O", inertia=0.05), load, units=units)
+
+
+def test_a_torque_that_is_switched_off() -> None:
+    """A jump in time: 100 rad/s2 for 0.3 s, then none."""
+    mechanism = rotor_under(ck.torque("rotor", lambda t: np.where(t < 0.3, 5.0, 0.0)))
+    found = ck.simulate(mechanism, start={"rotor": 0.0}, until=1.0)
+    t = found.times
+    exact = np.where(t < 0.3, 50.0 * t**2, 4.5 + 30.0 * (t - 0.3))
+    assert np.abs(found.motion.drives["rotor"].value - exact).max() < 1e-11
+    assert [event.name for event in found.events] == ["jump"]
+    assert found.events[0].time == pytest.approx(0.3, abs=1e-12)
+
+
+def test_a_brake_behind_a_place() -> None:
+    """A jump over the coordinate: from 2 rad on -1000 rad/s2, there and back."""
+    found = ck.simulate(
+        rotor_under(ck.effort("O", lambda q: np.where(q > 2.0, -50.0, 0.0))), start={"rotor": (0.0, 30.0)}, until=1.0
+    )
+    first, back = 2.0 / 30.0, 2.0 / 30.0 + 0.06
+    t = found.times
+    beyond = 2.0 + 30.0 * (t - first) - 500.0 * (t - first) ** 2
+    exact = np.where(t < first, 30.0 * t, np.where(t < back, beyond, 2.0 - 30.0 * (t - back)))
+    assert np.abs(found.motion.drives["rotor"].value - exact).max() < 1e-11
+    assert [event.time for event in found.events] == pytest.approx([first, back], abs=1e-12)
+    assert found.energy.worst < 1e-10
+
+
+def test_loads_that_hold_between_two_sides_are_no_limit_position() -> None:
+    """Friction written as a function jumps to and fro where the rotor comes to rest."""
+    found = ck.simulate(
+        rotor_under(ck.effort("O", lambda q, w: -5.0 * np.sign(w))), start={"rotor": (0.0, 30.0)}, until=1.0
+    )
+    assert found.events[-1].name == "jump"
+    assert found.events[-1].time == pytest.approx(0.3, abs=1e-8)
+    assert found.motion.drives["rotor"].value[-1] == pytest.approx(4.5, abs=1e-8)

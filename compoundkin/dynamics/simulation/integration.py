@@ -34,6 +34,8 @@ LONGEST_MOVE = 1.0
 LIMIT = 1e4
 # The integration stalls where a step is below this part of the longest.
 STALLED = 1e-7
+# The name of the event where a load jumps.
+JUMP = "jump"
 # The name of the event where friction holds a mechanism.
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
@@ -132,7 +134,16 @@ def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[
     if chart.is_regular(solver.y[:n]) and not stalls:
         return None
     here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
-    fast = [one for one in fastest_pairs(chart, here) if one.ratio >= FASTER or stalls]
+    pairs = fastest_pairs(chart, here)
+    if stalls and not any(one.ratio >= FASTER for one in pairs):
+        beyond = _beyond_jump(chart, solver, course)
+        if beyond is not None:
+            return chart, beyond
+        solver.status = "finished"
+        text = "the loads change there faster than they can be followed, or hold the motion between two sides of a jump"
+        _stop(course, JUMP, text)
+        return None
+    fast = [one for one in pairs if one.ratio >= FASTER or stalls]
     is_new = course.last - course.changed > STALLED * course.until
     for one in fast if is_new or not stalls else ():
         found = driven_there(chart, here, one)
@@ -145,6 +156,54 @@ def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[
         driver = fast[0].driver if fast else chart.free[0]
         _ended(solver, course, f"{driver} comes to a limit position, and no other pair can take its place")
     return None
+
+
+# A jump of the loads lies so many stalled steps ahead at the most; halvings find its time to rounding. It is a jump
+# where accelerations differ by this part on both sides of it.
+AHEAD, HALVINGS, JUMPS = 64.0, 60, 1e-6
+# Jumps that follow each other within so many stalled steps are one at which the motion cannot go on to either side.
+AGAIN, MOST_JUMPS = 1e3, 4
+
+
+def _beyond_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Number | None:
+    """Return the state behind a jump of the loads at which the integrator stalled; None where there is none just ahead.
+
+    Up to the jump accelerations are those of the present state; its time is found by halving.
+    """
+    n = len(chart.free)
+    t, y, rates = float(solver.t), solver.y.copy(), solver.f.copy()
+
+    def after(times: Number) -> Number:
+        moved = y[:, None] + rates[:, None] * times
+        moved[:n] += 0.5 * rates[n : 2 * n, None] * np.square(times)
+        return moved
+
+    def accelerations(time: float) -> Number:
+        state = after(np.array([time]))[:, 0]
+        return chart.rates(t + time, state[:n], state[n : 2 * n]).accelerations
+
+    def jumps(time: float) -> bool:
+        change = np.abs(accelerations(time) - rates[n : 2 * n])
+        return bool(np.any(change > JUMPS * (1.0 + np.abs(rates[n : 2 * n]))))
+
+    low, high = 0.0, AHEAD * STALLED * min(solver.max_step, course.until)
+    if not jumps(high):
+        return None
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if jumps(middle) else (middle, high)
+    recent = [one for one in course.events if one.name == JUMP and t - one.time < AGAIN * STALLED * course.until]
+    if len(recent) >= MOST_JUMPS:
+        return None
+    course.steps.append(Step(chart, t, t + high, lambda times: _one_or_many(after, times - t), chart.memory))
+    course.events.append(SimulationEvent(t + high, JUMP, "the loads jump", False))
+    return after(np.array([high]))[:, 0]
+
+
+def _one_or_many(states: Callable[[Number], Number], times: Number) -> Number:
+    """Return states in columns, or the state at a single time."""
+    found = states(np.atleast_1d(times))
+    return found if np.ndim(times) else found[:, 0]
 
 
 def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
