@@ -28,19 +28,19 @@ Variables: TypeAlias = Mapping[str, Callable[[], Number]]
 
 @dataclass(frozen=True, eq=False)
 class LoadFunction(CopiesFunction):
-    """A Python function that returns amounts for `count` arrays, such as the coordinate, its rate, the time.
+    """A Python function that returns amounts for the arrays of the variables it `takes`, such as "coordinate", "time".
 
-    >>> LoadFunction(lambda t: 2.0 * t, 1).value("forces.press", (np.array([[0.0, 3.0]]),)).tolist()
+    >>> LoadFunction(lambda t: 2.0 * t, ("time",)).value("forces.press", (np.array([[0.0, 3.0]]),)).tolist()
     [[0.0, 6.0]]
     """
 
     f: Callable[..., Any]
-    count: int
+    takes: tuple[str, ...]
 
     function_field: ClassVar[str] = "f"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, LoadFunction) and self.f is other.f
+        return isinstance(other, LoadFunction) and self.f is other.f and self.takes == other.takes
 
     def __hash__(self) -> int:
         return hash(self.f)
@@ -203,13 +203,15 @@ Amount: TypeAlias = Number | LoadFunction | LoadTable
 def as_amount(where: str, given: Any, *variables: str) -> Amount:
     """Return an amount as a number, array, function or table. Raises InvalidMechanism naming `where`.
 
-    >>> as_amount("torques.motor", 3), as_amount("torques.motor", lambda t: 2 * t, "time").count
-    (3.0, 1)
+    A function takes those of the `variables` that its arguments name, in any order.
+
+    >>> as_amount("torques.motor", 3), as_amount("torques.motor", lambda t: 2 * t, "time").takes
+    (3.0, ('time',))
     """
     if isinstance(given, Mapping):
         return LoadTable.of(where, given, "time" if variables == (TIME,) else "")
     if callable(given):
-        return LoadFunction(given, _count(where, given, variables))
+        return LoadFunction(given, _taken(where, given, variables))
     return given if isinstance(given, LoadFunction | LoadTable) else real(where, given)
 
 
@@ -233,20 +235,33 @@ def _moves(given: Any) -> bool:
     return isinstance(given, Mapping | LoadTable) or callable(given)
 
 
-def _count(where: str, function: Callable[..., Any], variables: tuple[str, ...]) -> int:
-    """Return how many of the variables a function takes, at least one."""
+# What the arguments of a function may be called, by the variable that they are.
+_PLACES = ("q", "s", "x", "angle", "theta", "phi", "displacement")
+CALLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
+    "coordinate": _PLACES, "extension": _PLACES, "length": _PLACES,
+    "rate": ("w", "v", "speed", "omega"), TIME: ("t",),
+})  # fmt: skip
+
+
+def _taken(where: str, function: Callable[..., Any], variables: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the variables that a function takes, by the names of its arguments without a default, or its first."""
+    if isinstance(function, np.ufunc):
+        return variables[: function.nin]
     try:
         parameters = inspect.signature(function).parameters.values()
-    except (TypeError, ValueError):  # functions of NumPy have no signature
-        return int(getattr(function, "nin", 1))
-    placed = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
-    needed = sum(p.default is p.empty for p in placed)
+    except (TypeError, ValueError):  # some functions of other languages have no signature
+        return variables[:1]
     if any(p.kind is p.VAR_POSITIONAL for p in parameters):
-        return len(variables)
-    if needed > len(variables) or not placed:
-        what = f"the function takes {needed} arguments"
-        raise InvalidMechanism(Problem(where, what, f"it is called with ({', '.join(variables)}), as many as it takes"))
-    return max(needed, 1)
+        return variables
+    placed = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    names = [p.name for p in placed if p.default is p.empty] or [p.name for p in placed[:1]]
+    known = {name: variable for variable in reversed(variables) for name in (variable, *CALLED[variable])}
+    wrong = [name for name in names if name not in known]
+    if wrong or not names or len({known[name] for name in names}) < len(names):
+        what = f"the function takes {', '.join(map(repr, names)) or 'no arguments'}"
+        offered = ", ".join(f"{CALLED[variable][0]} ({variable})" for variable in variables)
+        raise InvalidMechanism(Problem(where, what, f"arguments are known by their names: {offered}, or some of them"))
+    return tuple(known[name] for name in names)
 
 
 def _numbers(where: str, made: Any) -> Any:
@@ -276,8 +291,7 @@ def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables =
 def _value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables = MappingProxyType({})) -> Number:
     """Return an amount, complex for functions of vectors."""
     if isinstance(amount, LoadFunction):
-        available: list[Callable[[], Number]] = [*variables.values(), lambda: time_of(where, at)]
-        return amount.value(where, tuple(variable() for variable in available[: amount.count]))
+        return amount.value(where, tuple(time_of(where, at) if k == TIME else variables[k]() for k in amount.takes))
     if isinstance(amount, LoadTable):
         if amount.over == TIME or not (amount.over or variables):
             return amount.value(where, time_of(where, at))
@@ -303,8 +317,8 @@ def time_of(where: str, at: LoadedPoses) -> Number:
 
 
 def needs_rates(amount: Any) -> bool:
-    """Return whether an amount is a function of a rate, its second argument."""
-    return isinstance(amount, LoadFunction) and amount.count > 1
+    """Return whether an amount is a function of a rate."""
+    return isinstance(amount, LoadFunction) and "rate" in amount.takes
 
 
 def tables_of(amount: Any) -> Iterator[LoadTable]:

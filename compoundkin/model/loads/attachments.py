@@ -152,8 +152,9 @@ def effort(pair: str, amount: Any, *, only: str | None = None, name: str = "") -
     The pair is meant by its name, by a pin's letter (``J(crank-rod)`` for two links of a multiple pin), or by a driver.
     It acts on the pair's second link, its opposite on the first, and is positive where it drives the coordinate up:
     that of ``motion.pairs[pair]``, or of the driver. `amount` is a number, an array whose last axis is the motion, a
-    function of as many of (coordinate, rate, time) as it takes, or a table as of `force`, over the coordinate where it
-    does not say what it is over. It acts ``only="forward"`` while the coordinate grows, ``"back"`` while it shrinks.
+    function of coordinate ``q``, rate ``w``, time ``t``, as its arguments name them, or a table as of `force`, over the
+    coordinate where it does not say what it is over. It acts ``only="forward"`` while the coordinate grows, ``"back"``
+    while it shrinks.
 
     >>> effort("stroke", lambda s: -400.0 / (0.1 + s)).name
     'effort along stroke'

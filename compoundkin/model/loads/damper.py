@@ -92,9 +92,9 @@ def damper(
 ) -> Damper | PairDamper:
     """Return a damper between points of two links, or along a pair.
 
-    It is written as a `spring`, and pulls with `rate` times its speed of extension. A `rate` that is a function of as
-    many of (speed, length or coordinate, time) as it takes, or a table over the speed, is the force itself. Raises
-    InvalidMechanism for ends of both sorts.
+    It is written as a `spring`, and pulls with `rate` times its speed of extension. A `rate` that is a function of
+    speed ``w``, length or coordinate ``q``, time ``t``, as its arguments name them, or a table over the speed, is the
+    force itself. Raises InvalidMechanism for ends of both sorts.
 
     >>> damper("arm", "A", to="frame", at="S", rate=40).rate
     40.0

@@ -183,7 +183,7 @@ def spring(
     point S of the frame together with stiffness times extension plus `preload`; points are letters, or places in their
     links' frames. ``spring(pair="C", stiffness=5, free=0.3)`` drives the coordinate of a pair down by stiffness times
     its excess over `free` (radians or a length): a torsion spring at a pin, a spring along a slide. A `stiffness`
-    that is a function of as many of (extension, rate, time) as it takes, or a table over the extension, gives the
+    that is a function of extension ``q``, rate ``w``, time ``t``, or a table over the extension, gives the
     force itself. With ``only="tension"`` or ``"compression"`` it acts in that sense only. Numbers, or arrays for
     designs.
 

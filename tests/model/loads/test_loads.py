@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -322,3 +323,31 @@ def test_what_is_assumed_is_said() -> None:
     assert masses["plate"].assumed == "inertia of a uniform plate B-C-D"
     assert (masses["dot"].at, masses["dot"].inertia) == (0.0, 0.0)
     assert linkage.replace(ck.mass("bar", 1, at=(0, 0), inertia=0)).masses["bar"].assumed == ""
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (ck.effort("stroke", lambda w, q: 3.0 * w - q), ck.effort("stroke", lambda q, w: 3.0 * w - q)),
+        (ck.effort("stroke", lambda w: -4.0 * w), ck.damper(pair="stroke", rate=4.0)),
+        (ck.effort("stroke", lambda speed: -4.0 * speed), ck.damper(pair="stroke", rate=4.0)),
+        (ck.spring(pair="stroke", stiffness=lambda w, x: 7.0 * x), ck.spring(pair="stroke", stiffness=7.0)),
+        (ck.damper(pair="stroke", rate=lambda q, w: 4.0 * w), ck.damper(pair="stroke", rate=4.0)),
+    ],
+)
+def test_functions_take_what_their_arguments_are_called(one: object, other: object) -> None:
+    np.testing.assert_allclose(torque(press(one)), torque(press(other)), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("write", "told"),
+    [
+        (lambda: ck.torque("crank", lambda w: w), r"takes 'w'; arguments are known by their names: t \(time\)"),
+        (lambda: ck.effort("stroke", lambda a: a), r"q \(coordinate\), w \(rate\), t \(time\)"),
+        (lambda: ck.effort("stroke", lambda q, s: q), "takes 'q', 's'"),
+        (lambda: ck.effort("stroke", lambda: 3.0), "takes no arguments"),
+    ],
+)
+def test_other_arguments_are_refused(write: Callable[[], object], told: str) -> None:
+    with pytest.raises(InvalidMechanism, match=told):
+        write()
