@@ -72,7 +72,13 @@ class LoadedBlock:
         return self._cut(self.counted[pair.name])
 
     def _angle(self, pair: Pair) -> Number:
-        """Return the angle of a pair, or between two links of a multiple pin that no pair joins."""
+        """Return the angle of a pair, or between two links of a multiple pin that no pair joins.
+
+        A driver's is as it is driven, whatever turn it starts in.
+        """
+        for name, own in self.motion.structure.driven.items():
+            if own.pair.name == pair.name:
+                return self.motion.drives[name].value * own.pair.driven_by(own.drive.link)
         if pair.name in self.motion.solving_order.pairs:
             return self.motion.pairs[pair.name].value
         first, second = (self.motion.links[link].angle for link in pair.members)

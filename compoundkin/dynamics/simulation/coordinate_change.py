@@ -80,6 +80,7 @@ def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tupl
         return None
     if found is None:
         return None
+    found.count_on(state)
     return found, np.array([*(values[one] for one in free), *(speeds[one] for one in free)])
 
 

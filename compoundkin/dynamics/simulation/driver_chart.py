@@ -123,6 +123,12 @@ class DriverChart:
             for pair in self.turned:
                 self.turned[pair] = found.angle_of(pair)
 
+    def count_on(self, before: DriverState) -> None:
+        """Count angles on from a state of another chart."""
+        angles = [name for name, (_, own) in before.chart.driven.items() if own.pair.free_is_angle]
+        for name in (*before.chart.turned, *angles):
+            self.turned[name] = LinearAngle(before.angle_of(name).angle, None, np.zeros(len(self.names)))
+
     def _follow(self, world: Mapping[str, Pose], values: Number | None) -> None:
         """Store the states of groups without signs, and the counted angles with their rates by the drivers."""
         for solver in (s for s in self.order.solvers if s.is_numbered):

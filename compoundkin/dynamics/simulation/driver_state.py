@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
@@ -50,6 +50,8 @@ class StateChart(Protocol):
     masses: tuple[MovingMass, ...]
     gravity: complex
     loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
+    turned: dict[str, LinearAngle]  # the counted angles of pairs
+    driven: Mapping[str, tuple[str, Any]]  # the drivers of pairs, by their names
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""

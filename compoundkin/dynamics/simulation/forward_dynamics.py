@@ -18,12 +18,14 @@ from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.errors import FewDigits, InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion, warn
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
+from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import watches
+from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.curve.driver_path import drawn_value
@@ -298,13 +300,26 @@ def simulated_motion(stretches: list[ChartStretch]) -> Motion:
     tried: list[Motion] = []
     for chart in list(charts.values())[:TRIES]:
         motion, agrees = _driven_by(chart, parts, stretches, times, poses)
-        if agrees:
+        if agrees and _starts_alike(motion, stretches[0].chart.start):
             return motion
         tried.append(motion)
-    # no coordinate is regular everywhere: each pose is that of the coordinate of its stretch
+    # no coordinate is regular everywhere, or only the first one starts with its turns: each pose is that of the
+    # coordinate of its stretch
     motion = tried[0]
+    if not _starts_alike(motion, stretches[0].chart.start):
+        motion, _ = _driven_by(stretches[0].chart, parts, stretches, times, poses)
     mended = motion.mended(np.zeros(len(times), dtype=int), np.arange(len(times)), poses)
     return replace(mended, failed=np.zeros_like(motion.failed))
+
+
+def _starts_alike(motion: Motion, first: Motion) -> bool:
+    """Whether the angles by whose turns loads go start in a motion as in the first pose."""
+    block, begun = (next(iter(loaded_blocks(one))) for one in (motion, first))
+    names = {name for load in motion.mechanism.loads.values() for name in counted_angles(load, block)}
+    return all(
+        whole_turns(np.ravel(begun.coordinate(name).c[0])[0] - np.ravel(block.coordinate(name).c[0])[0]) == 0.0
+        for name in names
+    )
 
 
 def _alone(stretch: ChartStretch) -> Motion:
@@ -350,7 +365,7 @@ def _driven_by(
 def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[ChartStretch]) -> SolvedCourse:
     """Return the course of a chart's driver over all stretches, read off their motions."""
     own = chart.start.structure.driven[name]
-    sense, found, last = float(own.pair.driven_by(own.drive.link)), [], None
+    sense, found, begins, last = float(own.pair.driven_by(own.drive.link)), [], [], None
     for motion, one in zip(parts, stretches, strict=True):
         # by the poses: at a multiple pin another driver leads to other pairs
         ends = motion.inputs.ends.get(own.pair.name) or own.pair.ends(motion.mechanism.geometry)
@@ -360,9 +375,12 @@ def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: lis
             rows[0] = np.unwrap(rows[0])
             rows[0] = rows[0] + (0.0 if last is None else whole_turns(last - rows[0][0]))
         last = rows[0][-1]
+        begins.append(rows[0][0])
         found.append(np.array(rows)[:, one.asked])
     value, speed, acceleration = np.concatenate(found, axis=1)
-    return value, speed, acceleration
+    turns = next(whole_turns(one.states[chart.free.index(name), 0] - begun) for one, begun in zip(stretches, begins, strict=True)
+                 if one.chart is chart) if own.pair.free_is_angle else 0.0  # fmt: skip
+    return value + turns, speed, acceleration
 
 
 def _moved(stretch: ChartStretch) -> dict[str, SolvedCourse]:

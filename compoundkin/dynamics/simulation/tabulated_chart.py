@@ -70,7 +70,7 @@ class TabulatedChart(DriverChart):
             return False
         amounts = load.amounts_held
         comes_again = bool(amounts) and all(map(_comes_again, amounts))
-        return comes_again or not _counts_turns(load, block)
+        return comes_again or not counted_angles(load, block)
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state."""
@@ -170,20 +170,22 @@ def _comes_again(amount: Any) -> bool:
     return period is not None and abs(TURN / period - round(TURN / period)) < PART_OF_A_TURN
 
 
-def _counts_turns(load: Load, block: LoadedBlock) -> bool:
-    """Return whether a load depends on an angle that is counted along the motion: it has none where that is unknown."""
-    unknown = replace(block, counted=_UnknownAngles())
-    return any(np.any(np.isnan(wrench.force) | np.isnan(wrench.moment)) for _, wrench in load.wrenches(unknown))
+def counted_angles(load: Load, block: LoadedBlock) -> set[str]:
+    """Return the pairs whose angles, counted along the motion, a load depends on."""
+    unknown = _UnknownAngles()
+    list(load.wrenches(replace(block, counted=unknown)))
+    return set(unknown)
 
 
 class _UnknownAngles(dict[str, Number]):
-    """Angles of pairs, of which none is known."""
+    """Angles of pairs, of which none is known: those that are used are added."""
 
     def __contains__(self, name: object) -> bool:
         return True
 
     def __missing__(self, name: str) -> Number:
-        return np.full((1, 1), np.nan)
+        self[name] = np.full((1, 1), np.nan)
+        return self[name]
 
 
 class _Columns(dict[str, Pose]):
