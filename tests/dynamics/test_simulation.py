@@ -483,3 +483,102 @@ def test_loads_that_hold_between_two_sides_are_no_limit_position() -> None:
     assert found.events[-1].name == "jump"
     assert found.events[-1].time == pytest.approx(0.3, abs=1e-8)
     assert found.motion.drives["rotor"].value[-1] == pytest.approx(4.5, abs=1e-8)
+
+
+WOUND = {
+    "a spring": ck.spring(pair="A", stiffness=CLOCK),
+    "a function of the extension": ck.spring(pair="A", stiffness=lambda q: CLOCK * q),
+    "a function of the coordinate": ck.effort("crank", lambda q: -CLOCK * q),
+    "a table over the driver": ck.torque("crank", {"over": "crank", "at": [-60, 60], "values": [30, -30]}),
+}
+
+
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize("load", WOUND)
+def test_a_four_bar_wound_up_by_its_crank(load: str, speed: float) -> None:
+    """Two inertias I = J + K (dw/dq)^2 against Hamilton's equations, integrated by SciPy; w is the rocker's angle."""
+    from scipy.integrate import solve_ivp
+
+    turning, rocking = 0.5, 2.0
+    linkage = ck.Mechanism(
+        "Wound four-bar",
+        *(ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("coupler", B=0, C=4)),
+        *(ck.link("rocker", D=0, C=3), ck.drive("crank"), ck.drawn(B=1j, C=4 + 3j)),
+        *(ck.mass("crank", 1.0, at="A", inertia=turning), ck.mass("rocker", 1.0, at="D", inertia=rocking)),
+        WOUND[load],
+        units=SI,
+    )
+
+    def ratio(q: float) -> float:
+        crank, frame = np.exp(1j * q), 4.0
+        line = frame - crank
+        along = (4.0**2 - 3.0**2 + abs(line) ** 2) / (2.0 * abs(line))
+        pin = crank + line / abs(line) * (along + 1j * np.sqrt(4.0**2 - along**2))
+        rod, rocker = pin - crank, pin - frame
+        return float((np.conj(crank) * rod).imag / (np.conj(rocker) * rod).imag)
+
+    def inertia(q: float) -> float:
+        return turning + rocking * ratio(q) ** 2
+
+    def grown(_: float, y: np.ndarray) -> list[float]:
+        q, p = y
+        slope = (inertia(q + 1e-5) - inertia(q - 1e-5)) / 2e-5
+        return [p / inertia(q), p * p * slope / (2.0 * inertia(q) ** 2) - CLOCK * q]
+
+    found = ck.simulate(linkage, start=(1.0, speed), until=4.0)
+    began = [1.0, inertia(1.0) * speed]
+    known = solve_ivp(grown, (0.0, 4.0), began, "DOP853", found.times, rtol=1e-11, atol=1e-11)
+    assert np.ptp(known.y[0]) > 2.0 * np.pi
+    np.testing.assert_allclose(found.motion.drives["crank"].value, known.y[0], atol=1e-6)
+    assert found.energy.worst < 1e-8
+
+
+def geared(driver: str) -> ck.Mechanism:
+    """A slider-crank whose crank turns two wheels, one of them on a clock spring."""
+    pin = np.exp(2.5j)
+    return ck.Mechanism(
+        "Geared slider-crank",
+        *(ck.link("frame", O=0, G=-2, H=2j), ck.link("crank", O=0, A=1), ck.link("rod", A=0, B=3)),
+        *(ck.link("piston", B=0), ck.slide("piston", on="frame", at="B", through="O", name="guide")),
+        *(ck.link("quick", G=0), ck.gear("crank", "quick", teeth=(60, 10))),
+        *(ck.link("wound", H=0), ck.gear("crank", "wound", teeth=(60, 20)), ck.drive(driver)),
+        ck.drawn(A=pin, B=pin.real + np.sqrt(9.0 - pin.imag**2)),
+        *(ck.mass("crank", 1.0, at="O", inertia=1.0), ck.mass("rod", 0.5), ck.mass("piston", 1.0)),
+        *(ck.spring(pair="G", stiffness=0.1), ck.spring(pair="H", stiffness=lambda angle: 0.2 * angle)),
+        units=SI,
+    )
+
+
+def test_turns_are_kept_where_another_pair_becomes_the_coordinate() -> None:
+    """The wheel on the spring has turned by more than one turn before the piston's dead point."""
+    by_crank = ck.simulate(geared("crank"), start=(2.5, -6.0), until=2.0)
+    point = by_crank.motion.points["B"]
+    first = float(point.x[0]), float(point.velocity.real[0])
+    by_piston = ck.simulate(geared("piston"), start=first, until=2.0, times=by_crank.times)
+    assert "coordinate" in [event.name for event in by_piston.events]
+    turned = by_crank.motion.drives["crank"].value
+    assert np.ptp(turned) > 2.0 * np.pi / 3.0
+    np.testing.assert_allclose(by_piston.motion.points["A"].position, by_crank.motion.points["A"].position, atol=1e-7)
+    assert by_piston.energy.worst < 1e-8
+
+
+def test_a_start_beyond_a_turn_winds_the_spring() -> None:
+    """The energy of a rocker on a torsion spring that starts a turn further, through the limit of its driver."""
+    plain = ck.load("triple-rocker")
+    size = plain.geometry.size
+    masses = [ck.mass(link, 1.0, at=(0.1 * size, 0.05 * size), inertia=0.05 * size**2)
+              for link in plain.links if link != "frame"]  # fmt: skip
+    stiffness = 2.0 * size
+    heavy = plain.replace(*masses, ck.gravity(0, -9.81), ck.spring(pair="A", stiffness=stiffness),
+                          unit="", units=SI, time=None)  # fmt: skip
+    (driver,) = ck.decompose(heavy).driven
+    for turns in (1.0, -1.0):
+        first = -1.2653 + turns * 2.0 * np.pi
+        found = ck.simulate(heavy, start={driver: (first, 3.0)}, until=1.5)
+        assert "coordinate" in [event.name for event in found.events]
+        angle = found.motion.drives[driver].value
+        assert angle[0] == pytest.approx(first, abs=1e-12)
+        assert found.energy.worst < 1e-7
+        lifted = sum(own.mass * 9.81 * (found.motion.links[own.link].at(own.at).y) for own in masses)
+        stored = found.energy.potential - lifted - stiffness * angle**2 / 2.0
+        assert np.ptp(stored) < 1e-9 * np.ptp(found.energy.potential)
