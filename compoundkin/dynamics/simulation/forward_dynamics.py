@@ -378,9 +378,10 @@ def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: lis
         begins.append(rows[0][0])
         found.append(np.array(rows)[:, one.asked])
     value, speed, acceleration = np.concatenate(found, axis=1)
-    turns = next(whole_turns(one.states[chart.free.index(name), 0] - begun) for one, begun in zip(stretches, begins, strict=True)
-                 if one.chart is chart) if own.pair.free_is_angle else 0.0  # fmt: skip
-    return value + turns, speed, acceleration
+    if own.pair.free_is_angle:
+        index = [one.chart is chart for one in stretches].index(True)
+        value += whole_turns(stretches[index].states[chart.free.index(name), 0] - begins[index])
+    return value, speed, acceleration
 
 
 def _moved(stretch: ChartStretch) -> dict[str, SolvedCourse]:
