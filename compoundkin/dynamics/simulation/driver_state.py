@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
@@ -21,6 +21,7 @@ from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
+from compoundkin.structure.mobility_count import DrivenPair
 
 
 class LinearAngle(NamedTuple):
@@ -51,7 +52,7 @@ class StateChart(Protocol):
     gravity: complex
     loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
     turned: dict[str, LinearAngle]  # the counted angles of pairs
-    driven: Mapping[str, tuple[str, Any]]  # the drivers of pairs, by their names
+    driven: dict[str, tuple[str, DrivenPair]]  # the drivers of pairs, by their names
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""
