@@ -272,10 +272,13 @@ def _of_link(
     rows, phi = np.arange(segments.rows), (np.arange(CELLS) + 0.5) * np.pi / CELLS
     rate = _rate(placing, pair, rows, np.broadcast_to(phi, (len(rows), CELLS)))
     size = 1.0 if pair.free_is_angle else placing.sweep.solving_order.size
-    moving = np.max(np.abs(rate), axis=1) > STILL * size
-    at, cell = np.nonzero((rate[:, 1:] > 0) != (rate[:, :-1] > 0))
-    kept = moving[at]
-    at, low, high = at[kept], phi[cell[kept]], phi[cell[kept] + 1]
+    sense = np.where(np.abs(rate) > STILL * size, np.sign(rate), 0.0)
+    # in a dwell it stands still for a while; a single place without a rate may be the toggle position itself
+    turns = np.zeros((2, *sense.shape), dtype=bool)
+    turns[0, :, :-1] = sense[:, 1:] * sense[:, :-1] < 0.0
+    turns[1, :, :-2] = (sense[:, 2:] * sense[:, :-2] < 0.0) & (sense[:, 1:-1] == 0.0)
+    apart, at, cell = np.nonzero(turns)
+    low, high = phi[cell], phi[cell + 1 + apart]
     rising = _rate(placing, pair, at, high[:, None])[:, 0] > 0 if len(at) else np.zeros(0, dtype=bool)
     low, _ = bisect_brackets(
         lambda middle: (_rate(placing, pair, at, middle[:, None])[:, 0] > 0) != rising, low, high, HALVINGS

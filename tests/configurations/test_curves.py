@@ -88,3 +88,12 @@ def test_a_configuration_whose_arcs_are_both_lost_is_no_segment() -> None:
     assert pieces == []
     _add(pieces, 0, np.array([[0.0, 0.0, 1.0, 0.5], [0.0, 0.0, 1.1, 0.6]]), [], False)
     assert len(pieces) == 1
+
+
+DWELLING = ("oscillating-roller-follower", "oscillating-flat-follower", "disc-cam-roller-program")
+
+
+@pytest.mark.parametrize("name", DWELLING)
+def test_a_dwell_has_no_toggle_positions(name: str) -> None:
+    """Their followers rise, dwell, fall and dwell: rounding of the rate in a dwell is no turning back."""
+    assert ck.circuits(ck.load(name)).toggles == ()
