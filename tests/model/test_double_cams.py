@@ -171,3 +171,9 @@ def test_what_cannot_be_made_says_why_and_where(make: Callable[[], DoubleCam], w
     with pytest.raises(ck.errors.InvalidMechanism, match=words) as caught:
         make()
     assert all(problem.remedy for problem in caught.value.problems)
+
+
+def test_both_contacts_are_on_the_same_side_of_a_break() -> None:
+    """At the ends of a dwell the jerk jumps: both cams take that of the segment that begins there."""
+    motion = ck.solve(ck.load("conjugate-cams"), order=3)
+    assert ck.verify(motion).passed

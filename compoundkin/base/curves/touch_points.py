@@ -20,6 +20,9 @@ BEYOND = 1e-12
 LAST_STEP = 1e-6
 # Bisection gains one digit in 3.3 steps: from two samples to rounding within these.
 STEPS = 60
+# A place that is a break of the curve but for rounding, this part of its range, is the break: derivatives there are
+# those of the piece that begins, for all that touches it.
+BREAK = 4e-15
 
 
 class SearchableCurve(Protocol):
@@ -36,6 +39,10 @@ class SearchableCurve(Protocol):
     @property
     def sample_tangents(self) -> Number:
         """The first derivatives at the samples."""
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The parameters at which derivatives may jump."""
 
     @property
     def size(self) -> float:
@@ -128,7 +135,19 @@ def _search(curve: SearchableCurve, given: Number, aim: _Target) -> Number:
         found[known] = newton_maximum(
             lambda s, which: aim.rise(curve.derivatives(s, 2), targets[which]), bounds, LAST_STEP, STEPS
         )
+        if curve.breaks:
+            found[known] = _at_breaks(curve, found[known])
     return found.reshape(lead.shape)[()]
+
+
+def _at_breaks(curve: SearchableCurve, s: Number) -> Number:
+    """Return parameters, those next to a break as the break."""
+    width = curve.high - curve.low
+    gaps = s[:, None] - np.array(curve.breaks)
+    gaps = gaps - width * np.round(gaps / width) if curve.closed else gaps
+    i = np.argmin(np.abs(gaps), axis=1)
+    here = np.abs(gaps[np.arange(len(s)), i]) < BREAK * width
+    return np.where(here, np.array(curve.breaks)[i], s)
 
 
 def _bounds(curve: SearchableCurve, targets: Number, aim: _Target) -> tuple[Number, Number, Number]:
