@@ -475,14 +475,126 @@ def test_a_brake_behind_a_place() -> None:
     assert found.energy.worst < 1e-10
 
 
-def test_loads_that_hold_between_two_sides_are_no_limit_position() -> None:
-    """Friction written as a function jumps to and fro where the rotor comes to rest."""
-    found = ck.simulate(
-        rotor_under(ck.effort("O", lambda q, w: -5.0 * np.sign(w))), start={"rotor": (0.0, 30.0)}, until=1.0
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-11])
+def test_friction_as_a_function_holds_at_rest(tolerance: float) -> None:
+    """5 N m against the speed: at rest after 0.3 s and 4.5 rad, until a torque that grows by 10 N m/s exceeds it."""
+    pulled = rotor_under(ck.effort("O", lambda w: -5.0 * np.sign(w)))
+    found = ck.simulate(pulled, start=(0.0, 30.0), until=1.0, tolerance=tolerance)
+    assert [(event.name, event.stops) for event in found.events] == [("sticks", False)]
+    assert found.events[0].time == pytest.approx(0.3, abs=100.0 * tolerance)
+    assert found.motion.drives["rotor"].value[-1] == pytest.approx(4.5, abs=100.0 * tolerance)
+    assert found.motion.drives["rotor"].rate[-1] == pytest.approx(0.0, abs=1e-12)
+    freed = pulled.replace(ck.torque("rotor", lambda t: 10.0 * t))
+    found = ck.simulate(freed, start=0.0, until=1.0, tolerance=tolerance)
+    assert [event.name for event in found.events] == ["sticks", "slips"]
+    assert found.events[1].time == pytest.approx(0.5, rel=1e-8)
+    # (10 t - 5) / 0.05 from then on
+    assert found.motion.drives["rotor"].rate[-1] == pytest.approx(25.0, rel=1e-6)
+    assert found.motion.drives["rotor"].value[-1] == pytest.approx(25.0 / 6.0, rel=1e-6)
+
+
+def test_friction_and_a_spring_come_to_rest() -> None:
+    """Each half swing is 2 x 0.5 rad shorter; at rest where the spring pulls by less than friction."""
+    stiffness, friction = 10.0, 5.0
+    damped = rotor_under(ck.effort("O", lambda w: -friction * np.sign(w))).replace(
+        ck.spring(pair="O", stiffness=stiffness)
     )
-    assert found.events[-1].name == "jump"
-    assert found.events[-1].time == pytest.approx(0.3, abs=1e-8)
-    assert found.motion.drives["rotor"].value[-1] == pytest.approx(4.5, abs=1e-8)
+    found = ck.simulate(damped, start=(4.2, 0.0), until=2.0)
+    # 4.2, -3.2, 2.2, -1.2, 0.2: the spring then pulls by 2 N m
+    half = np.pi / np.sqrt(stiffness / 0.05)
+    assert [event.name for event in found.events] == ["jump"] * 3 + ["sticks"]
+    assert [event.time for event in found.events] == pytest.approx([half, 2 * half, 3 * half, 4 * half], rel=1e-8)
+    assert found.motion.drives["rotor"].value[-1] == pytest.approx(0.2, abs=1e-8)
+    assert found.energy.worst < 1e-9
+
+
+def test_a_motor_that_is_switched_by_its_speed() -> None:
+    """It holds 20 rad/s, on and off, as long as it is stronger than the load, which exceeds it after 0.5 s."""
+    switched = rotor_under(ck.effort("O", lambda w: np.where(w < 20.0, 5.0, 0.0)))
+    held = ck.simulate(switched.replace(ck.torque("rotor", -2.0)), start=0.0, until=1.0)
+    assert [event.name for event in held.events] == ["slides"]
+    assert held.events[0].time == pytest.approx(1.0 / 3.0, rel=1e-9)
+    assert held.motion.drives["rotor"].value[-1] == pytest.approx(10.0 / 3.0 + 20.0 * 2.0 / 3.0, rel=1e-9)
+    assert held.energy.work[-1] == pytest.approx(10.0, rel=1e-9)
+    left = ck.simulate(switched.replace(ck.torque("rotor", lambda t: -10.0 * t)), start=0.0, until=1.0)
+    assert [event.name for event in left.events] == ["slides", "slips"]
+    # 100 t - 100 t^2 = 20
+    assert left.events[0].time == pytest.approx((1.0 - np.sqrt(0.2)) / 2.0, rel=1e-9)
+    assert left.events[1].time == pytest.approx(0.5, rel=1e-9)
+    assert left.motion.drives["rotor"].rate[-1] == pytest.approx(20.0 - 100.0 * 0.25, rel=1e-8)
+
+
+def test_short_pulses_and_corners_in_time() -> None:
+    """What is shorter than a step is not stepped over: a pulse of 1 ms, and a table of triangles."""
+    pulse = rotor_under(ck.torque("rotor", lambda t: np.where(np.abs(t - 0.5) <= 0.0005, 5.0, 0.0)))
+    found = ck.simulate(pulse, start=0.0, until=1.0)
+    assert [event.time for event in found.events] == pytest.approx([0.4995, 0.5005], abs=1e-12)
+    assert found.motion.drives["rotor"].rate[-1] == pytest.approx(0.1, rel=1e-9)
+    table = {"at": [0.0, 0.05, 0.1], "values": [5.0, 0.0, 5.0], "period": 0.1}
+    turned = ck.simulate(rotor_under(ck.torque("rotor", table)), start=0.0, until=1.0)
+    assert turned.events == ()
+    assert turned.motion.drives["rotor"].rate[-1] == pytest.approx(50.0, rel=1e-12)
+    square = rotor_under(ck.torque("rotor", lambda t: np.sign(np.sin(40.0 * t))))
+    swung = ck.simulate(square, start=0.0, until=np.pi / 10.0)
+    # up and down: half the time at the mean of the greatest speed, twice
+    assert swung.motion.drives["rotor"].rate[-1] == pytest.approx(0.0, abs=1e-9)
+    assert swung.motion.drives["rotor"].value[-1] == pytest.approx(2.0 * 20.0 * (np.pi / 40.0) ** 2, rel=1e-9)
+
+
+def test_a_buffer_is_met_and_left() -> None:
+    """A function with a corner: half a period of the buffer's, then back with the same speed."""
+    found = ck.simulate(
+        rotor_under(ck.effort("O", lambda q: -500.0 * np.maximum(q - 1.0, 0.0))), start=(0.0, 10.0), until=1.0
+    )
+    back = 0.1 + np.pi / np.sqrt(500.0 / 0.05)
+    assert found.motion.drives["rotor"].value[-1] == pytest.approx(1.0 - 10.0 * (1.0 - back), abs=1e-8)
+    assert found.motion.drives["rotor"].rate[-1] == pytest.approx(-10.0, rel=1e-8)
+    assert found.times[-1] == 1.0
+
+
+def press(*loads: object) -> ck.Mechanism:
+    """A slider-crank of crank 1 and rod 3."""
+    return ck.Mechanism(
+        "Press",
+        *(ck.link("frame", O=0), ck.link("crank", O=0, A=1), ck.link("rod", A=0, B=3), ck.link("piston", B=0)),
+        *(ck.slide("piston", on="frame", at="B", through="O", name="guide"), ck.drive("crank")),
+        ck.drawn(A=np.exp(0.7j), B=np.cos(0.7) + np.sqrt(9.0 - np.sin(0.7) ** 2)),
+        *(ck.mass("crank", 1.0, at="O", inertia=1.0), ck.mass("rod", 0.5), ck.mass("piston", 1.0)),
+        *loads,
+        units=SI,
+    )
+
+
+@pytest.mark.parametrize("load", ["effort", "force"])
+def test_a_press_that_stalls_stands_still(load: str) -> None:
+    """A motor that weakens with its speed, against work on the piston, which is done while it goes forward only."""
+    against = (
+        ck.effort("guide", -30.0, only="forward")
+        if load == "effort"
+        else ck.force("piston", (-30.0, 0.0), at="B", while_moving=(1.0, 0.0))
+    )
+    motor = ck.effort("crank", lambda w: 4.0 * (1.0 - w / 10.0))
+    # over the dead point, where the piston turns back, and on
+    found = ck.simulate(press(motor, against), start=(-0.2, 3.0), until=3.0)
+    assert found.times[-1] == 3.0
+    assert "limit" not in [event.name for event in found.events]
+    stood = ck.simulate(press(motor, against), start=(-2.0, 1.0), until=2.0)
+    assert [event.name for event in stood.events] == ["sticks"]
+    assert stood.motion.drives["crank"].rate[-1] == pytest.approx(0.0, abs=1e-12)
+    assert stood.energy.worst < 1e-9
+
+
+def test_a_brake_that_holds_the_speed_of_a_piston() -> None:
+    """It brakes above 2 m/s only: the piston keeps 2 m/s until the crank can no more."""
+    braked = press(ck.effort("guide", lambda v: -20.0 * (v > 2.0)), ck.torque("crank", 4.0))
+    found = ck.simulate(braked, start=(0.7, 3.0), until=2.0)
+    assert [event.name for event in found.events] == ["jump", "slides", "slips"]
+    first, last = (event.time for event in found.events[1:])
+    during = (found.times > first) & (found.times < last)
+    assert during.sum() > 5
+    speed = found.motion.points["B"].velocity.real[during]
+    np.testing.assert_allclose(speed, 2.0, atol=1e-8)
+    assert found.energy.worst < 1e-8
 
 
 WOUND = {

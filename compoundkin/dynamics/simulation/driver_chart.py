@@ -20,6 +20,7 @@ from compoundkin.kinematics.groups.contract import equations_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.laws import Law
+from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_drivable
 
@@ -39,6 +40,7 @@ class DriverChart:
     states: dict[int, Number] = field(init=False)
     near: dict[str, LinearAngle] = field(init=False)
     turned: dict[str, LinearAngle] = field(init=False)
+    held: HeldSpeed | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         self.names = (*self.free, *self.laws)
@@ -82,6 +84,10 @@ class DriverChart:
         """Return the rates of a state."""
         return self.state(time, values, speeds).rates
 
+    def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates of a state, between both sides of a jump where a load holds a speed."""
+        return self.rates(time, values, speeds) if self.held is None else self.held.rates(self, time, values, speeds)
+
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""
         return state.dry
@@ -96,16 +102,17 @@ class DriverChart:
 
     def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the accelerations of the free drivers at a state of the solution."""
-        return self.rates(time, values, speeds).accelerations
+        return self.followed_rates(time, values, speeds).accelerations
 
     @property
     def memory(self) -> tuple[Any, ...]:
         """The configuration at the last accepted state."""
-        return dict(self.states), dict(self.near), dict(self.turned)
+        return self.held, dict(self.states), dict(self.near), dict(self.turned)
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Restore a configuration."""
-        self.states, self.near, self.turned = (dict(own) for own in memory[:3])
+        self.held = memory[0]
+        self.states, self.near, self.turned = (dict(own) for own in memory[1:4])
 
     def sign(self, k: int, values: Number) -> float:
         """Return the sign of a dyad's mode at values of the drivers."""
@@ -162,6 +169,87 @@ class DriverChart:
         part = self.start.inputs.driven(drives)
         block = self.order.start(self.ends, part.series(2), 2, (count + 1, 1))
         return run(self.order, block, _ConfigurationChoice(self, values))
+
+
+# Both sides of a jump are this part of the speed apart from it, and rates are differences over this part of the time.
+BESIDE, INSTANT = 1e-8, 2e-3
+
+
+@dataclass(frozen=True, eq=False)
+class HeldSpeed:
+    """A load that jumps where its speed passes a value, and so holds it there: the motion slides along the jump.
+
+    Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, section 4.
+    """
+
+    load: Load
+    speed: float
+    pace: float  # the size of speeds
+
+    def excess(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> float:
+        """Return the excess of the load's speed over the one at which it jumps."""
+        return _speed_of(self.load, chart.state(time, values, speeds)) - self.speed
+
+    def by_speeds(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> Number:
+        """Return the rates of the load's speed by the speeds of the free drivers."""
+        here = self.excess(chart, time, values, speeds)
+        steps = self.pace * np.eye(len(speeds))
+        return np.array([self.excess(chart, time, values, speeds + step) - here for step in steps]) / self.pace
+
+    def moved(self, chart: DriverChart, time: float, values: Number, speeds: Number, excess: float) -> Number:
+        """Return the speeds of the free drivers at which the load's speed has an excess."""
+        slopes = self.by_speeds(chart, time, values, speeds)
+        off = excess - self.excess(chart, time, values, speeds)
+        found: Number = speeds + off * slopes / float(slopes @ slopes)
+        return found
+
+    def sides(
+        self, chart: DriverChart, time: float, values: Number, speeds: Number, near: float = 1.0
+    ) -> tuple[Rates, Rates, float]:
+        """Return the rates below and above the jump, and the part of those above under which the speed is held.
+
+        The part is from 0 to 1 where it can be held. The sides are `near` times as far apart as usual.
+        """
+        parts, grown = [], []
+        for side in (-1.0, 1.0):
+            beside = self.moved(chart, time, values, speeds, side * near * BESIDE * self.pace)
+            found = chart.rates(time, values, beside)
+            # the power is that at the speed itself
+            off = float(chart.state(time, values, beside).forces[1][: len(speeds)] @ (beside - speeds))
+            parts.append(Rates(found.accelerations, found.power - off))
+            grown.append(self._growth(chart, time, values, speeds, parts[-1].accelerations))
+        return parts[0], parts[1], grown[0] / (grown[0] - grown[1]) if grown[0] > grown[1] else np.nan
+
+    def jump(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> float:
+        """Return by how much the load jumps."""
+        ends = [chart.state(time, values, self.moved(chart, time, values, speeds, side * BESIDE * self.pace))
+                for side in (-1.0, 1.0)]  # fmt: skip
+        return float(np.max(np.abs(np.subtract(*(one.loaded.along((self.load,)) for one in ends)))))
+
+    def _growth(self, chart: DriverChart, time: float, values: Number, speeds: Number, second: Number) -> float:
+        """Return the rate of the load's speed at accelerations of the free drivers."""
+        quick = max(float(np.max(np.abs(speeds) / chart.scales)), float(np.sqrt(np.max(np.abs(second) / chart.scales))))
+        step = INSTANT / quick if quick else INSTANT
+
+        def over(h: float) -> float:
+            ends = [self.excess(chart, time + d, values + d * speeds + d * d * second / 2.0, speeds + d * second)
+                    for d in (-h, h)]  # fmt: skip
+            return (ends[1] - ends[0]) / (2.0 * h)
+
+        # Richardson's extrapolation; what has drifted off the jump returns to it within about a radian
+        return (4.0 * over(step / 2.0) - over(step)) / 3.0 + quick * self.excess(chart, time, values, speeds)
+
+    def rates(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates between those of both sides under which the speed is held."""
+        if len(speeds) == 1 and speeds[0] == self.speed == 0.0:
+            return Rates(np.zeros(1), 0.0)
+        below, above, part = self.sides(chart, time, values, speeds)
+        return Rates(below.accelerations + part * (above.accelerations - below.accelerations),
+                     below.power + part * (above.power - below.power))  # fmt: skip
+
+
+def _speed_of(load: Load, state: DriverState) -> float:
+    return float(np.ravel(load.speed_at(state.loaded))[0])
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
-from compoundkin.dynamics.simulation.simulation_events import watches
+from compoundkin.dynamics.simulation.simulation_events import load_breaks, watches
 from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -95,7 +95,8 @@ def simulate(
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
     watched = watches(mechanism, events or {}, (stop,) if isinstance(stop, str) else tuple(stop))
-    course = SimulatedCourse(float(until), float(tolerance), watched, restitution)
+    breaks = load_breaks(mechanism, float(until))
+    course = SimulatedCourse(float(until), float(tolerance), watched, restitution, breaks=breaks)
     with np.errstate(all="ignore"):
         _check_inertia(chart, state)
         integrate(chart, state, course, progress)

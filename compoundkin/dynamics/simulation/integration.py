@@ -15,11 +15,12 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pairs
-from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import SimulatedState
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
+    LoadBreak,
     SimulationEvent,
     Watch,
     after_impact,
@@ -27,6 +28,7 @@ from compoundkin.dynamics.simulation.simulation_events import (
     first_passed,
 )
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER
+from compoundkin.model.loads.contract import Load
 
 # The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
 LONGEST_MOVE = 1.0
@@ -50,21 +52,32 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
     n = len(chart.free)
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
-        solver.max_step = longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n])
+        longest = course.until if chart.held is None else course.until / HELD_STEPS
+        solver.max_step = min(longest, longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n]))
         solver.h_abs = min(solver.h_abs, solver.max_step)
         solver.step()
         if solver.status == "failed":
-            return _stop(course, "limit", "the motion comes to a limit position")
+            changed = _changed(chart, solver, course)
+            if changed is None:
+                return
+            chart, state = changed
+            solver = _begun(chart, course.last, state, course)
+            continue
         course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output(), chart.memory))
         passed = _passed(course) if course.watched else None
         if passed is not None and (passed.state is None or passed.time >= course.until):
             return None
-        if passed is None:
+        released = _released(chart, course) if passed is None and chart.held is not None else None
+        if released is not None:
+            solver = _begun(chart, course.last, released, course)
+        elif passed is None:
             chart.accept(solver.t, solver.y[:n], solver.y[n : 2 * n])
             changed = _changed(chart, solver, course)
             if changed is not None:
                 chart, state = changed
                 solver = _begun(chart, course.last, state, course)
+            elif solver.status == "finished" and course.last < course.until and not course.ended:
+                solver = _behind_break(chart, solver, course)
         else:
             solver = _begun(chart, passed.time, passed.state, course)
         if progress is not None:
@@ -77,6 +90,10 @@ def _begun(chart: DriverChart, time: float, state: Number, course: SimulatedCour
     n = len(chart.free)
     values, speeds = state[:n], state[n : 2 * n]
     if chart.begin(time, values, speeds):
+        if chart.held is None and not speeds.any():
+            chart.held = _holding(chart, time, state, course)
+            if chart.held is not None:
+                _tell_held(course, time, chart.held)
         return _solver(chart, time, state, course)
     last = chart.released(time, values, course.until)
     course.events.append(SimulationEvent(time, STICKS, "friction holds the mechanism", False))
@@ -130,15 +147,21 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
 def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
     """Return another chart and its state to continue with; None where the present one is regular or none is better."""
     n = len(chart.free)
-    stalls = solver.step_size < STALLED * min(solver.max_step, course.until)
+    if _hesitates(solver, course):
+        beyond = _beyond_jump(chart, solver, course)
+        if beyond is not None:
+            return chart, beyond
+    stalls = _stalls(solver, course)
     if chart.is_regular(solver.y[:n]) and not stalls:
         return None
     here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
     pairs = fastest_pairs(chart, here)
     if stalls and not any(one.ratio >= FASTER for one in pairs):
-        beyond = _beyond_jump(chart, solver, course)
-        if beyond is not None:
-            return chart, beyond
+        since = course.last - AGAIN * STALLED * course.until
+        if sum(time > since for time in course.restarts) < MOST_JUMPS:
+            # a jump that has just been passed leaves short steps
+            course.restarts.append(course.last)
+            return chart, solver.y
         solver.status = "finished"
         text = "the loads change there faster than they can be followed, or hold the motion between two sides of a jump"
         _stop(course, JUMP, text)
@@ -158,15 +181,49 @@ def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[
     return None
 
 
-# A jump of the loads lies so many stalled steps ahead at the most; halvings find its time to rounding. It is a jump
-# where accelerations differ by this part on both sides of it.
-AHEAD, HALVINGS, JUMPS = 64.0, 60, 1e-6
+# At a jump steps have this many times the tolerance at least, as parts of the longest.
+HESITATES = 100.0
+
+
+def _hesitates(solver: Any, course: SimulatedCourse) -> bool:
+    """Return whether steps are so short that a jump of the loads may be the cause."""
+    if solver.status == "failed":
+        return True
+    small = max(STALLED, HESITATES * course.tolerance) * min(solver.max_step, course.until)
+    return bool(solver.step_size < small) and not _grows(course)
+
+
+def _stalls(solver: Any, course: SimulatedCourse) -> bool:
+    """Return whether steps collapse."""
+    collapses = solver.step_size is not None and solver.step_size < STALLED * min(solver.max_step, course.until)
+    return solver.status == "failed" or (bool(collapses) and not _grows(course))
+
+
+def _grows(course: SimulatedCourse) -> bool:
+    """Return whether steps grow, as behind a jump and at the start, where the first two are alike."""
+    if len(course.steps) < 3:
+        return True
+    before, _, last = (step.last - step.first for step in course.steps[-3:])
+    return last > 2.0 * before
+
+
+# A jump of the loads lies so many stalled or so many present steps ahead at the most; halvings find its time to
+# rounding. It is a jump where accelerations change by this part of them, most of that between two neighbouring times.
+AHEAD, NEXT, HALVINGS, JUMPS, MOST = 64.0, 8.0, 80, 1e-9, 0.5
 # Jumps that follow each other within so many stalled steps are one at which the motion cannot go on to either side.
 AGAIN, MOST_JUMPS = 1e3, 4
 
 
-def _beyond_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Number | None:
-    """Return the state behind a jump of the loads at which the integrator stalled; None where there is none just ahead.
+class _Jump(NamedTuple):
+    """Times just before and behind a jump of the loads, and the course there."""
+
+    before: float
+    behind: float
+    course: Callable[[Number], Number]
+
+
+def _next_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> _Jump | None:
+    """Return the jump of the loads at which the integrator stalled; None where there is none just ahead.
 
     Up to the jump accelerations are those of the present state; its time is found by halving.
     """
@@ -174,36 +231,147 @@ def _beyond_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Nu
     t, y, rates = float(solver.t), solver.y.copy(), solver.f.copy()
 
     def after(times: Number) -> Number:
-        moved = y[:, None] + rates[:, None] * times
-        moved[:n] += 0.5 * rates[n : 2 * n, None] * np.square(times)
-        return moved
+        since = np.atleast_1d(times) - t
+        moved = y[:, None] + rates[:, None] * since
+        moved[:n] += 0.5 * rates[n : 2 * n, None] * np.square(since)
+        return moved if np.ndim(times) else moved[:, 0]
 
     def accelerations(time: float) -> Number:
-        state = after(np.array([time]))[:, 0]
-        return chart.rates(t + time, state[:n], state[n : 2 * n]).accelerations
+        state = after(np.array(time))
+        return chart.followed_rates(time, state[:n], state[n : 2 * n]).accelerations
 
-    def jumps(time: float) -> bool:
-        change = np.abs(accelerations(time) - rates[n : 2 * n])
-        return bool(np.any(change > JUMPS * (1.0 + np.abs(rates[n : 2 * n]))))
-
-    low, high = 0.0, AHEAD * STALLED * min(solver.max_step, course.until)
-    if not jumps(high):
+    low, high = t, t + max(AHEAD * STALLED * min(solver.max_step, course.until), NEXT * (solver.step_size or 0.0))
+    first, last = rates[n : 2 * n], accelerations(high)
+    change = float(np.max(np.abs(last - first)))
+    if not change > JUMPS * max(float(np.max(np.abs(one))) for one in (first, last)):
         return None
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if jumps(middle) else (middle, high)
-    recent = [one for one in course.events if one.name == JUMP and t - one.time < AGAIN * STALLED * course.until]
+        if not low < middle < high:
+            break
+        found = accelerations(middle)
+        if np.max(np.abs(found - first)) > np.max(np.abs(found - last)):
+            high = middle
+        else:
+            low = middle
+    jumps = np.max(np.abs(accelerations(high) - accelerations(low))) > MOST * change
+    return _Jump(low, high, after) if jumps else None
+
+
+def _beyond_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Number | None:
+    """Return the state behind the jump of the loads at which steps collapse, or held by it; None without one."""
+    found = _next_jump(chart, solver, course)
+    if found is None:
+        return None
+    since = found.behind - AGAIN * STALLED * course.until
+    recent = [one for one in course.events if one.name == JUMP and one.time > since]
     if len(recent) >= MOST_JUMPS:
         return None
-    course.steps.append(Step(chart, t, t + high, lambda times: _one_or_many(after, times - t), chart.memory))
-    course.events.append(SimulationEvent(t + high, JUMP, "the loads jump", False))
-    return after(np.array([high]))[:, 0]
+    if found.behind > solver.t:
+        course.steps.append(Step(chart, float(solver.t), found.behind, found.course, chart.memory))
+    state = found.course(np.array(found.behind))
+    held = _holding(chart, found.behind, state, course)
+    if held is None:
+        course.events.append(SimulationEvent(found.behind, JUMP, "the loads jump", False))
+        return state
+    chart.held = held
+    n = len(chart.free)
+    state[n : 2 * n] = held.moved(chart, found.behind, state[:n], state[n : 2 * n], 0.0)
+    _tell_held(course, found.behind, held)
+    return state
 
 
-def _one_or_many(states: Callable[[Number], Number], times: Number) -> Number:
-    """Return states in columns, or the state at a single time."""
-    found = states(np.atleast_1d(times))
-    return found if np.ndim(times) else found[:, 0]
+def _tell_held(course: SimulatedCourse, time: float, held: HeldSpeed) -> None:
+    """Record that a load holds a speed."""
+    if held.speed == 0.0:
+        course.events.append(SimulationEvent(time, STICKS, f"{held.load.name} holds it at rest", False))
+    else:
+        text = f"{held.load.name} holds its speed of {held.speed:.6g}"
+        course.events.append(SimulationEvent(time, "slides", text, False))
+
+
+# Speeds below this part of the fastest are zero: that a jump is at rest, and not at rounding beside it.
+AT_REST = 1e-9
+# Sides of a jump nearer by this show whether it is one.
+NARROW = 0.01
+
+
+def _holding(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> HeldSpeed | None:
+    """Return the load that jumps with its speed at a state and holds it; None where the motion passes the jump."""
+    n = len(chart.free)
+    loads = [one for some in chart.loads for one in some]
+    found = [held for held in (_held_by(load, chart, time, state, course) for load in loads) if held is not None]
+    return max(found, key=lambda held: held.jump(chart, time, state[:n], state[n : 2 * n]), default=None)
+
+
+def _held_by(load: Load, chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> HeldSpeed | None:
+    """Return a load as one that holds its present speed, None where it does not jump there or does not hold it."""
+    n = len(chart.free)
+    values, speeds = state[:n], state[n : 2 * n]
+    given = load.speed_at(chart.state(time, values, speeds).loaded)
+    if given is None:
+        return None
+    pace, speed = _fastest(chart, course, speeds), float(np.ravel(given)[0])
+    held = HeldSpeed(load, speed if abs(speed) > AT_REST * pace else 0.0, pace)
+    if not _holds(held.sides(chart, time, values, speeds)[2]):
+        return None
+    # what is smooth changes the less the nearer both sides are
+    wide, narrow = (
+        np.max(np.abs(np.subtract(*(one.accelerations for one in held.sides(chart, time, values, speeds, near)[:2]))))
+        for near in (1.0, NARROW)
+    )
+    return held if narrow > MOST * wide else None
+
+
+def _holds(part: float) -> bool:
+    """Return whether a jump holds a speed by a part of one of its sides; at the ends, rounding does not decide."""
+    return -ROUNDING <= part <= 1.0 + ROUNDING
+
+
+# Parts of the sides of a jump have rounding of this size.
+ROUNDING = 1e-9
+
+
+def _fastest(chart: DriverChart, course: SimulatedCourse, speeds: Number) -> float:
+    """Return the size of the speeds up to now."""
+    n = len(chart.free)
+    known = [np.abs(step.between(np.array(step.first))[n : 2 * n]) for step in course.steps if step.chart is chart]
+    # at rest from the start, what is reached in the whole time or over the scale of a driver
+    return float(np.max([np.abs(speeds), *known])) or float(np.max(chart.scales)) / course.until
+
+
+# The fewest steps of a simulation in which a load holds a speed, and the places of a step at which it is checked.
+HELD_STEPS, HELD_SAMPLES = 16, 8
+
+
+def _released(chart: DriverChart, course: SimulatedCourse) -> Number | None:
+    """Return the state in which a held speed is left in the last step; None where it is held on."""
+    held, step, n = chart.held, course.steps[-1], len(chart.free)
+    assert held is not None
+
+    def part(time: float) -> float:
+        y = step.between(np.array(time))
+        return held.sides(chart, time, y[:n], y[n : 2 * n])[2]
+
+    times = np.linspace(step.first, step.last, HELD_SAMPLES + 1)
+    late = next((float(time) for time in times[1:] if not _holds(part(float(time)))), None)
+    if late is None:
+        return None
+    early = late - (step.last - step.first) / HELD_SAMPLES
+    while early < (middle := 0.5 * (early + late)) < late:
+        early, late = (middle, late) if _holds(part(middle)) else (early, middle)
+    course.cut(late)
+    y = step.between(np.array(late))
+    # what is above 1 leaves upwards
+    side = 1.0 if part(late) > 1.0 else -1.0
+    y[n : 2 * n] = held.moved(chart, late, y[:n], y[n : 2 * n], side * LEAVES * held.pace)
+    chart.held = None
+    course.events.append(SimulationEvent(late, "slips", f"{held.load.name} holds its speed no longer", False))
+    return y
+
+
+# A held speed is left at this part of the pace: well above its rounding.
+LEAVES = 1e-13
 
 
 def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
@@ -212,7 +380,16 @@ def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
     _stop(course, "limit", text)
 
 
+def _behind_break(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Any:
+    """Return the integrator from the other side of a time at which a load jumps or has a corner."""
+    one = next(one for one in course.breaks if one.before >= solver.t)
+    if one.jumps:
+        course.events.append(SimulationEvent(one.behind, JUMP, "the loads jump", False))
+    return _begun(chart, one.behind, solver.y, course)
+
+
 def _stop(course: SimulatedCourse, name: str, text: str) -> None:
+    course.ended = True
     course.events.append(SimulationEvent(course.last, name, text, True))
 
 
@@ -224,14 +401,15 @@ def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCou
 
     def grown(at: float, y: Number) -> Number:
         course.evaluations += 1
-        found = chart.rates(at, y[:n], y[n : 2 * n])
+        found = chart.followed_rates(at, y[:n], y[n : 2 * n])
         return np.concatenate([y[n : 2 * n], found.accelerations, [found.power]])
 
     rates = grown(time, state)
     pace = _driver_paces(chart, state[n : 2 * n], rates[n : 2 * n], course.until - time)
     energy = chart.state(time, state[:n], pace).kinetic
     allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
-    return DOP853(grown, time, state, course.until, rtol=course.tolerance, atol=allowed)
+    end = next((one.before for one in course.breaks if one.before > time), course.until)
+    return DOP853(grown, time, state, end, rtol=course.tolerance, atol=allowed)
 
 
 def _driver_paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: float) -> Number:
@@ -300,6 +478,9 @@ class SimulatedCourse:
     evaluations: int = 0
     fastest: float = 0.0
     changed: float = -np.inf  # the time of the last change of coordinate
+    breaks: tuple[LoadBreak, ...] = ()
+    restarts: list[float] = field(default_factory=list)  # times of restarts behind steps that collapsed
+    ended: bool = False
 
     def at(self, times: Number) -> list[ChartStretch]:
         """Return the states at times in order, chart by chart."""

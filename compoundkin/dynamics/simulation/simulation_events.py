@@ -14,6 +14,7 @@ from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import SimulatedState
 from compoundkin.kinematics.solving_order import AT_END
+from compoundkin.model.loads.amounts import corners_in_time, function_of_time
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profile_contact import as_profile_contact
@@ -167,6 +168,61 @@ def _zero(function: Callable[[float], float], low: float, high: float) -> float:
     while found < high and (function(found) > 0.0) is is_above:
         found, fine = min(found + fine, high), 2.0 * fine
     return found
+
+
+class LoadBreak(NamedTuple):
+    """A time at which a load jumps or has a corner, as the neighbouring times before and behind it."""
+
+    before: float
+    behind: float
+    jumps: bool
+
+
+# Functions of the time are sampled at so many places of a simulation. Between two of them is a jump where the function
+# changes by this part of its range at least, most of that between neighbouring numbers.
+SAMPLED, CHANGES, MOST = 4096, 1e-6, 0.5
+# Times that differ by this part of the whole are one time but for rounding.
+SAME_TIME = 1e-14
+# A table with more corners than this within a simulation is followed by the length of steps alone.
+CORNERS = 2000
+
+
+def load_breaks(mechanism: Mechanism, until: float) -> tuple[LoadBreak, ...]:
+    """Return the times within a simulation at which functions of the time jump, or tables over it have corners."""
+    amounts = [part for load in mechanism.loads.values() for held in load.amounts_held
+               for part in (held if isinstance(held, tuple) else (held,))]  # fmt: skip
+    found: list[LoadBreak] = []
+    for one in sorted({one for amount in amounts for one in _breaks(amount, until)}):
+        if found and one.before <= found[-1].behind + SAME_TIME * until:
+            found[-1] = LoadBreak(found[-1].before, max(one.behind, found[-1].behind), found[-1].jumps or one.jumps)
+        else:
+            found.append(one)
+    return tuple(found)
+
+
+def _breaks(amount: Any, until: float) -> Iterator[LoadBreak]:
+    values = function_of_time(amount)
+    if values is not None:
+        yield from _jumps(values, np.linspace(0.0, until, SAMPLED + 1))
+    yield from (LoadBreak(at, at, False) for at in corners_in_time(amount, until, CORNERS))
+
+
+def _jumps(values: Callable[[Number], Number], times: Number) -> Iterator[LoadBreak]:
+    known = values(times)
+    least = CHANGES * float(np.ptp(np.abs(known - known[0])))
+    steps = np.abs(np.diff(known))
+    # beside a jump a function changes less by far
+    beside = np.fmin(np.append(steps[1:], np.inf), np.insert(steps[:-1], 0, np.inf))
+    for k in np.flatnonzero((steps > least) & (steps > 2.0 * beside)):
+        low, high = float(times[k]), float(times[k + 1])
+        first, last = known[k], known[k + 1]
+        while low < (middle := 0.5 * (low + high)) < high:
+            found = values(np.array([middle]))[0]
+            low, high, first, last = (
+                (low, middle, first, found) if abs(found - first) > abs(found - last) else (middle, high, found, last)
+            )
+        if abs(last - first) > MOST * steps[k]:
+            yield LoadBreak(low, high, True)
 
 
 class Impact(NamedTuple):

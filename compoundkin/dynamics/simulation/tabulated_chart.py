@@ -105,7 +105,7 @@ class TabulatedChart(DriverChart):
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Restore a configuration."""
         super().recall(memory)
-        self.table, self.wraps = memory[3:]
+        self.table, self.wraps = memory[4:]
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Update the configuration at an accepted state."""

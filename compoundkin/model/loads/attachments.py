@@ -94,6 +94,10 @@ class PairLoad(Load):
             what = f"{self.pair!r} is a {pair.title}: nothing acts along its coordinate"
             yield Problem(f"{where}.pair", what, "name a pin, a slide or a slot")
 
+    def speed_at(self, at: LoadedPoses) -> Number:
+        """Return the rate of its coordinate."""
+        return rate_of(at.coordinate(self.pair))
+
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the effort on the second link, and its opposite on the first."""
         effort = self.effort(at)
@@ -206,6 +210,10 @@ class PointToPointLoad(Load):
         """Return the separation of its ends."""
         between = at.place(self.to, self.at) - at.place(self.link, self.point)
         return EndSeparation(between.c[0], abs(between.c[0]), velocity_of(between))
+
+    def speed_at(self, at: LoadedPoses) -> Number:
+        """Return the speed at which its ends move apart."""
+        return self.gap(at).rate
 
     def attack(self, link: str) -> str | Number:
         """Return its end on a link."""

@@ -162,6 +162,10 @@ class Load(ShortRepr, ABC):
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the links it acts on, with the wrenches in the mechanism's units."""
 
+    def speed_at(self, at: LoadedPoses) -> Number | None:
+        """Return the speed on which it may depend, None where it depends on none."""
+        return None
+
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return its potential energy, None for a load that has none."""
         return None

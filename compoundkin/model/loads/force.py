@@ -82,14 +82,21 @@ class Force(Load):
         """Return its point."""
         return self.at
 
+    def speed_at(self, at: LoadedPoses) -> Number | None:
+        """Return the speed of its point in the direction in which it acts."""
+        if self.while_moving is None:
+            return None
+        place = at.place(self.link, self.at)
+        velocity = place.c[1] if len(place.c) > 1 else 0j
+        return dot(at.pose(self.fixed_in).u.c[0] * at.fitted(self.while_moving, self.where), velocity + 0j)
+
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the force."""
         force = planar_value_of(self.where, self.force, at)
         place = at.place(self.link, self.at)
         turned = at.pose(self.fixed_in).u.c[0]
-        if self.while_moving is not None:
-            velocity = place.c[1] if len(place.c) > 1 else 0j
-            along = dot(turned * at.fitted(self.while_moving, self.where), velocity + 0j)
+        along = self.speed_at(at)
+        if along is not None:
             force = np.where(along > 0.0, force, np.where(np.isnan(along), np.nan, 0.0))
         yield self.link, Wrench.at(place.c[0], force if self.fixed_in == FRAME else turned * force)
 
