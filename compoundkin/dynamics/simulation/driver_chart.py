@@ -249,7 +249,9 @@ class HeldSpeed:
 
 
 def _speed_of(load: Load, state: DriverState) -> float:
-    return float(np.ravel(load.speed_at(state.loaded))[0])
+    speed = load.speed_at(state.loaded)
+    assert speed is not None
+    return float(np.ravel(speed)[0])
 
 
 @dataclass(frozen=True)

@@ -346,7 +346,7 @@ def corners_in_time(amount: Any, until: float, most: int) -> list[float]:
     if turns.size * amount.at.size > most:
         return []
     times = np.unique((amount.at[:, None] + turns).ravel())
-    return times[(times > 0.0) & (times < until)].tolist()
+    return [float(time) for time in times[(times > 0.0) & (times < until)]]
 
 
 # Places beyond an end of a table by this part of its range or less are that end: rounding of 0.1 + 0.1 + 0.1.
