@@ -167,6 +167,29 @@ def test_a_driver_that_moves_no_mass_is_named() -> None:
         ck.simulate(arm, start={"upper": 0.0, "fore": 0.0}, until=1.0)
 
 
+def test_a_mass_that_is_a_point_on_its_pivot_is_said_to_be_one() -> None:
+    """A disc with one point and a mass of its own has no inertia about that point."""
+    disc = ck.Mechanism("Disc", ck.link("frame", A=0), ck.link("cam", A=0), ck.drive("cam"), ck.mass("cam", 2.0),
+                        ck.torque("cam", 1.0), units=SI)  # fmt: skip
+    with pytest.raises(
+        InvalidInput, match="only turns 'cam' about a mass centre, .*of a point mass A.*give an inertia"
+    ):
+        ck.simulate(disc, start=0.0, until=1.0)
+    turned = ck.simulate(disc.replace(ck.mass("cam", 2.0, inertia=0.5)), start=0.0, until=1.0)
+    assert turned.motion.drives["cam"].value[-1] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_torque_that_goes_by_the_speed() -> None:
+    """w' = (5 - 0.1 w) / J, and a motor whose torque also grows with time."""
+    run_up = ck.simulate(rotor_under(ck.torque("rotor", lambda w: 5.0 - 0.1 * w)), start=0.0, until=1.0)
+    np.testing.assert_allclose(
+        run_up.motion.drives["rotor"].rate, 50.0 * (1.0 - np.exp(-2.0 * run_up.times)), atol=1e-8
+    )
+    grown = ck.simulate(rotor_under(ck.torque("rotor", lambda w, t: t - 0.1 * w)), start=0.0, until=1.0)
+    exact = 10.0 * (grown.times - (1.0 - np.exp(-2.0 * grown.times)) / 2.0)
+    np.testing.assert_allclose(grown.motion.drives["rotor"].rate, exact, atol=1e-8)
+
+
 def test_events_of_a_user_are_found_and_stop() -> None:
     """A pendulum let go from the horizontal passes the lowest place at the time of the quarter of its period."""
     from scipy.special import ellipk

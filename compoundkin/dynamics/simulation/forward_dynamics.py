@@ -148,9 +148,23 @@ def _check_inertia(chart: DriverChart, state: Number) -> None:
     sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
     for name, one in zip(chart.free, sizes, strict=True):
         if not one > NO_MASS * heaviest:
-            raise InvalidInput(
-                Problem(f"start.{name}", "this driver moves no mass", "give a link that it moves a mass")
-            )
+            raise InvalidInput(_no_mass(chart, name, state))
+
+
+def _no_mass(chart: DriverChart, driver: str, state: Number) -> Problem:
+    """Return the problem of a driver that moves no mass: none, or points on which links turn."""
+    n = len(chart.free)
+    speeds = np.array([float(name == driver) for name in chart.free])
+    world = chart.state(0.0, state[:n], speeds).loaded.block.world
+    points = [own.link for own in chart.mechanism.masses.values()
+              if np.any(world[own.link].u.turning().c[0] != 0.0) and np.all(np.asarray(own.inertia) == 0.0)]  # fmt: skip
+    where = f"start.{driver}"
+    if not points:
+        return Problem(where, "this driver moves no mass", "give a link that it moves a mass")
+    assumed = chart.mechanism.masses[points[0]].assumed
+    why = f" ({assumed})" if assumed else ""
+    what = f"this driver only turns {', '.join(map(repr, points))} about a mass centre, where all the mass is{why}"
+    return Problem(where, what, f'give an inertia: mass("{points[0]}", ..., inertia=...)')
 
 
 def _times(course: SimulatedCourse, times: Any) -> Number:

@@ -209,7 +209,7 @@ def as_amount(where: str, given: Any, *variables: str) -> Amount:
     (3.0, ('time',))
     """
     if isinstance(given, Mapping):
-        return LoadTable.of(where, given, "time" if variables == (TIME,) else "")
+        return LoadTable.of(where, given, TIME if variables[0] == TIME else "")
     if callable(given):
         return LoadFunction(given, _taken(where, given, variables))
     return given if isinstance(given, LoadFunction | LoadTable) else real(where, given)
@@ -253,7 +253,9 @@ def _taken(where: str, function: Callable[..., Any], variables: tuple[str, ...])
         return variables[:1]
     if any(p.kind is p.VAR_POSITIONAL for p in parameters):
         return variables
-    placed = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    placed = [p for p in parameters if p.kind is not p.VAR_KEYWORD]
+    if any(p.kind is p.KEYWORD_ONLY and p.default is p.empty for p in placed):
+        raise InvalidMechanism(Problem(where, "the function takes arguments by keyword only", "leave the * out"))
     names = [p.name for p in placed if p.default is p.empty] or [p.name for p in placed[:1]]
     known = {name: variable for variable in reversed(variables) for name in (variable, *CALLED[variable])}
     wrong = [name for name in names if name not in known]

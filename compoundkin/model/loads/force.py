@@ -15,7 +15,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TIME
 from compoundkin.model.fields import link_key, spot_key, value_key
 from compoundkin.model.geometry import FRAME, vector
-from compoundkin.model.loads.amounts import Amount, as_amount, as_planar_amount, planar_value_of, value_of
+from compoundkin.model.loads.amounts import Amount, as_amount, as_planar_amount, needs_rates, planar_value_of, value_of
 from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 
 
@@ -117,9 +117,18 @@ class Torque(Load):
         """Its name where none is given."""
         return f"torque on {self.link}"
 
+    @property
+    def needs_rates(self) -> bool:
+        """Whether it depends on the angular velocity of its link."""
+        return needs_rates(self.torque)
+
+    def speed_at(self, at: LoadedPoses) -> Number:
+        """Return the angular velocity of its link."""
+        return at.pose(self.link).u.turning().c[0]
+
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the torque."""
-        yield self.link, Wrench(0j, value_of(self.where, self.torque, at))
+        yield self.link, Wrench(0j, value_of(self.where, self.torque, at, {"rate": lambda: self.speed_at(at)}))
 
 
 @checked
@@ -154,9 +163,12 @@ def force(
 def torque(link: str, torque: Any, *, name: str = "") -> Torque:
     """Return a torque on a link, counterclockwise positive, in units of force times length.
 
-    It is a number, an array whose last axis is the motion, a function of time or a table as of `force`.
+    It is a number, an array whose last axis is the motion, a function of the time ``t`` and the link's angular velocity
+    ``w``, as its arguments name them, or a table as of `force`.
 
     >>> torque("rocker", 0.02).torque
     0.02
+    >>> torque("rocker", lambda w: -0.1 * w).needs_rates
+    True
     """
-    return Torque(link, as_amount(f"torques.{name or link}.torque", torque, TIME), name=name)
+    return Torque(link, as_amount(f"torques.{name or link}.torque", torque, TIME, "rate"), name=name)

@@ -333,6 +333,8 @@ def test_what_is_assumed_is_said() -> None:
         (ck.effort("stroke", lambda speed: -4.0 * speed), ck.damper(pair="stroke", rate=4.0)),
         (ck.spring(pair="stroke", stiffness=lambda w, x: 7.0 * x), ck.spring(pair="stroke", stiffness=7.0)),
         (ck.damper(pair="stroke", rate=lambda q, w: 4.0 * w), ck.damper(pair="stroke", rate=4.0)),
+        (ck.torque("crank", lambda w: -4.0 * w), ck.damper(pair="O", rate=4.0)),
+        (ck.effort("stroke", lambda q, k=7.0: -k * q), ck.spring(pair="stroke", stiffness=7.0)),
     ],
 )
 def test_functions_take_what_their_arguments_are_called(one: object, other: object) -> None:
@@ -342,7 +344,12 @@ def test_functions_take_what_their_arguments_are_called(one: object, other: obje
 @pytest.mark.parametrize(
     ("write", "told"),
     [
-        (lambda: ck.torque("crank", lambda w: w), r"takes 'w'; arguments are known by their names: t \(time\)"),
+        (
+            lambda: ck.torque("crank", lambda q: q),
+            r"takes 'q'; arguments are known by their names: t \(time\), w \(rate\)",
+        ),
+        (lambda: ck.force("ram", lambda w: w, at="B"), r"takes 'w'; arguments are known by their names: t \(time\)"),
+        (lambda: ck.effort("stroke", lambda *, q: q), "by keyword only"),
         (lambda: ck.effort("stroke", lambda a: a), r"q \(coordinate\), w \(rate\), t \(time\)"),
         (lambda: ck.effort("stroke", lambda q, s: q), "takes 'q', 's'"),
         (lambda: ck.effort("stroke", lambda: 3.0), "takes no arguments"),
