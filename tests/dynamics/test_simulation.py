@@ -171,9 +171,7 @@ def test_a_mass_that_is_a_point_on_its_pivot_is_said_to_be_one() -> None:
     """A disc with one point and a mass of its own has no inertia about that point."""
     disc = ck.Mechanism("Disc", ck.link("frame", A=0), ck.link("cam", A=0), ck.drive("cam"), ck.mass("cam", 2.0),
                         ck.torque("cam", 1.0), units=SI)  # fmt: skip
-    with pytest.raises(
-        InvalidInput, match="only turns 'cam' about a mass centre, .*of a point mass A.*give an inertia"
-    ):
+    with pytest.raises(InvalidInput, match=r"only turns 'cam' about a mass centre, .*of a point mass A.*inertia"):
         ck.simulate(disc, start=0.0, until=1.0)
     turned = ck.simulate(disc.replace(ck.mass("cam", 2.0, inertia=0.5)), start=0.0, until=1.0)
     assert turned.motion.drives["cam"].value[-1] == pytest.approx(1.0, rel=1e-12)

@@ -156,8 +156,8 @@ def _no_mass(chart: DriverChart, driver: str, state: Number) -> Problem:
     n = len(chart.free)
     speeds = np.array([float(name == driver) for name in chart.free])
     world = chart.state(0.0, state[:n], speeds).loaded.block.world
-    points = [own.link for own in chart.mechanism.masses.values()
-              if np.any(world[own.link].u.turning().c[0] != 0.0) and np.all(np.asarray(own.inertia) == 0.0)]  # fmt: skip
+    moved = [own for own in chart.mechanism.masses.values() if np.any(world[own.link].u.turning().c[0] != 0.0)]
+    points = [own.link for own in moved if np.all(np.asarray(own.inertia) == 0.0)]
     where = f"start.{driver}"
     if not points:
         return Problem(where, "this driver moves no mass", "give a link that it moves a mass")
