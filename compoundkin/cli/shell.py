@@ -32,8 +32,11 @@ class NotWritten(CompoundkinError):
 
 def guarded(run: Callable[[], Any]) -> NoReturn:
     """Run a command and exit with its code, or with a message and the code of the error."""
+    _heard.clear()
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, _ended)
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # a job in the background ignores it
+            signal.signal(signal.SIGINT, _ended)
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _warned
@@ -55,9 +58,25 @@ def guarded(run: Callable[[], Any]) -> NoReturn:
     sys.exit(code or 0)
 
 
+class _Interrupted(KeyboardInterrupt):
+    """Ctrl-C. Python ends itself by the signal, whatever exit code it is given, once an `eval` has met the exact type."""
+
+
+# The signals that came.
+_heard: list[int] = []
+
+
 def _ended(number: int, _: object) -> NoReturn:
-    """Exit as after Ctrl-C, so that unfinished work is cleaned up."""
-    sys.exit(128 + number)
+    """Note the signal, and leave."""
+    _heard.append(number)
+    _leave()
+
+
+def _leave() -> NoReturn:
+    """Leave by an exception, so that unfinished work is cleaned up."""
+    if _heard[-1] == signal.SIGINT:
+        raise _Interrupted
+    sys.exit(128 + _heard[-1])
 
 
 def _warned(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -199,6 +218,8 @@ def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Cal
     update: list[Callable[[int, int], None]] = []
 
     def report(done: int, total: int) -> None:
+        if _heard:  # Python drops what is raised while a finalizer or a callback of a library in C runs
+            _leave()
         if not update and monotonic() - start >= patience and _is_terminal():
             update.append(stack.enter_context(_progress_bar(what, things)))
         for show in update:

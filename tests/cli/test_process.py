@@ -44,14 +44,15 @@ def invoked(*args: str) -> Result:
 
 def run_main(capfd: pytest.CaptureFixture[str], *args: str) -> tuple[int, str, str]:
     """Run the whole command in this process, its own handling of errors and arguments included."""
-    before = signal.getsignal(signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default")
             with pytest.raises(SystemExit) as ended:
                 cli.main(list(args))
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
     captured = capfd.readouterr()
     return int(ended.value.code or 0), captured.out, captured.err
 
@@ -203,6 +204,40 @@ def test_ctrl_c_is_no_traceback() -> None:
     error = job.communicate(timeout=60)[1]
     assert b"Traceback" not in error
     assert (job.returncode, error.strip()) == (130, b"Interrupted.")
+
+
+SIGNALLED = """
+import os, signal, sys
+from compoundkin.cli.shell import counting, guarded
+
+class Finalized:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+
+def run():
+    if sys.argv[1] == "evaluated":  # a text that is evaluated, as CSS selectors are
+        eval("os.kill(os.getpid(), signal.SIGINT)")
+    with counting("working", "things") as progress:
+        if sys.argv[1] == "dropped":  # where Python drops exceptions
+            Finalized()
+        progress(1, 2)
+        print("went on")
+
+guarded(run)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no signals")
+@pytest.mark.parametrize("where", ["evaluated", "dropped"])
+def test_ctrl_c_is_heard_wherever_it_comes(where: str, tmp_path: Path) -> None:
+    (tmp_path / "signalled.py").write_text(SIGNALLED, encoding="utf-8")
+    with interrupts_heard():
+        ended = subprocess.run(
+            [sys.executable, "-m", "signalled", where], cwd=tmp_path, env=ENVIRONMENT,
+            capture_output=True, timeout=60, check=False,
+        )  # fmt: skip
+    assert (ended.returncode, ended.stdout) == (130, b"")
+    assert ended.stderr.splitlines()[-1] == b"Interrupted."
 
 
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="films need ffmpeg")
