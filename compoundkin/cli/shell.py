@@ -59,7 +59,7 @@ def guarded(run: Callable[[], Any]) -> NoReturn:
 
 
 class _Interrupted(KeyboardInterrupt):
-    """Ctrl-C. Python ends itself by the signal, whatever exit code it is given, once an `eval` has met the exact type."""
+    """Ctrl-C. Once an `eval` has met the exact type, Python ends by the signal, whatever exit code it is given."""
 
 
 # The signals that came.

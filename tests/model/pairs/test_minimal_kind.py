@@ -193,6 +193,7 @@ def coarse(item: Any) -> Any:
 
 
 LEFT_OUT = [(kind.code, name) for kind in KINDS for name in answers(kind)][:: 1 if EVERYTHING else 3]
+REPORTED = dict(reversed(LEFT_OUT))
 
 
 @pytest.mark.parametrize(("code", "name"), LEFT_OUT, ids=[f"{code} {name}" for code, name in LEFT_OUT])
@@ -214,5 +215,5 @@ def test_each_answer_may_be_left_out(code: str, name: str, monkeypatch: pytest.M
     assert ck.mobility_analysis(lesser).finite >= 1
     assert ck.instant_centres(motion) is not None
     assert ck.draw(motion).svg
-    # what is verified is in the report, which takes five times as long
-    assert (ck.report(motion).outcome if EVERYTHING else ck.verify(motion)).passed
+    # what is verified is in the report, which takes five times as long: once for each kind of pair
+    assert (ck.report(motion).outcome if REPORTED[code] == name else ck.verify(motion)).passed
