@@ -153,6 +153,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                   "jerk": 0.0, "order": 2, "modes": None, "hint": None},
         "spring": {"link": "a", "point": "A", "to": "frame", "at": "S", "pair": "", "stiffness": 4.0,
                    "free_length": 1.0, "free": 0.0, "preload": 0.0, "only": "tension", "name": "n"},
+        "stop": {"pair": "A", "low": -1.0, "high": 1.0, "restitution": 0.5, "stiffness": None, "damping": None,
+                 "name": "n"},
         "study": {"mechanism": m, "dimensions": {"crank.B.x": (0.9, 1.1)}, "outputs": ["C"], "sample": "sobol",
                   "count": 2, "seed": 1, "values": None, "speed": None, "acceleration": None, "jerk": None,
                   "time": None, "modes": None, "given": None},

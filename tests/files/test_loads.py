@@ -71,6 +71,8 @@ def loaded(draw: st.DrawFn) -> ck.Mechanism:
         ck.spring(pair="stroke", stiffness=draw(positive), free=draw(lists), only=draw(sides)),
         ck.damper("coupler", "G", at="D", rate=draw(positive)),
         ck.damper(pair="C", rate=draw(tables("", "D"))),
+        ck.stop("stroke", low=draw(finite), restitution=draw(st.none() | st.floats(0.0, 1.0))),
+        ck.stop("D", low=-1e9, high=draw(st.floats(-1e8, 1e8)), stiffness=draw(positive), damping=draw(positive)),
         ck.friction("B", draw(positive), radius=draw(positive)),
         ck.friction("stroke", draw(positive), length=draw(st.none() | positive)),
     ]  # fmt: skip

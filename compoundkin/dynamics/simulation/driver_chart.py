@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.dynamics.mass_motion import moving_masses
 from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, pressed
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -21,6 +22,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.laws import Law
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.stop import as_stop
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_drivable
 
@@ -41,6 +43,10 @@ class DriverChart:
     near: dict[str, LinearAngle] = field(init=False)
     turned: dict[str, LinearAngle] = field(init=False)
     held: HeldSpeed | None = field(init=False, default=None)
+    closed: tuple[StopContact, ...] = field(init=False, default=())  # the contacts at stops
+
+    # whether loads are those of the chart, so that stops are added as they are closed
+    adds_stops: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         self.names = (*self.free, *self.laws)
@@ -49,6 +55,9 @@ class DriverChart:
         self.masses = moving_masses(self.start.structure)
         self.gravity = complex(first_entry(self.mechanism.free_fall))
         self.loads = sorted_loads(self.start)
+        if self.adds_stops:
+            stored, others = (tuple(load for load in loads if as_stop(load) is None) for loads in self.loads)
+            self.loads = stored, others
         self.ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
         self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}
         self.states, self.near, self.turned = {}, {}, {}
@@ -86,7 +95,21 @@ class DriverChart:
 
     def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state, between both sides of a jump where a load holds a speed."""
+        free = self.free_rates(time, values, speeds)
+        added = self.closed if self.adds_stops else tuple(one for one in self.closed if not one.stop.is_elastic)
+        return pressed(added, self.state(time, values, speeds), free) if added else free
+
+    def free_rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates of a state without the contacts at stops."""
         return self.rates(time, values, speeds) if self.held is None else self.held.rates(self, time, values, speeds)
+
+    @cached_property
+    def ends_of_stops(self) -> tuple[StopContact, ...]:
+        """Both ends of all stops."""
+        stops = [stop for load in self.mechanism.loads.values() if (stop := as_stop(load)) is not None]
+        n = len(self.free)
+        values = np.array([float(np.ravel(self.start.inputs.drives[name][0])[0]) for name in self.free])
+        return contacts_of(stops, self.state(0.0, values, np.zeros(n))) if stops else ()
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""
@@ -107,11 +130,11 @@ class DriverChart:
     @property
     def memory(self) -> tuple[Any, ...]:
         """The configuration at the last accepted state."""
-        return self.held, dict(self.states), dict(self.near), dict(self.turned)
+        return (self.held, self.closed), dict(self.states), dict(self.near), dict(self.turned)
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Restore a configuration."""
-        self.held = memory[0]
+        self.held, self.closed = memory[0]
         self.states, self.near, self.turned = (dict(own) for own in memory[1:4])
 
     def sign(self, k: int, values: Number) -> float:
@@ -131,7 +154,8 @@ class DriverChart:
                 self.turned[pair] = found.angle_of(pair)
 
     def count_on(self, before: DriverState) -> None:
-        """Count angles on from a state of another chart."""
+        """Count angles on from a state of another chart, at the same stops."""
+        self.closed = before.chart.closed
         angles = [name for name, (_, own) in before.chart.driven.items() if own.pair.free_is_angle]
         for name in (*before.chart.turned, *angles):
             self.turned[name] = LinearAngle(before.angle_of(name).angle, None, np.zeros(len(self.names)))

@@ -53,6 +53,7 @@ class StateChart(Protocol):
     loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
     turned: dict[str, LinearAngle]  # the counted angles of pairs
     driven: dict[str, tuple[str, DrivenPair]]  # the drivers of pairs, by their names
+    closed: tuple[Any, ...]  # the contacts at stops
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""
@@ -205,6 +206,15 @@ class LoadedState(LoadedBlock):
             for link, wrench in load.wrenches(self):
                 total += np.ravel(self.freed(link, wrench).power(self._unit(link)))
         return total
+
+    def rates_of(self, name: str) -> tuple[Number, float]:
+        """Return the rates of a coordinate by the drivers, and its acceleration at zero accelerations of them."""
+        assert self.columns is not None
+        pair, sign = self._meant(name)
+        moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members)).c
+        slopes = np.broadcast_to(moved[1], (self.count + 1, 1))[:-1, 0] if len(moved) > 1 else np.zeros(self.count)
+        bias = 2.0 * float(np.ravel(moved[2])[-1]) if len(moved) > 2 else 0.0
+        return sign * slopes, sign * bias
 
     def _unit(self, link: str) -> Pose:
         """Return the pose of a link with its rates at unit rate of each coordinate."""

@@ -24,7 +24,7 @@ from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
-from compoundkin.dynamics.simulation.simulation_events import load_breaks, watches
+from compoundkin.dynamics.simulation.simulation_events import check_stops, load_breaks, watches
 from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -71,7 +71,8 @@ def simulate(
 
     `events` are functions of the state by name, ``lambda state: state["B.y"] - 20``: a zero of one
     is an event, and the simulation stops there if `stop` names it. It stops at a travel limit of a guide, unless a
-    coefficient of `restitution` (0 to 1) gives the rebound, and where a contact lifts off.
+    coefficient of `restitution` (0 to 1) gives the rebound, and where a contact lifts off. At the ends of a `stop` it
+    goes on by what that says.
 
     The result is a motion in time at `times`, by default evenly spaced ones, with its forces and energies.
     The error of a step is `tolerance` of the drivers' values and speeds. Near a limit position of a driver another pair
@@ -99,12 +100,14 @@ def simulate(
     course = SimulatedCourse(float(until), float(tolerance), watched, restitution, breaks=breaks)
     with np.errstate(all="ignore"):
         _check_inertia(chart, state)
+        check_stops(chart, state)
         integrate(chart, state, course, progress)
         stretches = course.at(_times(course, times))
         motion = simulated_motion(stretches)
         energy = simulated_energy(motion, np.concatenate([one.states[-1, one.asked] for one in stretches]))
     _warn(energy, tolerance)
-    return Simulation(motion, energy, tuple(course.events), course.tolerance, len(course.steps), course.evaluations)
+    counts = len(course.steps), course.evaluations
+    return Simulation(motion, energy, tuple(course.events), course.tolerance, *counts, course.losses)
 
 
 def _warn(energy: SimulatedEnergy, tolerance: float) -> None:

@@ -54,6 +54,8 @@ class FrictionTable(TabulatedChart):
     """The chart of one free driver whose pairs have friction. It moves in one `direction` until it comes to rest."""
 
     direction: float = 1.0
+    # friction asks for the forces of all loads
+    adds_stops = False
 
     @cached_property
     def contacts(self) -> tuple[LoadedContact, ...]:

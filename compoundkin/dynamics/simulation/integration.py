@@ -16,17 +16,21 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
-from compoundkin.dynamics.simulation.driver_state import SimulatedState
+from compoundkin.dynamics.simulation.driver_state import DriverState, SimulatedState
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
     LoadBreak,
     SimulationEvent,
+    StopWatch,
     Watch,
     after_impact,
+    at_stop,
     ended_pair,
     first_passed,
+    stop_watches,
 )
+from compoundkin.dynamics.simulation.stop_contacts import StopContact
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 from compoundkin.model.loads.contract import Load
 
@@ -52,7 +56,7 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
     n = len(chart.free)
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
-        longest = course.until if chart.held is None else course.until / HELD_STEPS
+        longest = course.until if chart.held is None and not chart.closed else course.until / HELD_STEPS
         solver.max_step = min(longest, longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n]))
         solver.h_abs = min(solver.h_abs, solver.max_step)
         solver.step()
@@ -64,7 +68,7 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
             solver = _begun(chart, course.last, state, course)
             continue
         course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output(), chart.memory))
-        passed = _passed(course) if course.watched else None
+        passed = _passed(course)
         if passed is not None and (passed.state is None or passed.time >= course.until):
             return None
         released = _released(chart, course) if passed is None and chart.held is not None else None
@@ -120,8 +124,16 @@ class _Interruption(NamedTuple):
 def _passed(course: SimulatedCourse) -> _Interruption | None:
     """Record the events of the last step; return the interruption by one, if any."""
     step = course.steps[-1]
-    for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
+    watched = (*course.watched, *stop_watches(step.chart))
+    for one in first_passed(watched, step.chart, (step.first, step.last), step.between) if watched else ():
         n, watch = len(step.chart.free), one.watch
+        if isinstance(watch, StopWatch):
+            course.cut(one.time, False)
+            damped = course.damped(watch.contact, True)
+            met = at_stop(step.chart, one.time, one.state, watch.contact, course.fastest)
+            course.fastest = max(course.fastest, met.approach)
+            course.events.append(replace(met.event, lost=met.event.lost + damped))
+            return _Interruption(one.time, met.state)
         if watch.name == REST and not watch.asked:
             course.cut(one.time)
             return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
@@ -133,7 +145,8 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
         rebounds = is_end and course.restitution is not None
         impact = after_impact(here, course.restitution or 0.0, course.fastest) if rebounds else None
         stops = watch.stops and impact is None
-        course.events.append(SimulationEvent(one.time, watch.name, text, stops))
+        lost = (0.0, "") if impact is None else (impact.lost, ended_pair(here).name)
+        course.events.append(SimulationEvent(one.time, watch.name, text, stops, *lost))
         if stops or impact is not None:
             course.cut(one.time)
         if stops:
@@ -430,6 +443,10 @@ def longest_step(chart: DriverChart, speeds: Number, accelerations: Number) -> f
     )
 
 
+# The nodes of a quadrature over a step: exact to the order 16, above that of the method.
+NODES = 8
+
+
 @dataclass(frozen=True, eq=False)
 class Step:
     """A step of the integration: its chart, its times, and the state as a function of time."""
@@ -439,6 +456,20 @@ class Step:
     last: float
     between: Callable[[Number], Number]
     memory: tuple[Any, ...]  # the configuration at its beginning
+
+    def integral(self, function: Callable[[DriverState], float]) -> float:
+        """Return the integral of a function of the state over the step."""
+        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        half = (self.last - self.first) / 2.0
+        return half * float(weights @ [function(self.state(self.first + half * (one + 1.0))) for one in nodes])
+
+    def state(self, time: float) -> DriverState:
+        """Return the state at a time in the step."""
+        n, y, memory = len(self.chart.free), self.between(np.array(time)), self.chart.memory
+        self.chart.recall(self.memory)
+        found = self.chart.state(float(time), y[:n], y[n : 2 * n])
+        self.chart.recall(memory)
+        return found
 
     def accelerations_at(self, times: Number, states: Number) -> Number:
         """Return the accelerations of the free drivers at times in the step, in columns."""
@@ -488,11 +519,37 @@ class SimulatedCourse:
         runs = [[step for step in self.steps if step.chart is chart] for chart in charts]
         return [_stretch(steps, times, k == 0) for k, steps in enumerate(runs)]
 
-    def cut(self, time: float) -> None:
-        """Let the last step end at a time; an empty step is dropped."""
+    def cut(self, time: float, keeps_one: bool = True) -> None:
+        """Let the last step end at a time; an empty step is dropped, the only one if another follows."""
         step = self.steps.pop()
-        if time > step.first or not self.steps:
+        if time > step.first or (keeps_one and not self.steps):
             self.steps.append(replace(step, last=time))
+
+    def damped(self, contact: StopContact, is_left: bool) -> float:
+        """Return the energy that an elastic stop has taken since its contact closed; zero where it is open.
+
+        What is stored when it is left, where the damping holds it back, is lost too.
+        """
+        total, first = 0.0, None
+        for step in reversed(self.steps):
+            if contact not in step.memory[0][1] or not contact.stop.needs_rates:
+                break
+            total, first = total + step.integral(contact.damping_power), step
+        if first is not None:
+            total -= contact.stored(first.state(first.first))
+            total += contact.stored(self.steps[-1].state(self.last)) if is_left else 0.0
+        return total
+
+    @property
+    def losses(self) -> dict[str, float]:
+        """The energy lost up to now, by stops and pairs."""
+        found = {one.loser: 0.0 for one in self.events if one.loser}
+        for event in self.events:
+            if event.loser:
+                found[event.loser] += event.lost
+        for contact in self.steps[-1].memory[0][1]:
+            found[contact.stop.name] = found.get(contact.stop.name, 0.0) + self.damped(contact, False)
+        return found
 
     @property
     def last(self) -> float:

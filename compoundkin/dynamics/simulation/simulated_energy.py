@@ -35,8 +35,8 @@ class SimulatedEnergy(ShortRepr):
 
     @property
     def error(self) -> Number:
-        """The energy error: the change of the total less the work."""
-        return self.total - self.total[0] - self.work
+        """The energy error: the change of the total less the work, both since the first time."""
+        return self.total - self.total[0] - (self.work - self.work[0])
 
     @property
     def peak(self) -> float:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -20,7 +21,8 @@ from compoundkin.kinematics.motion import Motion
 class Simulation(DisplaysHtml):
     """The motion of a mechanism under its loads. `motion` is a motion in time, solved again at `times`.
 
-    `events` are in the order of time. `steps` and `evaluations` count those of the integration.
+    `events` are in the order of time. `steps` and `evaluations` count those of the integration. `losses` are the
+    energies lost at stops and ends of guides, by their names.
     """
 
     motion: Motion
@@ -29,6 +31,7 @@ class Simulation(DisplaysHtml):
     tolerance: float
     steps: int
     evaluations: int
+    losses: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def times(self) -> Number:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import SimulatedState
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, impact, margins
 from compoundkin.kinematics.solving_order import AT_END
 from compoundkin.model.loads.amounts import corners_in_time, function_of_time
 from compoundkin.model.mechanism import Mechanism
@@ -30,17 +31,21 @@ SLOW = 1e-6
 END = "end"
 # The name of the event at which a driver comes to rest, where friction changes its direction.
 REST = "rest"
+# The names of the events at which a contact at a stop is hit, is closed for some time, and is left.
+STOP, RESTS, LEAVES = "stop", "rests", "leaves"
 Function = Callable[[SimulatedState], Any]
 
 
 @dataclass(frozen=True)
 class SimulationEvent:
-    """An event: its time, its name, and whether the simulation stopped there."""
+    """An event: its time, its name, whether the simulation stopped there, and the energy `lost` in it."""
 
     time: float
     name: str
     text: str
     stops: bool
+    lost: float = 0.0  # the energy lost in it
+    loser: str = ""  # the stop or the pair that takes it
 
     def __repr__(self) -> str:
         return f"SimulationEvent({self.name!r} at {self.time:.6g} s: {self.text})"
@@ -78,6 +83,93 @@ class Watch:
 
 
 @dataclass(frozen=True, eq=False)
+class StopWatch(Watch):
+    """A contact at a stop, whose function falls to zero where it closes or, closed, where it opens."""
+
+    contact: StopContact = field(kw_only=True)
+
+    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+        """Return the gap of an open contact, the depth or the force of a closed one."""
+        n, one = len(chart.free), self.contact
+        here = chart.state(time, state[:n], state[n : 2 * n])
+        if one.stop.is_elastic:
+            return one.indentation(here) * (1.0 if one in chart.closed else -1.0)
+        if one not in chart.closed:
+            return one.at(here).gap
+        rigid = [other for other in chart.closed if not other.stop.is_elastic]
+        found = margins(rigid, here, chart.free_rates(time, state[:n], state[n : 2 * n]))
+        return float(found[rigid.index(one)])
+
+
+def stop_watches(chart: DriverChart) -> tuple[StopWatch, ...]:
+    """Return the contacts at stops as watched functions."""
+    return tuple(StopWatch(STOP, _speed, one.text, False, True, contact=one) for one in chart.ends_of_stops)
+
+
+def at_stop(chart: DriverChart, time: float, state: Number, one: StopContact, fastest: float) -> StopPassage:
+    """Close or open a contact of a chart; return what happens there."""
+    n = len(chart.free)
+    name = one.stop.name
+    if one in chart.closed:
+        chart.closed = tuple(other for other in chart.closed if other is not one)
+        return StopPassage(SimulationEvent(time, LEAVES, f"{name} is left", False, loser=name), state, 0.0)
+    here = chart.state(time, state[:n], state[n : 2 * n])
+    rate = one.at(here).rate
+    if one.stop.is_elastic:
+        chart.closed = (*chart.closed, one)
+        return StopPassage(SimulationEvent(time, STOP, f"{name}: {one.text}", False, loser=name), state, 0.0)
+    slow = SLOW * max(fastest, float(np.abs(one.at(here).normal) @ np.abs(here.speeds)))
+    restitution = 0.0 if one.stop.restitution is None else float(np.ravel(one.stop.restitution)[0])
+    bounces = restitution > 0.0 and -rate > slow
+    rigid = [other for other in chart.closed if not other.stop.is_elastic]
+    elastic = [other for other in chart.closed if other.stop.is_elastic]
+    hit = impact(one, restitution if bounces else 0.0, rigid, here)
+    after = np.array([*state[:n], *hit.speeds, state[-1] - hit.lost])
+    kept = (*hit.staying, *(() if bounces else (one,)))
+    chart.closed = (*elastic, *_pressing(chart, time, after, kept))
+    stays = one in chart.closed
+    text = f"{name}: {one.text}" + (", where it stays" if stays else "")
+    return StopPassage(SimulationEvent(time, RESTS if stays else STOP, text, False, hit.lost, name), after, -rate)
+
+
+# A start beyond a rigid end by less than this part of the size, or of a radian, is at the end.
+AT_STOP = 1e-9
+
+
+def check_stops(chart: DriverChart, state: Number) -> None:
+    """Raise InvalidInput for a start beyond a rigid stop. The elastic ones in which it is are closed."""
+    n = len(chart.free)
+    here = chart.state(0.0, state[:n], state[n : 2 * n])
+    for one in chart.ends_of_stops:
+        gap = one.at(here).gap
+        if one.stop.is_elastic:
+            chart.closed += (one,) if one.indentation(here) > 0.0 else ()
+        elif gap < -AT_STOP * max(chart.order.size, 1.0):
+            what = f"it is {-gap:.4g} beyond {one.stop.name}, {one.text}"
+            raise InvalidInput(Problem("start", what, "start inside, or move the stop"))
+
+
+def _pressing(chart: DriverChart, time: float, state: Number, contacts: tuple[StopContact, ...]) -> list[StopContact]:
+    """Return the rigid contacts that loads press together."""
+    n, kept = len(chart.free), list(contacts)
+    here, free = chart.state(time, state[:n], state[n : 2 * n]), chart.free_rates(time, state[:n], state[n : 2 * n])
+    while kept:
+        found = margins(kept, here, free)
+        if not np.min(found) < 0.0:
+            break
+        kept.pop(int(np.argmin(found)))
+    return kept
+
+
+class StopPassage(NamedTuple):
+    """What happens at a stop: the event, the state behind it, and the speed of an impact."""
+
+    event: SimulationEvent
+    state: Number
+    approach: float
+
+
+@dataclass(frozen=True, eq=False)
 class Passed:
     """A zero of a watched function: its time, and the state there."""
 
@@ -112,7 +204,7 @@ def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:
         # in a groove the roller changes to the other flank
         if contact is not None and not contact.has_ends:
             text = f"the contact at {pair.name} lets go"
-            yield Watch(f"{pair.name} lift-off", _pressing(pair.name), text, True, True)
+            yield Watch(f"{pair.name} lift-off", _contact_force(pair.name), text, True, True)
 
 
 def _to_end(state: SimulatedState) -> float:
@@ -126,7 +218,7 @@ def ended_pair(state: SimulatedState) -> Pair:
     return ends.pairs[int(np.ravel(ends.nearest(state.block))[-1])]
 
 
-def _pressing(name: str) -> Function:
+def _contact_force(name: str) -> Function:
     return lambda state: force_analysis(state.motion).pairs[name].normal
 
 

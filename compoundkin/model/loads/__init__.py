@@ -13,6 +13,7 @@ from compoundkin.model.loads.gravity import Gravity, gravity
 from compoundkin.model.loads.mass import Mass, mass
 from compoundkin.model.loads.pretension import Pretension, pretension
 from compoundkin.model.loads.spring import PairSpring, Spring, spring
+from compoundkin.model.loads.stop import Stop, stop
 
 __all__ = [
     "KINDS",
@@ -30,6 +31,7 @@ __all__ = [
     "PairSpring",
     "Pretension",
     "Spring",
+    "Stop",
     "Torque",
     "damper",
     "effort",
@@ -39,10 +41,11 @@ __all__ = [
     "mass",
     "pretension",
     "spring",
+    "stop",
     "torque",
 ]
 # Every kind of load.
-KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper)
+KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper, Stop)
 # What each table of a mechanism file may hold.
 _TABLED: tuple[type[Any], ...] = (Mass, *KINDS, Friction, Pretension)
 WRITTEN: dict[str, tuple[type[Any], ...]] = {

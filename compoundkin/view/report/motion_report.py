@@ -170,6 +170,10 @@ def _simulation_blocks(found: Simulation) -> Iterator[Block]:
     yield _drivers_table(found)
     yield Paragraph("Energies; the work is that of loads without a potential and of drivers that are prescribed:")
     yield _energies_table(found)
+    if found.losses:
+        yield Paragraph("Energy lost, which is in the work:")
+        moment = "" if units is None else units.moment
+        yield TableBlock((Column("at"), Column("lost", moment, "each")), tuple(found.losses.items()))
     if found.events:
         yield Paragraph("What happened:")
         rows = tuple((one.time, one.name, one.text, "it ends" if one.stops else "") for one in found.events)

@@ -1,0 +1,165 @@
+"""Contacts at stops: the force that holds a coordinate at a rigid end, the push of an elastic one, and impacts.
+
+Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, sections 5 and 8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.dynamics.simulation.driver_state import DriverState, Rates
+from compoundkin.model.loads.stop import LOW, Stop
+
+# A rigid end holds a coordinate while it pushes more than minus this part of what acts there: rounding does not decide.
+ROUNDING = 1e-11
+
+
+class ContactState(NamedTuple):
+    """The gap of a contact, its rate, its derivatives by the drivers, and its acceleration at none of theirs."""
+
+    gap: float
+    rate: float
+    normal: Number
+    bias: float
+
+
+@dataclass(frozen=True)
+class StopContact:
+    """One end of a stop: its side, LOW or HIGH, and its coordinate."""
+
+    stop: Stop
+    side: float
+    end: float
+
+    @property
+    def text(self) -> str:
+        """The coordinate and its end, in words."""
+        return f"{self.stop.pair} at its {'low' if self.side == LOW else 'high'} end {self.end:.6g}"
+
+    def at(self, state: DriverState) -> ContactState:
+        """Return its gap and the derivatives of that at a state."""
+        slopes, bias = state.loaded.rates_of(self.stop.pair)
+        gap = self.side * (float(np.ravel(state.loaded.coordinate(self.stop.pair).c[0])[0]) - self.end)
+        normal = self.side * slopes
+        return ContactState(gap, float(normal @ state.speeds), normal, self.side * bias)
+
+    def push(self, state: DriverState) -> float:
+        """Return the force of an elastic end at a state, negative where it would have to pull."""
+        series = state.loaded.coordinate(self.stop.pair)
+        depth = self.stop.depth(self.side, self.end, series, state.loaded)
+        return float(np.ravel(self.stop.push(self.side, depth, series, state.loaded))[0])
+
+    def indentation(self, state: DriverState) -> float:
+        """Return the depth in an elastic end, negative where it does not push."""
+        stiffness = float(np.ravel(state.loaded.fitted(self.stop.stiffness))[0])
+        return min(-self.at(state).gap, self.push(state) / stiffness)
+
+    def stored(self, state: DriverState) -> float:
+        """Return the energy of an elastic end by its depth."""
+        gap = self.at(state).gap
+        return float(np.ravel(state.loaded.fitted(self.stop.stiffness))[0]) * gap * gap / 2.0
+
+    def damping_power(self, state: DriverState) -> float:
+        """Return the power that the damping of an elastic end takes."""
+        rate = self.at(state).rate
+        return float(np.ravel(state.loaded.fitted(self.stop.damping))[0]) * rate * rate
+
+
+def contacts_of(stops: Sequence[Stop], state: DriverState) -> tuple[StopContact, ...]:
+    """Return both ends of stops, with their coordinates for a design."""
+    return tuple(
+        StopContact(stop, side, float(np.ravel(state.loaded.fitted(end, stop.where))[0]))
+        for stop in stops
+        for side, end in stop.ends
+    )
+
+
+def pressed(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Rates:
+    """Return the rates under the contacts of those without them."""
+    found = free
+    for one in (one for one in contacts if one.stop.is_elastic):
+        here, push = one.at(state), one.push(state)
+        is_stored = one.stop.energy(state.loaded) is not None
+        found = _pushed(state, found, here.normal * push, 0.0 if is_stored else push * here.rate)
+    rigid = [one.at(state) for one in contacts if not one.stop.is_elastic]
+    if rigid:
+        normals = np.array([one.normal for one in rigid])
+        found = _pushed(state, found, holding(rigid, state, found) @ normals, 0.0)
+    return found
+
+
+def _pushed(state: DriverState, free: Rates, push: Number, power: float) -> Rates:
+    """Return the rates with a further force along the drivers' coordinates, and its power."""
+    n, matrix = len(state.chart.free), state.terms.matrix
+    more = np.linalg.solve(matrix[:n, :n], push[:n])
+    # prescribed drivers take their part
+    driven = float((matrix[n:, :n] @ more - push[n:]) @ state.speeds[n:])
+    return Rates(free.accelerations + more, free.power + power + driven)
+
+
+def holding(contacts: Sequence[ContactState], state: DriverState, free: Rates) -> Number:
+    """Return the forces that hold gaps at rest."""
+    normals = np.array([one.normal for one in contacts])
+    return -np.linalg.lstsq(_compliance(normals, state), _closing(contacts, state, free), rcond=None)[0]
+
+
+def _closing(contacts: Sequence[ContactState], state: DriverState, free: Rates) -> Number:
+    """Return the accelerations of gaps."""
+    whole = np.concatenate([free.accelerations, state.prescribed])
+    return np.array([float(one.normal @ whole) + one.bias for one in contacts])
+
+
+def _compliance(normals: Number, state: DriverState) -> Number:
+    """Return the accelerations of gaps by unit forces at them."""
+    n = len(state.chart.free)
+    found: Number = normals[:, :n] @ np.linalg.solve(state.terms.matrix[:n, :n], normals[:, :n].T)
+    return found
+
+
+def margins(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Number:
+    """Return by how much each rigid contact is pressed, negative where it is left."""
+    here = [one.at(state) for one in contacts]
+    forces = holding(here, state, free)
+    n = len(state.chart.free)
+    size = np.abs(np.array([one.normal for one in here])[:, :n]) @ np.abs(free.accelerations)
+    # at rest without loads nothing presses and nothing parts them
+    sizes = size / np.maximum(np.diag(_compliance(np.array([one.normal for one in here]), state)), 1e-300)
+    found: Number = forces + ROUNDING * sizes
+    return found
+
+
+class StopImpact(NamedTuple):
+    """The speeds of the free drivers after an impact, the lost energy, and the rigid contacts that stay."""
+
+    speeds: Number
+    lost: float
+    staying: tuple[StopContact, ...]
+
+
+def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact], state: DriverState) -> StopImpact:
+    """Return the result of an impact at one contact while others are closed.
+
+    M (v+ - v-) = N p with n . v+ = -e n . v- at the one, n . v+ = 0 and p > 0 at those that stay.
+
+    Source: Newton's law of impact in generalized coordinates, D. T. Greenwood, Principles of Dynamics, section 4.8.
+    """
+    n, matrix, before = len(state.chart.free), state.terms.matrix, state.speeds
+    kept = list(staying)
+    while True:
+        here = [one.at(state) for one in (hit, *kept)]
+        normals = np.array([one.normal for one in here])
+        change = np.array([(1.0 + restitution) * here[0].rate, *(one.rate for one in here[1:])])
+        impulses = -np.linalg.lstsq(_compliance(normals, state), change, rcond=None)[0]
+        parted = [one for one, impulse in zip(kept, impulses[1:], strict=True)
+                  if impulse < -ROUNDING * abs(impulses[0])]  # fmt: skip
+        if not parted:
+            break
+        kept.remove(parted[0])
+    after = before.copy()
+    after[:n] += np.linalg.solve(matrix[:n, :n], normals[:, :n].T @ impulses)
+    return StopImpact(after[:n], float(before @ matrix @ before - after @ matrix @ after) / 2.0, tuple(kept))
