@@ -52,6 +52,36 @@ def abbreviated_list(texts: Sequence[str], most: int = 8) -> str:
     return ", ".join(texts[:most]) + more
 
 
+def aligned_text(rows: Sequence[Sequence[str | float]]) -> str:
+    """Return rows as lines of text with aligned columns: numbers with six digits on the right, words on the left.
+
+    A row of one cell is a heading.
+
+    >>> print(aligned_text([("crank",), ("mean torque", 12.5, "N m"), ("work", 1000 / 3, "J")]))
+    crank
+    mean torque     12.5  N m
+    work         333.333  J
+    """
+    wide, right = dict[int, int](), set[int]()
+    texts = [[one if isinstance(one, str) else f"{one + 0.0:.6g}" for one in row] for row in rows]
+    for row, text in zip(rows, texts, strict=True):
+        for k in range(len(row)) if len(row) > 1 else ():
+            wide[k] = max(wide.get(k, 0), len(text[k]))
+            right |= set() if isinstance(row[k], str) else {k}
+    cells = ([one.rjust(wide.get(k, 0)) if k in right else one.ljust(wide.get(k, 0)) for k, one in enumerate(text)]
+             for text in texts)  # fmt: skip
+    return "\n".join("  ".join(row).rstrip() for row in cells)
+
+
+class DisplaysText:
+    """What has a report of its own, written as text."""
+
+    def text(self) -> str:
+        """Return the report on it as text, no line longer than 80 letters; of several designs the first."""
+        made: str = display_function("text")(self)
+        return made
+
+
 class DisplaysHtml:
     """What a notebook shows of an object: tables and pictures as HTML."""
 

@@ -27,6 +27,7 @@ from compoundkin.kinematics.solution import solve
 from compoundkin.model.geometry import FRAME, real, vector
 from compoundkin.model.loads import mass as mass_of
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.units import customary_unit
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,7 +69,8 @@ class ForceBalance(ShortRepr):
         for old, new in zip(self.before, self.after, strict=True):
             for word, a, b in (("greatest", old.greatest, new.greatest), ("rms", old.rms, new.rms)):
                 rest = b if b > BALANCED * a else 0.0
-                rows.append(f"{f'{old.name}, {word} [{old.unit}]':<44}{a:>14.6g}{rest:>14.6g}")
+                for unit, size in filter(None, ((old.unit, 1.0), customary_unit(old.unit))):
+                    rows.append(f"{f'{old.name}, {word} [{unit}]':<44}{a * size:>14.6g}{rest * size:>14.6g}")
         return tuple(rows)
 
     def __repr__(self) -> str:

@@ -5,16 +5,17 @@ The effort is a function of the place and is computed between the poses too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
 from compoundkin.analysis.mechanical_advantage import ForcePort, Port, TorquePort, mechanical_advantage
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr
+from compoundkin.base.display import ShortRepr, aligned_text
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.course_quadrature import Integrand, Pieces, integrals, smooth_pieces
 from compoundkin.dynamics.force_analysis import force_analysis
@@ -31,7 +32,12 @@ from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.units import Units
+from compoundkin.model.units import ANGULAR_VELOCITY, Units, customary_unit, with_customary
+
+# Speeds that differ by less than this part of the greatest are constant.
+STEADY = 1e-9
+# A mean below this part of the root mean square is rounding of an integral.
+NO_MEAN = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -206,6 +212,26 @@ class DriveFigures(ShortRepr):
     rms_power: Number
     power: Extremes
 
+    def text(self) -> str:
+        """Return them as text, a block for each design: torques in N m, powers in W and works in J as well."""
+        return texts_of_designs(len(self.mean_effort), self._lines)
+
+    def _lines(self, k: int) -> Iterator[Line]:
+        motion, unit, power = self.effort.least.at.motion, self.effort.unit, self.power.unit
+        what = "torque" if motion.drives[self.driver].is_angle else "thrust"
+        yield (f"driver {self.driver} {speed_text(motion, self.driver, k)}".rstrip(),)
+        # a mean of rounding has no work either
+        effort, watts = (0.0 if abs(mean[k]) <= NO_MEAN * rms[k] else mean[k] for mean, rms in
+                         ((self.mean_effort, self.rms_effort), (self.mean_power, self.rms_power)))  # fmt: skip
+        yield in_units(f"mean {what}", effort, unit)
+        yield in_units(f"rms {what}", self.rms_effort[k], unit)
+        yield from _extremes_lines(what, self.effort, k)
+        yield "ripple", float(self.ripple[k]) if effort else float("inf")
+        yield in_units("work", self.work[k] if effort else 0.0, motion.mechanism.stated_units.moment, energy=True)
+        yield in_units("mean power", watts, power)
+        yield in_units("rms power", self.rms_power[k], power)
+        yield from _extremes_lines("power", self.power, k)
+
     @property
     def ripple(self) -> Number:
         """The greatest less the least effort, over the mean."""
@@ -241,11 +267,50 @@ def drive_figures(forces: Forces, driver: str | None = None) -> DriveFigures:
     >>> found = drive_figures(force_analysis(solve(arm, speed=3)))
     >>> found.peak_effort.round(9), found.rms_effort.round(6), found.peak_power.round(9)
     (array([20.]), array([14.142136]), array([60.]))
+    >>> print(found.text().splitlines()[4])
+    greatest torque       20  N m        at arm 0 deg
     """
     course = driver_course(forces, driver)
     (mean_effort, mean_power), (rms_effort, rms_power) = course.means, course.mean_squares
     effort, power = extremes(course.motion, *course.measures)
     return DriveFigures(course.driver, mean_effort, rms_effort, effort, course.work, mean_power, rms_power, power)
+
+
+# A line of a text: words and numbers, aligned as columns.
+Line: TypeAlias = tuple[str | float, ...]
+
+
+def in_units(what: str, value: float, unit: str, energy: bool = False) -> Line:
+    """Return a line of text with a number in its own and in its customary unit."""
+    other = customary_unit(unit, energy)
+    more = () if other is None else (float(value * other[1]), other[0])
+    return what, float(value), unit, *more
+
+
+def speed_text(motion: Motion, driver: str, design: int) -> str:
+    """Return "at 150 rad/s (1432.39 rpm)", or the range of a driver's speeds; empty for a motion without speeds."""
+    drive = motion.drives[driver]
+    if motion.order < 1:
+        return ""
+    rates = np.broadcast_to(drive.rate, motion.shape).reshape(motion.failed.shape)[design]
+    unit = ANGULAR_VELOCITY if drive.is_angle else f"{motion.mechanism.unit}/s"
+    low, high = (float(np.nanmin(rates)), float(np.nanmax(rates)))
+    ends = low if high - low <= STEADY * max(abs(low), abs(high)) else None
+    if ends is not None:
+        return f"at {with_customary(low, unit)}"
+    return f"from {with_customary(low, unit)} to {with_customary(high, unit)}"
+
+
+def texts_of_designs(designs: int, lines: Callable[[int], Iterable[Line]]) -> str:
+    """Return lines of text for each design, headed where there are several."""
+    texts = [aligned_text(tuple(lines(k))) for k in range(designs)]
+    return "\n\n".join(texts if designs == 1 else (f"design {k}\n{text}" for k, text in enumerate(texts)))
+
+
+def _extremes_lines(what: str, found: Extremes, k: int) -> Iterator[Line]:
+    for word, end in (("least", found.least), ("greatest", found.greatest)):
+        own = in_units(f"{word} {what}", end.value[k], found.unit)
+        yield *own, *[""] * (5 - len(own)), f"at {end.at.text(k)}"
 
 
 def _farthest(found: Extremes) -> Number:

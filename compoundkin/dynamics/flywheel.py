@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,10 +12,11 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.course_quadrature import Pieces, integrals, smooth_pieces
-from compoundkin.dynamics.driver_course import DriverCourse, driver_course
+from compoundkin.dynamics.driver_course import NO_MEAN, DriverCourse, Line, driver_course, in_units, texts_of_designs
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.mass_motion import equivalent_inertia
 from compoundkin.kinematics.extremes import Places, between, zeros
+from compoundkin.model.units import ANGULAR_VELOCITY
 
 # A driver whose net travel over a cycle is below this part of its range oscillates.
 NO_TRAVEL = 1e-9
@@ -45,6 +47,29 @@ class Flywheel(ShortRepr):
     without: Number
     achieved: Number
 
+    def text(self) -> str:
+        """Return it as text, a block for each design: torques in N m and energies in J as well, angles in degrees."""
+        return texts_of_designs(len(self.inertia), self._lines)
+
+    def _lines(self, k: int) -> Iterator[Line]:
+        motion = self.crossings.motion
+        units, is_angle = motion.mechanism.stated_units, motion.drives[self.driver].is_angle
+        effort, own = ("torque", "flywheel") if is_angle else ("thrust", "added mass")
+        unit = f"{units.mass} {units.length}^2" if is_angle else units.mass
+        speed = ANGULAR_VELOCITY if is_angle else f"{units.length}/s"
+        yield (f"driver {self.driver}",)
+        yield in_units("mean speed", self.speed[k], speed)
+        mean = self.mean[k] if abs(self.mean[k]) > NO_MEAN * self.fluctuation[k] else 0.0
+        yield in_units(f"mean {effort}", mean, units.moment if is_angle else units.force)
+        for place in np.flatnonzero(self.crossings.design == k).tolist():
+            words = f"surplus up to {self.crossings.text(place)}"
+            yield in_units(words, self.energies[place], units.moment, energy=True)
+        yield in_units("fluctuation of energy", self.fluctuation[k], units.moment, energy=True)
+        yield "coefficient of fluctuation", float(self.coefficient)
+        yield own, float(self.inertia[k]), unit
+        yield "coefficient without it", float(self.without[k])
+        yield "coefficient with it and the parts", float(self.achieved[k])
+
 
 @checked
 def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -> Flywheel:
@@ -66,6 +91,8 @@ def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -
     >>> found = flywheel(force_analysis(solve(arm, speed=10)), 0.05)
     >>> found.fluctuation.round(9), found.inertia.round(9)              # 2 m g r = 40; 40 / (0.05 x 10^2)
     (array([40.]), array([8.]))
+    >>> print(found.text().splitlines()[5])
+    fluctuation of energy                   40  N m     40  J
     """
     _check_flywheel(fluctuation)
     course = driver_course(forces, driver, of_cycle=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from compoundkin.base.display import DisplaysHtml
+from compoundkin.base.display import DisplaysHtml, DisplaysText
 from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.friction.efficiency import Efficiency
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Forces(DisplaysHtml, ForceResult):
+class Forces(DisplaysHtml, DisplaysText, ForceResult):
     """The forces of a motion, in the mechanism's units.
 
     Arrays have the motion's shape, and are NaN where poses are not assembled.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,19 +11,24 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.driver_course import driver_named
+from compoundkin.dynamics.driver_course import Line, driver_named, texts_of_designs
 from compoundkin.dynamics.forces import Forces, motion_of
 from compoundkin.kinematics.extremes import between, closed_cycles
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import SHAKING_FORCE
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.units import customary_unit
 
 SHAKING = f"{FRAME}.{SHAKING_FORCE}"
 # Travel within so many radians of a full turn is one: rounding of sums of steps.
 FULL_TURN_ERROR = 1e-9
 # A cycle is sampled at twice as many places until no coefficient changes by more than this part of the largest.
 CONVERGED, FEWEST, MOST = 1e-12, 64, 4096
+# In a text, coefficients below this part of the largest are rounding: they converge to CONVERGED only.
+ROUNDING = 1e-10
+# A phase of -180 degrees but for six digits is one of 180.
+SAME_AS_HALF_TURN = -179.9999
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,6 +50,27 @@ class Harmonics(ShortRepr):
     def orders(self) -> Number:
         """The orders, from 0."""
         return np.arange(self.forward.shape[-1])
+
+    def text(self) -> str:
+        """Return them as text, a block for each design: of a number amplitudes and phases, of a vector both parts.
+
+        Phases are in degrees, torques in N m as well.
+        """
+        return texts_of_designs(len(self.forward), self._lines)
+
+    def _lines(self, k: int) -> Iterator[Line]:
+        words = ("forward", "at", "backward", "at") if self.is_vector else ("amplitude", "phase")
+        own = self.amplitude[k] * np.exp(1j * self.phase[k]) if not self.is_vector else self.forward[k]
+        columns = (own, self.backward[k]) if self.is_vector else (own,)
+        other = customary_unit(self.unit)
+        units = [(self.unit, 1.0), *([other] if other and not self.is_vector else [])]
+        yield (f"{self.name} [{', '.join(unit for unit, _ in units)}, deg]",)
+        yield "order", *words[:1], *[""] * (len(units) - 1), *words[1:]
+        least = ROUNDING * max(float(np.max(np.abs(one))) for one in columns)
+        for order in range(len(columns[0])):
+            cells = [(*(abs(one[order]) * size for _, size in units), _phase(one[order])) if abs(one[order]) > least
+                     else (*[0.0] * len(units), 0.0) for one in columns]  # fmt: skip
+            yield str(order), *(float(value) for cell in cells for value in cell)
 
     def part(self, component: str) -> Harmonics:
         """Return the harmonics of a component of a vector, "x" or "y"."""
@@ -87,6 +114,11 @@ def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driv
     >>> crank = Mechanism("m", link("frame", A=(3, 0)), link("crank", A=0, B=2), drive("crank"))
     >>> harmonics(solve(crank), "B.x", orders=2).amplitude.round(12).tolist()         # 3 + 2 cos
     [[3.0, 2.0, 0.0]]
+    >>> print(harmonics(solve(crank), "B.x", orders=1).text())
+    B.x [length, deg]
+    order  amplitude  phase
+    0              3      0
+    1              2      0
     """
     motion = motion_of(of)
     _check_closed(motion, orders)
@@ -99,6 +131,12 @@ def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driv
         count, found = 2 * count, coefficients
     known = quantity(motion, name)
     return Harmonics(name, known.unit, known.is_vector, *coefficients)
+
+
+def _phase(value: complex) -> float:
+    """Return the angle of a coefficient in degrees, above -180."""
+    found = round(float(np.rad2deg(np.angle(value))), 9)
+    return 180.0 if found <= SAME_AS_HALF_TURN else found
 
 
 def _change(new: tuple[Number, Number], old: tuple[Number, Number]) -> float:

@@ -18,10 +18,10 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
-from compoundkin.base.display import ShortRepr
+from compoundkin.base.display import ShortRepr, aligned_text
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.extremes import extended_to
+from compoundkin.kinematics.extremes import Places, extended_to
 from compoundkin.kinematics.jacobian import moved_together
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import FRAME
@@ -85,6 +85,10 @@ def units_of_masses(motion: Motion) -> Units:
     return units
 
 
+# In a text, less than this part of the greatest is rounding: of rates, which are squared, next to a dead point.
+NO_INERTIA = 1e-14
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class EquivalentInertia(ShortRepr):
     """The equivalent inertia at the drivers for every pose, and its derivatives by their coordinates.
@@ -97,6 +101,42 @@ class EquivalentInertia(ShortRepr):
     drivers: tuple[str, ...]
     matrix: Number
     slopes: Number
+    motion: Motion
+
+    def text(self) -> str:
+        """Return the least and greatest of it over the poses as text, with their places; angles in degrees.
+
+        Of a single pose it is the value itself with its derivatives.
+        """
+        rows, units, motion = [], self.motion.mechanism.stated_units, self.motion
+        ways = [units.length if motion.drives[name].is_angle else "" for name in self.drivers]
+        largest = np.nanmax(np.abs(self.matrix).reshape(-1, *self.matrix.shape[-2:]), axis=0, initial=0.0)
+        for i, j in zip(*np.triu_indices(len(ways)), strict=True):
+            lengths = [way for way in (ways[i], ways[j]) if way]
+            unit = " ".join((units.mass, *([f"{lengths[0]}^2"] if len(lengths) == 2 else lengths)))
+            named = ", ".join(dict.fromkeys((self.drivers[i], self.drivers[j])))
+            least = NO_INERTIA * float(np.sqrt(largest[i, i] * largest[j, j]))
+            rows += self._rows(f"equivalent inertia at {named}", unit, self.matrix[..., i, j], least)
+            for k, name in enumerate(self.drivers):
+                by, size = ("rad", 1.0) if ways[k] else (units.length, float(np.max(motion.sizes)))
+                rows += self._rows(f"its derivative by {name}", f"{unit}/{by}", self.slopes[..., i, j, k], least / size)
+        return aligned_text(rows)
+
+    def _rows(self, what: str, unit: str, values: Number, least: float) -> list[tuple[str | float, ...]]:
+        """Return the extremes of values over the poses as rows of text; less than the least is rounding."""
+        flat = np.reshape(values, (-1, self.motion.inputs.poses))
+        flat = np.where(np.abs(flat) <= least, 0.0, flat)
+        if not np.isfinite(flat).any():
+            return [(what, "not assembled")]
+        if flat.size == 1:
+            return [(what, float(flat[0, 0]), unit)]
+        rows: list[tuple[str | float, ...]] = []
+        for word, found in (("least", np.nanargmin(flat)), ("greatest", np.nanargmax(flat))):
+            design, pose = np.unravel_index(found, flat.shape)
+            at = Places(self.motion, np.array([design]), np.array([float(pose)])).text(0)
+            of = f"design {design}, " if len(flat) > 1 else ""
+            rows.append((f"{what}, {word}", float(flat[design, pose]), unit, f"at {of}{at}"))
+        return rows
 
     @property
     def inertia(self) -> Number:
@@ -133,6 +173,9 @@ def equivalent_inertia(motion: Motion) -> EquivalentInertia:
     >>> arm = Mechanism("m", link("frame", A=0), link("crank", A=0, B=4), drive("crank"), bar, units=units)
     >>> equivalent_inertia(solve(arm, [0.0, 1.0])).inertia.tolist()     # 1 + 3 x 2^2
     [13.0, 13.0]
+    >>> print(equivalent_inertia(solve(arm, [0.5])).text())
+    equivalent inertia at crank  13  kg m^2
+    its derivative by crank       0  kg m^2/rad
     """
     units_of_masses(motion)
     drivers = tuple(motion.drives)
@@ -146,7 +189,7 @@ def equivalent_inertia(motion: Motion) -> EquivalentInertia:
                 matrix[..., i, j] = sum(a.product(1, b, 1) for a, b in zip(alone[i], alone[j], strict=True))
                 for k in range(count):
                     slopes[..., i, j, k] = _slope(alone, second, (i, j, k))
-    return EquivalentInertia(drivers, _in_motion_shape(motion, matrix), _in_motion_shape(motion, slopes))
+    return EquivalentInertia(drivers, _in_motion_shape(motion, matrix), _in_motion_shape(motion, slopes), motion)
 
 
 def _masses(motion: Motion, speeds: Mapping[str, Number]) -> tuple[MassMotion, ...]:

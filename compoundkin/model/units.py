@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import pi
 from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
@@ -25,6 +26,8 @@ FORCES = {
 # In watts; products of powers of ten that differ by rounding alone are one unit.
 _POWERS, _SAME = {"W": 1.0, "uW": 1e-6, "mW": 1e-3, "kW": 1e3, "MW": 1e6}, 1e-12
 KNOWN: Mapping[str, Mapping[str, float]] = {"length": LENGTHS, "mass": MASSES, "force": FORCES}
+# Angular velocities as solved, and as they stand on the plate of a motor: (unit, how many there are in the first).
+ANGULAR_VELOCITY, TURNS = "rad/s", ("rpm", 30.0 / pi)
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,37 @@ class Units:
         watts = LENGTHS[self.length] * FORCES[self.force]
         own = (name for name, size in _POWERS.items() if abs(watts / size - 1.0) < _SAME)
         return next(own, f"{self.moment}/s")
+
+
+def customary_unit(unit: str, energy: bool = False) -> tuple[str, float] | None:
+    """Return the unit in which a speed, a torque or a power is customary, and how many of it one of `unit` is.
+
+    rpm, N m (of an energy J) and W; None for other quantities and where `unit` is that already.
+
+    >>> customary_unit("N mm"), customary_unit("kW"), customary_unit("N"), customary_unit("N m", energy=True)
+    (('N m', 0.001), ('W', 1000.0), None, ('J', 1.0))
+    """
+    if unit == ANGULAR_VELOCITY:
+        return TURNS
+    force, _, rest = unit.partition(" ")
+    length, _, per = rest.partition("/")
+    if unit in _POWERS:
+        found = "W", _POWERS[unit]
+    elif force in FORCES and length in LENGTHS and per in ("", "s"):
+        found = "W" if per else "J" if energy else "N m", FORCES[force] * LENGTHS[length]
+    else:
+        return None
+    return found if found[0] != unit else None
+
+
+def with_customary(value: float, unit: str) -> str:
+    """Return a number with its unit, and in parentheses in the unit in which it is customary.
+
+    >>> with_customary(120000.0, "N mm"), with_customary(10 * pi, "rad/s"), with_customary(5.0, "mm/s")
+    ('120000 N mm (120 N m)', '31.4159 rad/s (300 rpm)', '5 mm/s')
+    """
+    own, other = f"{value + 0.0:.6g} {unit}", customary_unit(unit)
+    return own if other is None else f"{own} ({value * other[1] + 0.0:.6g} {other[0]})"
 
 
 def as_units(given: Any) -> Units | None:

@@ -31,7 +31,7 @@ from compoundkin.view.report.configurations_section import (
     configurations_section,
     singularities_section,
 )
-from compoundkin.view.report.forces_section import assumptions, drives_blocks, reactions_blocks
+from compoundkin.view.report.forces_section import assumptions, drives_blocks, forces_report, reactions_blocks
 from compoundkin.view.report.interference_section import blocks_of_designs
 from compoundkin.view.report.motion_report import simulation_report
 from compoundkin.view.report.outputs_section import cam_blocks
@@ -210,6 +210,11 @@ def _(what: Centres | MobilityAnalysis | Interference | CamAnalysis | Singularit
 @_parts.register
 def _(what: Studied) -> Iterator[str]:
     yield from plain_sections(report(what).sections)
+
+
+def text_of(what: Forces | Simulation) -> str:
+    """Return the report on forces or a simulation as text."""
+    return (simulation_report(what) if isinstance(what, Simulation) else forces_report(what)).text()
 
 
 @_parts.register

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -407,6 +408,111 @@ def test_what_only_slides_cannot_be_balanced_and_is_named() -> None:
     np.testing.assert_allclose(found.counterweights[0].moment, -1.5, rtol=1e-12)
     assert "does not exist: no chain of pins alone joins yoke to the frame" in found.text()
     np.testing.assert_allclose(found.after[0].greatest, 6.0, rtol=1e-12)
+
+
+def numbers(text: str, line: str) -> list[float]:
+    """The numbers of the first line of a text that begins so, after these words."""
+    (found, *_) = (row for row in text.splitlines() if row.startswith(line))
+    return [
+        float(word) for word in re.findall(r"(?<![\w^])-?\d+(?:\.\d+)?(?:e[-+]\d+)?(?![\w^])", found.removeprefix(line))
+    ]
+
+
+def pendulum(**units: str) -> ck.Mechanism:
+    """An arm of 2 kg at its end, 1000 mm from the pin, under 10 m/s^2."""
+    parts = ck.link("frame", A=0), ck.link("arm", A=0, B=1000), ck.drive("arm"), ck.mass("arm", 2, at="B")
+    return ck.Mechanism("Arm", *parts, ck.gravity(0, -10), units={"length": "mm", "mass": "kg", "force": "N"} | units)
+
+
+def test_the_texts_of_drives_and_flywheels_are_in_customary_units_too() -> None:
+    """The torque of the arm is 20 N m cos: no work, a fluctuation of 40 J, at 3 rad/s at most 60 W."""
+    forces = ck.force_analysis(ck.solve(pendulum(), TURN, speed=3))
+    text = ck.figures.drive_figures(forces).text()
+    assert text.splitlines()[0] == "driver arm at 3 rad/s (28.6479 rpm)"
+    assert numbers(text, "greatest torque") == [20000, 20, 0]
+    assert numbers(text, "least torque") == [-20000, -20, 180]
+    assert numbers(text, "rms torque") == pytest.approx([20000 / np.sqrt(2), 20 / np.sqrt(2)], rel=1e-5)
+    assert numbers(text, "greatest power") == [60000, 60, 0]
+    assert numbers(text, "mean torque") == numbers(text, "work") == numbers(text, "mean power") == [0, 0]
+    assert re.search(r"greatest power .* mW .* W ", text)
+    wheel = ck.figures.flywheel(forces, 0.05).text()
+    assert numbers(wheel, "mean speed") == pytest.approx([3, 90 / np.pi], rel=1e-5)
+    assert numbers(wheel, "mean torque") == [0, 0]
+    assert numbers(wheel, "fluctuation of energy") == [40000, 40]
+    assert numbers(wheel, "flywheel") == pytest.approx([40 / (0.05 * 9) * 1e6], rel=1e-5)
+    assert re.search(r"fluctuation of energy .* N mm .* J\nco", wheel)
+    assert "kg mm^2" in wheel
+
+
+def test_the_text_of_a_thrust_has_no_torque() -> None:
+    """A mass lifted by 2 to and fro at constant force m g."""
+    parts = (
+        ck.link("frame", A=0),
+        ck.link("ram", B=0),
+        ck.slide("ram", on="frame", through="A", angle=np.pi / 2, name="s"),
+    )
+    items = ck.drive("ram", values=[0.0, 1.0, 2.0], speed=0.5), ck.mass("ram", 3), ck.gravity(0, -10)
+    lift = ck.Mechanism("Lift", *parts, *items, units=UNITS)
+    text = ck.figures.drive_figures(ck.force_analysis(ck.solve(lift))).text()
+    assert text.splitlines()[0] == "driver ram at 0.5 m/s"
+    assert numbers(text, "mean thrust") == [30]
+    assert numbers(text, "work") == [60, 60]
+    assert numbers(text, "mean power") == [15]
+    inertia = ck.figures.equivalent_inertia(ck.solve(lift)).text()
+    assert numbers(inertia, "equivalent inertia at ram, greatest") == [3, 0]
+    assert "kg/m" in inertia
+
+
+def test_the_text_of_harmonics_has_phases_in_degrees() -> None:
+    """m r w^2 turns with the crank; its moment of weight is 20 N m cos, its torque the first order alone."""
+    forces = ck.force_analysis(ck.solve(pendulum(), TURN, speed=3))
+    torque = ck.figures.harmonics(forces, "arm.effort", orders=2).text()
+    assert torque.splitlines()[0] == "arm.effort [N mm, N m, deg]"
+    assert numbers(torque, "1") == [20000, 20, 0]
+    assert numbers(torque, "2") == [0, 0, 0]
+    shaking = ck.figures.harmonics(forces, orders=2).text()
+    assert numbers(shaking, "0") == [20, -90, 20, -90], "the weight"
+    assert numbers(shaking, "1") == [18, 0, 0, 0], "2 kg x 1 m x 9 rad/s^2, in line with the arm"
+
+
+def test_the_text_of_an_equivalent_inertia_names_places_and_drivers() -> None:
+    """J = m_p (ds/dq)^2 of a yoke: 3 kg x 1^2 at a right angle, none at a dead point."""
+    links = ck.link("frame", O=0), ck.link("crank", O=0, A=1), ck.link("block", A=0), ck.link("yoke", Y=0)
+    first = ck.slide("yoke", on="frame", through="O", angle=0)
+    second = ck.slide("block", on="yoke", through="Y", angle=np.pi / 2)
+    yoke = ck.Mechanism("m", *links, first, second, ck.drive("crank"), ck.mass("yoke", 3.0), units=UNITS)
+    text = ck.figures.equivalent_inertia(ck.solve(yoke, TURN)).text()
+    assert numbers(text, "equivalent inertia at crank, greatest") == [3, 90]
+    assert numbers(text, "equivalent inertia at crank, least") == [0, 0]
+    at_one = ck.figures.equivalent_inertia(ck.solve(yoke, [np.pi / 6])).text()
+    assert numbers(at_one, "equivalent inertia at crank") == pytest.approx([3 / 4])
+    assert numbers(at_one, "its derivative by crank") == pytest.approx([3 * 2 * 0.5 * np.sqrt(3) / 2], rel=1e-5)
+
+
+def test_the_text_of_an_efficiency_is_that_of_the_drawer() -> None:
+    """A load of 10 lifted on a plane of 30 degrees: 1 / (1 + mu / tan 30) up; it locks itself where mu > tan 30."""
+    slope, load = np.deg2rad(30), ck.force("block", (0, -10), at="B")
+    for friction in (0.2, 0.7):
+        parts = (
+            ck.link("frame", A=0),
+            ck.link("block", B=0),
+            ck.slide("block", on="frame", through="A", angle=slope, name="s"),
+        )
+        items = ck.drive("block", values=[0.0, 1.0], speed=1), load, ck.friction("s", friction)
+        forces = ck.force_analysis(ck.solve(ck.Mechanism("Plane", *parts, *items, units=UNITS)), inertia=False)
+        text = forces.efficiency.text()
+        assert numbers(text, "efficiency over the motion") == pytest.approx(
+            [1 / (1 + friction / np.tan(slope))], rel=1e-5
+        )
+        assert ("not self-locking" in text) == (friction < np.tan(slope))
+
+
+def test_texts_of_several_designs_are_blocks() -> None:
+    arms = pendulum().replace(ck.mass("arm", [[2.0], [4.0]], at="B"))
+    text = ck.figures.drive_figures(ck.force_analysis(ck.solve(arms, TURN, speed=3))).text()
+    first, second = text.split("\n\n")
+    assert (first.splitlines()[0], second.splitlines()[0]) == ("design 0", "design 1")
+    assert numbers(second, "greatest torque") == [40000, 40, 0]
 
 
 def test_what_is_wrong_is_said() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import compoundkin as ck
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.shapes import ShapeGroup, leaves
-from tests.view.loaded import MASS, crank, crank_forces, six_bar_forces
+from tests.view.loaded import MASS, REACH, crank, crank_forces, six_bar_forces
 
 
 def test_a_notebook_shows_forces_and_simulations() -> None:
@@ -17,6 +17,19 @@ def test_a_notebook_shows_forces_and_simulations() -> None:
     fallen = ck.simulate(crank(), start={"crank": 0.5}, until=0.1)._repr_html_() or ""
     assert "iframe" in fallen
     assert "energy balance" in fallen
+
+
+def test_forces_and_simulations_are_texts() -> None:
+    text = crank_forces().text()
+    peak = MASS * 9.81 * REACH
+    assert f"{peak:.6g}" in text
+    assert f"{peak / 1000:.6g}" in text, "N mm and N m"
+    assert max(map(len, text.splitlines())) <= 80
+    fallen = ck.simulate(crank(), start={"crank": 0.5}, until=0.1)
+    assert "fastest" in fallen.text()
+    fastest = float(np.max(np.abs(fallen.motion.drives["crank"].rate)))
+    assert f"{fastest * 30 / np.pi:.6g}" in fallen.text()
+    assert "[rpm]" in fallen.text()
 
 
 def test_arrows_move_with_the_motion_at_one_scale() -> None:

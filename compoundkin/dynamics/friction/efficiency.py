@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr
+from compoundkin.base.display import ShortRepr, aligned_text
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, PoseStretch, stretches_where
 from compoundkin.dynamics.reactions.driver_efforts import Powers
+from compoundkin.kinematics.extremes import Places
 from compoundkin.kinematics.motion import Motion
 
 # Powers below this part of the greatest one at any pose of the motion are rounding.
@@ -30,6 +31,22 @@ class Efficiency(ShortRepr):
     power: Powers
     friction: FrictionForces
     frictionless_efforts: Mapping[str, Number]
+
+    def text(self) -> str:
+        """Return it as text: over the motion, least and greatest at a pose with their places, where it locks itself."""
+        rows: list[tuple[str | float, ...]] = []
+        for design, whole in enumerate(np.ravel(self.over_motion)):
+            of = f"design {design}: " if self.motion.inputs.designs > 1 else ""
+            rows.append((f"{of}efficiency over the motion", float(whole)))
+            for word, values in (("efficiency", self.at_poses), ("efficiency backward", self.backward)):
+                row = np.reshape(values, self.motion.failed.shape)[design]
+                if not np.isfinite(row).any():
+                    continue
+                for end, k in (("least", np.nanargmin(row)), ("greatest", np.nanargmax(row))):
+                    at = Places(self.motion, np.array([design]), np.array([float(k)])).text(0)
+                    rows.append((f"{of}{end} {word} at a pose", float(row[k]), f"at {at}"))
+        locked = [f"self-locking: {one}" for one in self.self_locking_stretches]
+        return "\n".join((aligned_text(rows), *(locked or ["not self-locking"])))
 
     @property
     def at_poses(self) -> Number:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import DisplaysHtml, count_phrase
+from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
@@ -18,7 +18,7 @@ from compoundkin.kinematics.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation(DisplaysHtml):
+class Simulation(DisplaysHtml, DisplaysText):
     """The motion of a mechanism under its loads. `motion` is a motion in time, solved again at `times`.
 
     `events` are in the order of time. `steps` and `evaluations` count those of the integration. `losses` are the

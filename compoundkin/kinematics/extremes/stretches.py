@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.arrays import Number, degrees, whole_turns
 from compoundkin.base.bracketing import false_position
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
@@ -16,7 +16,7 @@ from compoundkin.base.extremes import Windows
 from compoundkin.kinematics.extremes.motion_between import between, inputs_between, times_between, times_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity, whole_and_part
-from compoundkin.model.attributes import LENGTH, SPEED, Dimension, derivative_order
+from compoundkin.model.attributes import DEGREES, LENGTH, SPEED, Dimension, derivative_order
 from compoundkin.model.attributes import PARTS as VALUE_PARTS
 from compoundkin.model.laws.law_numbers import derivative_jumps
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
@@ -304,6 +304,17 @@ class Places(ShortRepr):
         out = np.full(self.place.shape, np.nan)
         out[good] = np.broadcast_to(np.reshape(values, (-1,)), np.shape(self.place[good]))
         return out
+
+    def text(self, k: int) -> str:
+        """Return one of them in words: the time, else the drivers' values, angles in degrees."""
+        if self.time is not None:
+            return f"{self.time[k] + 0.0:.6g} s"
+        texts = []
+        for name, values in self.drives.items():
+            is_angle = self.motion.drives[name].is_angle
+            value = np.round(degrees(values[k]), 9) if is_angle else values[k]
+            texts.append(f"{name} {value + 0.0:.6g} {DEGREES if is_angle else self.motion.mechanism.unit}".rstrip())
+        return ", ".join(texts)
 
     def some(self, which: Number) -> Places:
         """Return some of the places."""

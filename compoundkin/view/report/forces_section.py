@@ -13,6 +13,7 @@ import numpy as np
 
 from compoundkin.analysis.checks import verify
 from compoundkin.base.arrays import Number, first_entry
+from compoundkin.dynamics.driver_course import speed_text
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.link_forces import LinkForces
 from compoundkin.kinematics import Motion
@@ -20,6 +21,7 @@ from compoundkin.kinematics.extremes import Measure, extremes
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import LoadFunction, LoadTable
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.units import customary_unit
 from compoundkin.view.report.outputs_section import extremes_columns, extremes_row
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
@@ -34,8 +36,6 @@ MOST_SINGULAR, MOST_STRETCHES = 8, 6
 MOST_POSES = 8
 # A force below this part of the largest one, or a moment below that part of it times the size, is rounding.
 FORCE_ROUNDING, NEGLIGIBLE = 1e-11, 1e-9
-# Speeds that differ by less than this part of the greatest are constant.
-STEADY = 1e-9
 
 
 def forces_section(forces: Forces, design: int = 0) -> Section:
@@ -159,23 +159,11 @@ def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
     if mechanism.masses and massless:
         yield f"no mass on {listed(massless)}"
     yield "accelerations cause inertia forces" if forces.inertia else "statics: no inertia"
-    yield from _driver_speeds(sample)
+    if forces.motion.order:
+        yield from (f"{name} {speed_text(forces.motion, name, sample.design)}" for name in forces.motion.drives)
     if holding := forces.motion.loading.get("holding"):
         yield f"{holding} holds in the drivers' place"
     yield _friction_clause(forces)
-
-
-def _driver_speeds(sample: Sample) -> Iterator[str]:
-    """Yield the speed of each driver, or its range."""
-    motion = sample.motion
-    for name, drive in motion.drives.items() if motion.order else ():
-        rates = np.asarray(sample.of(drive.rate))
-        unit = "rad/s" if drive.is_angle else f"{motion.mechanism.unit}/s"
-        low, high = float(np.nanmin(rates)), float(np.nanmax(rates))
-        if high - low <= STEADY * max(abs(low), abs(high)):
-            yield f"{name} at {number_text(low)} {unit}"
-        else:
-            yield f"{name} from {number_text(low)} to {number_text(high)} {unit}"
 
 
 def _friction_clause(forces: Forces) -> str:
@@ -294,15 +282,29 @@ def drives_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     if not figures:
         return
     yield Paragraph("Drivers, the torque or thrust along the driver's own coordinate, positive where it drives it up:")
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for figure, row in zip(figures, _extremes_rows(sample, forces, figures), strict=True):
         values = np.asarray(figure.of(forces))
         root = float(np.sqrt(mean_over_motion(forces, values**2, sample.design)))
         mean = mean_over_motion(forces, values, sample.design)
-        rows.append((*row[:3], 0.0 if abs(mean) <= NEGLIGIBLE * root else mean, root, *row[3:]))
+        rows += _also_customary((*row[:3], 0.0 if abs(mean) <= NEGLIGIBLE * root else mean, root, *row[3:]), (3, 4))
     first = Column("driver"), Column("quantity"), Column("unit")
     columns = (*first, Column("mean", style="each"), Column("rms", style="each"), *extremes_columns(sample))
     yield TableBlock(columns, tuple(rows), keys=1)
+
+
+def _also_customary(row: tuple[Cell, ...], means: tuple[int, ...]) -> Iterator[tuple[Cell, ...]]:
+    """Yield a row with the unit in its third cell, and the same row in the unit in which that is customary.
+
+    `means` are the cells with means; extremes with their places are the last four.
+    """
+    yield row
+    other = customary_unit(str(row[2]))
+    if other is not None:
+        numbers = (*means, len(row) - 4, len(row) - 2)
+        name, size = other
+        cells = (cell * size if k in numbers and isinstance(cell, float) else cell for k, cell in enumerate(row))
+        yield tuple(name if k == 2 else cell for k, cell in enumerate(cells))
 
 
 def _drive_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
@@ -339,7 +341,8 @@ def _friction_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     figures = tuple(figure for name in forces.friction.pairs for figure in _friction_figures(forces, name))
     means = [mean_over_motion(forces, figure.of(forces), sample.design) for figure in figures]
     extremes_of = _extremes_rows(sample, forces, figures)
-    rows = [(*row[:3], mean, *row[3:]) for mean, row in zip(means, extremes_of, strict=True)]
+    whole = [(*row[:3], mean, *row[3:]) for mean, row in zip(means, extremes_of, strict=True)]
+    rows = [one for row in whole for one in _also_customary(row, (3,))]
     first = Column("pair"), Column("quantity"), Column("unit"), Column("mean", style="each")
     yield TableBlock((*first, *extremes_columns(sample)), tuple(rows), keys=1)
     yield from _efficiency_blocks(sample, forces)

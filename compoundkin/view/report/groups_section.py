@@ -29,6 +29,7 @@ from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, Function
 from compoundkin.model.laws.motion_programs import LIMITS, Program, ProgramSegment
 from compoundkin.model.laws.table_laws import TimeTable
 from compoundkin.model.prescribed_paths import CurvePath, FunctionPath, LinePath, Path, TimedPlaces
+from compoundkin.model.units import ANGULAR_VELOCITY, customary_unit, with_customary
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
@@ -76,8 +77,12 @@ def _law_paragraphs(structure: Structure) -> Iterator[Paragraph]:
 def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> TableBlock:
     length, dimension = structure.mechanism.unit, coordinate_dimension(is_angle)
     unit = DEGREES if is_angle else unit_of(length, dimension)
-    rates = (Column(RATES[k - 1], unit_of(length, dimension, k), "each") for k in (1, 2))
+    speed, second = (Column(RATES[k - 1], unit_of(length, dimension, k), "each") for k in (1, 2))
     span = Column("from", unit, "each"), Column("to", unit, "each"), Column("poses", style="each")
+    rates, other = [speed, second], customary_unit(speed.unit)
+    if other is not None:
+        rates.insert(1, Column(speed.name, other[0], "each", follows=True))
+        rows = [(*row[:6], row[5] * other[1] if isinstance(row[5], float) else None, *row[6:]) for row in rows]
     return TableBlock((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
 
 
@@ -226,7 +231,7 @@ class LawText:
     """The words for a coordinate: an angle, or a length in a unit.
 
     >>> LawText(True, "mm").law(ConstantSpeed(2.0))
-    'at a constant 2 rad/s from 0 deg at time 0'
+    'at a constant 2 rad/s (19.0986 rpm) from 0 deg at time 0'
     """
 
     is_angle: bool
@@ -239,11 +244,11 @@ class LawText:
 
     @law.register
     def _(self, law: ConstantSpeed) -> str:
-        return f"at a constant {self._rate(law.speed, 1)} from {self._value(law.start)} at time 0"
+        return f"at a constant {self._speed(law.speed)} from {self._value(law.start)} at time 0"
 
     @law.register
     def _(self, law: ConstantAcceleration) -> str:
-        start = f"from {self._value(law.start)} at {self._rate(law.speed, 1)} at time 0"
+        start = f"from {self._value(law.start)} at {self._speed(law.speed)} at time 0"
         return f"at a constant {self._rate(law.acceleration, 2)}, {start}"
 
     @law.register
@@ -293,6 +298,14 @@ class LawText:
     def _value(self, value: Any) -> str:
         shown = degrees(value) if self.is_angle else value
         return f"{_range_text(shown)} {'deg' if self.is_angle else self.unit}"
+
+    def _speed(self, value: Any) -> str:
+        """Return a speed, a single one in rpm as well."""
+        if np.ptp(value) > 0.0:
+            return self._rate(value, 1)
+        return with_customary(
+            float(np.min(value)), ANGULAR_VELOCITY if self.is_angle else f"{self.unit}{PER_SECOND[1]}"
+        )
 
     def _rate(self, value: Any, order: int) -> str:
         return f"{_range_text(value)} {'rad' if self.is_angle else self.unit}{PER_SECOND[order]}"

@@ -18,6 +18,7 @@ from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.model.attributes import DEGREES, PER_SECOND, unit_of
+from compoundkin.model.units import TURNS
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections, singularities_section
 from compoundkin.view.report.forces_section import force_checks_sections, forces_section
@@ -188,9 +189,13 @@ def _drivers_table(found: Simulation) -> TableBlock:
         unit = DEGREES if drive.is_angle else unit_of(motion.mechanism.unit, "length")
         shown, fast = (degrees(value), degrees(rate)) if drive.is_angle else (value, rate)
         ends = shown[0], shown[-1], np.nanmin(shown), np.nanmax(shown), np.nanmax(np.abs(fast))
-        rows.append((name, unit, *map(float, ends), f"{unit}{PER_SECOND[1]}"))
+        turns = float(np.nanmax(np.abs(rate))) * TURNS[1] if drive.is_angle else None
+        rows.append((name, unit, *map(float, ends), f"{unit}{PER_SECOND[1]}", turns))
     numbers = (Column(word, style="each") for word in ("begins", "ends", "least", "greatest", "fastest"))
-    return TableBlock((Column("driver"), Column("unit"), *numbers, Column("speed in")), tuple(rows), keys=1)
+    columns = Column("driver"), Column("unit"), *numbers, Column("speed in")
+    if any(drive.is_angle for drive in motion.drives.values()):
+        return TableBlock((*columns, Column("fastest", TURNS[0], "each")), tuple(rows), keys=1)
+    return TableBlock(columns, tuple(row[:-1] for row in rows), keys=1)
 
 
 def _energies_table(found: Simulation) -> TableBlock:

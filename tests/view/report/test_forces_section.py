@@ -15,10 +15,10 @@ WEIGHT, PULL = MASS * 9.81, MASS * SPEED**2 * REACH / 1000.0
 
 
 def _rows(key: str) -> dict[str, list[object]]:
-    """The rows of a table of the crank's report, by their first cells."""
+    """The rows of a table of the crank's report, by their first cells; each in the mechanism's own units."""
     blocks = json.loads(forces_report(crank_forces()).json())["sections"]["forces"]["blocks"]
     tables = [block for block in blocks if block["kind"] == "table" and block["columns"][0]["name"] == key]
-    return {" ".join(map(str, row[:2])) if key == "driver" else row[0]: row for row in tables[0]["rows"]}
+    return {" ".join(map(str, row[:2])) if key == "driver" else row[0]: row for row in reversed(tables[0]["rows"])}
 
 
 def test_extremes_are_those_of_the_closed_form_between_the_poses() -> None:
@@ -32,6 +32,16 @@ def test_extremes_are_those_of_the_closed_form_between_the_poses() -> None:
     shaken = _rows("on the frame")
     assert shaken["force"][2:] == pytest.approx([abs(WEIGHT - PULL), 90.0, WEIGHT + PULL, 270.0], rel=1e-6)
     assert shaken["moment about A"][4] == pytest.approx(peak)
+
+
+def test_torques_and_powers_are_in_newton_metres_and_watts_as_well() -> None:
+    blocks = json.loads(forces_report(crank_forces()).json())["sections"]["forces"]["blocks"]
+    (table,) = [block for block in blocks if block["kind"] == "table" and block["columns"][0]["name"] == "driver"]
+    assert [row[2] for row in table["rows"]] == ["N mm", "N m", "mW", "W"]
+    for own, other in zip(table["rows"][::2], table["rows"][1::2], strict=True):
+        assert other[3:6] + other[7:8] == pytest.approx([value / 1000 for value in own[3:6] + own[7:8]])
+        assert other[6] == own[6], "the place is the same"
+    assert f"crank at {SPEED:g} rad/s ({SPEED * 60 / (2 * np.pi):.6g} rpm)" in blocks[0]["text"]
 
 
 def test_means_are_over_the_way_of_the_driver() -> None:

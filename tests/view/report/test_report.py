@@ -262,7 +262,7 @@ def test_the_driver_range_is_that_of_the_motion(six_bar: ck.results.Motion) -> N
     motion = ck.solve(six_bar.mechanism, {"crank": ck.deg([10, 20, 40])}, speed=3.0, acceleration=-2.0)
     row = table(report(motion), "drivers").rows[0]
     assert row[:2] == ("crank", "crank on frame, E")
-    assert row[2:] == (pytest.approx(10.0), pytest.approx(40.0), 3, 3.0, -2.0)
+    assert row[2:] == (pytest.approx(10.0), pytest.approx(40.0), 3, 3.0, pytest.approx(90 / np.pi), -2.0)
 
 
 def test_slides_and_pins_driven_have_tables_of_their_own() -> None:
