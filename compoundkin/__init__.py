@@ -19,7 +19,19 @@ from compoundkin.base.moved_names import MOVED as _MOVED
 from compoundkin.base.version import VERSION
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
-from compoundkin.model.loads import damper, effort, force, friction, gravity, mass, pretension, spring, stop, torque
+from compoundkin.model.loads import (
+    damper,
+    effort,
+    force,
+    friction,
+    gravity,
+    latch,
+    mass,
+    pretension,
+    spring,
+    stop,
+    torque,
+)
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outlines import outline
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
@@ -96,6 +108,7 @@ __all__ = [
     "gravity",
     "instant_centres",
     "interference",
+    "latch",
     "link",
     "load",
     "loop_equations",

@@ -115,6 +115,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                  "phase": None, "first_at": "A", "second_at": "B", "internal": False, "module": None},
         "gravity": {"x": 0.0, "y": -9.81, "unit": "m/s^2"},
         "instant_centres": {"motion": motion},
+        "latch": {"pair": "A", "at": 0.0, "teeth": None, "strength": 2.0, "until": 1.0, "over": "crank", "value": 1.0,
+                  "name": "n"},
         "link": {"name": "a", "A": 0},
         "interference": {"motion": h["outlined"]},
         "load": {"path": "six-bar"},

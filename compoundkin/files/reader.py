@@ -350,7 +350,9 @@ def _load(kinds: tuple[type[Any], ...], raw: Any, where: str, log: Recovery) -> 
     pair = raw.get(_PAIR) if isinstance(raw, dict) else None
     kind = next((kind for kind in kinds if any(key.name == _PAIR for key in kind.keys) == (pair is not None)), kinds[0])
     is_own = getattr(kind, "own_variable", "") == COORDINATE
-    item: Item = kind(**log.table(raw, kind.keys, where, log.is_angle(str(pair)) if is_own else False))
+    over = getattr(kind, "coordinates_over", {}) if isinstance(raw, dict) else {}
+    others = {key: log.is_angle(str(raw.get(name))) for key, name in over.items()}
+    item: Item = kind(**log.table(raw, kind.keys, where, log.is_angle(str(pair)) if is_own else False, others))
     return item
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from compoundkin.base.arrays import Number
@@ -70,6 +71,9 @@ PROFILE = disc(1e9)
 # What reads a table with problems of its own: it reports them.
 Tagged: TypeAlias = "Callable[[Recovery, Any, str, bool | None], Any]"
 
+# No coordinates but the table's own.
+NO_OTHERS: Mapping[str, bool | None] = MappingProxyType({})
+
 
 class Recovery:
     """The problems found while a document is read, and stand-ins for broken values.
@@ -115,8 +119,18 @@ class Recovery:
                 given[meant] = (value, inside(where, key))
         return given
 
-    def table(self, raw: Any, keys: tuple[Key, ...], where: str, angle: bool | None = None) -> dict[str, Any]:
-        """Return the values of a table by key, with stand-ins for broken ones."""
+    def table(
+        self,
+        raw: Any,
+        keys: tuple[Key, ...],
+        where: str,
+        angle: bool | None = None,
+        others: Mapping[str, bool | None] = NO_OTHERS,
+    ) -> dict[str, Any]:
+        """Return the values of a table by key, with stand-ins for broken ones.
+
+        `angle` tells whether its coordinates are angles, `others` the same of keys over other coordinates.
+        """
         if not isinstance(raw, dict):
             self.report(wrong(where, raw, "a table"))
             return {key.name: self.stand_in(key.kind) for key in keys if key.required}
@@ -124,7 +138,7 @@ class Recovery:
         found: dict[str, Any] = {}
         for key in keys:
             if key.name in given:
-                found[key.name] = self._value(key.kind, *given[key.name], angle)
+                found[key.name] = self._value(key.kind, *given[key.name], others.get(key.name, angle))
             elif key.required:
                 self.report(bad(inside(where, key.name), "it is missing", key.doc))
                 found[key.name] = self.stand_in(key.kind)

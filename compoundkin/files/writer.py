@@ -61,6 +61,11 @@ def _load(mechanism: Mechanism, item: Any) -> dict[str, Any]:
     amounts = load_table(mechanism, item)
     angle = any(key.kind == "coordinate" for key in item.keys) and bool(doc.name_is_angle(mechanism, item.pair))
     out = {**_table(item, tuple(key for key in item.keys if key.name not in amounts), angle), **amounts}
+    for key, over in getattr(item, "coordinates_over", {}).items():
+        if key in out:
+            out[key] = exact_numbers.coordinate(
+                getattr(item, key), bool(doc.name_is_angle(mechanism, getattr(item, over)))
+            )
     said = [key.name for key in item.keys if key.name in out and (key.name != "name" or out["name"] != item.called)]
     return {name: out[name] for name in said}
 

@@ -14,7 +14,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.dynamics.mass_motion import moving_masses
 from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, pressed
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, pressed, sprung
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -22,6 +22,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.laws import Law
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.latch import as_latch
 from compoundkin.model.loads.stop import as_stop
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_drivable
@@ -43,7 +44,8 @@ class DriverChart:
     near: dict[str, LinearAngle] = field(init=False)
     turned: dict[str, LinearAngle] = field(init=False)
     held: HeldSpeed | None = field(init=False, default=None)
-    closed: tuple[StopContact, ...] = field(init=False, default=())  # the contacts at stops
+    stop_contacts: tuple[StopContact, ...] = field(init=False, default=())  # those at stops and in latches
+    closed: tuple[StopContact, ...] = field(init=False, default=())  # those of them that are closed
 
     # whether loads are those of the chart, so that stops are added as they are closed
     adds_stops: ClassVar[bool] = True
@@ -56,8 +58,8 @@ class DriverChart:
         self.gravity = complex(first_entry(self.mechanism.free_fall))
         self.loads = sorted_loads(self.start)
         if self.adds_stops:
-            stored, others = (tuple(load for load in loads if as_stop(load) is None) for loads in self.loads)
-            self.loads = stored, others
+            stored, others = self.loads
+            self.loads = tuple(filter(_is_smooth, stored)), tuple(filter(_is_smooth, others))
         self.ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
         self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}
         self.states, self.near, self.turned = {}, {}, {}
@@ -96,20 +98,26 @@ class DriverChart:
     def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state, between both sides of a jump where a load holds a speed."""
         free = self.free_rates(time, values, speeds)
-        added = self.closed if self.adds_stops else tuple(one for one in self.closed if not one.stop.is_elastic)
-        return pressed(added, self.state(time, values, speeds), free) if added else free
+        return pressed(self._added, self.state(time, values, speeds), free) if self._added else free
+
+    def unheld_rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates of a state without the rigid contacts."""
+        free = self.free_rates(time, values, speeds)
+        return sprung(self._added, self.state(time, values, speeds), free) if self._added else free
 
     def free_rates(self, time: float, values: Number, speeds: Number) -> Rates:
-        """Return the rates of a state without the contacts at stops."""
+        """Return the rates of a state without the contacts at stops and in latches."""
         return self.rates(time, values, speeds) if self.held is None else self.held.rates(self, time, values, speeds)
 
-    @cached_property
-    def ends_of_stops(self) -> tuple[StopContact, ...]:
-        """Both ends of all stops."""
-        stops = [stop for load in self.mechanism.loads.values() if (stop := as_stop(load)) is not None]
-        n = len(self.free)
-        values = np.array([float(np.ravel(self.start.inputs.drives[name][0])[0]) for name in self.free])
-        return contacts_of(stops, self.state(0.0, values, np.zeros(n))) if stops else ()
+    @property
+    def _added(self) -> tuple[StopContact, ...]:
+        """The closed contacts whose forces are not among the loads."""
+        return self.closed if self.adds_stops else tuple(one for one in self.closed if not one.stop.is_elastic)
+
+    @property
+    def rigid(self) -> tuple[StopContact, ...]:
+        """The closed contacts that hold a coordinate."""
+        return tuple(one for one in self.closed if not one.stop.is_elastic)
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""
@@ -155,7 +163,7 @@ class DriverChart:
 
     def count_on(self, before: DriverState) -> None:
         """Count angles on from a state of another chart, at the same stops."""
-        self.closed = before.chart.closed
+        self.stop_contacts, self.closed = before.chart.stop_contacts, before.chart.closed
         angles = [name for name, (_, own) in before.chart.driven.items() if own.pair.free_is_angle]
         for name in (*before.chart.turned, *angles):
             self.turned[name] = LinearAngle(before.angle_of(name).angle, None, np.zeros(len(self.names)))
@@ -193,6 +201,11 @@ class DriverChart:
         part = self.start.inputs.driven(drives)
         block = self.order.start(self.ends, part.series(2), 2, (count + 1, 1))
         return run(self.order, block, _ConfigurationChoice(self, values))
+
+
+def _is_smooth(load: Load) -> bool:
+    """Whether a load is neither a stop nor a latch, which act as contacts."""
+    return as_stop(load) is None and as_latch(load) is None
 
 
 # Both sides of a jump are this part of the speed apart from it, and rates are differences over this part of the time.

@@ -53,7 +53,8 @@ class StateChart(Protocol):
     loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
     turned: dict[str, LinearAngle]  # the counted angles of pairs
     driven: dict[str, tuple[str, DrivenPair]]  # the drivers of pairs, by their names
-    closed: tuple[Any, ...]  # the contacts at stops
+    stop_contacts: tuple[Any, ...]  # those at stops and in latches
+    closed: tuple[Any, ...]  # those of them that are closed
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""

@@ -24,7 +24,7 @@ from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
-from compoundkin.dynamics.simulation.simulation_events import check_stops, load_breaks, watches
+from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, load_breaks, watches
 from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -37,6 +37,7 @@ from compoundkin.kinematics.solution import first_configuration, solving_order_o
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law, as_law, constant_speed, motion_table
+from compoundkin.model.loads.attachments import Effort, effort
 from compoundkin.model.mechanism import Mechanism
 
 # A driver whose equivalent inertia is below this part of the heaviest link's moves no mass: rounding squared.
@@ -100,10 +101,12 @@ def simulate(
     course = SimulatedCourse(float(until), float(tolerance), watched, restitution, breaks=breaks)
     with np.errstate(all="ignore"):
         _check_inertia(chart, state)
-        check_stops(chart, state)
+        begin_at_stops(chart, state)
         integrate(chart, state, course, progress)
-        stretches = course.at(_times(course, times))
-        motion = simulated_motion(stretches)
+        course.events += idle_latches(course.steps[-1].chart, course.last)
+        asked = _times(course, times)
+        stretches = course.at(asked)
+        motion = simulated_motion(stretches, _holding(course, asked))
         energy = simulated_energy(motion, np.concatenate([one.states[-1, one.asked] for one in stretches]))
     _warn(energy, tolerance)
     counts = len(course.steps), course.evaluations
@@ -177,6 +180,12 @@ def _times(course: SimulatedCourse, times: Any) -> Number:
     speeds = [_farthest(step) / (step.last - step.first) for step in course.steps]
     count = int(np.clip(np.ceil(max(speeds) * course.last / APART), FEWEST, MOST))
     return np.linspace(0.0, course.last, count + 1)
+
+
+def _holding(course: SimulatedCourse, times: Number) -> tuple[Effort, ...]:
+    """Return what rigid stops and latches hold with, as loads over the motion: the drivers are left without effort."""
+    found = course.holding(times) if course.steps[-1].chart.adds_stops else {}
+    return tuple(effort(one.pair, force, name=f"hold of {one.name}") for one, force in found.items())
 
 
 def _farthest(step: Step) -> float:
@@ -304,20 +313,21 @@ SAME = 1e-6
 SolvedCourse = tuple[Number, Number, Number]
 
 
-def simulated_motion(stretches: list[ChartStretch]) -> Motion:
+def simulated_motion(stretches: list[ChartStretch], more: tuple[Effort, ...] = ()) -> Motion:
     """Return the motion of all stretches together, at the requested times.
 
-    It is driven by a coordinate that determines the pose throughout, where there is one.
+    It is driven by a coordinate that determines the pose throughout, where there is one. Its mechanism has `more`
+    loads.
     """
     if len(stretches) == 1:
-        return _alone(stretches[0])
+        return _alone(stretches[0], more)
     parts = [in_time(one.chart, one.times, _moved(one), first_configuration(one.chart.start, 0)) for one in stretches]
     times = np.concatenate([one.times[one.asked] for one in stretches])
     poses = _joined(parts, stretches)
     charts = {one.chart.free: one.chart for one in reversed(stretches)}
     tried: list[Motion] = []
     for chart in list(charts.values())[:TRIES]:
-        motion, agrees = _driven_by(chart, parts, stretches, times, poses)
+        motion, agrees = _driven_by(chart, parts, stretches, times, poses, more)
         if agrees and _starts_alike(motion, stretches[0].chart.start):
             return motion
         tried.append(motion)
@@ -325,7 +335,7 @@ def simulated_motion(stretches: list[ChartStretch]) -> Motion:
     # coordinate of its stretch
     motion = tried[0]
     if not _starts_alike(motion, stretches[0].chart.start):
-        motion, _ = _driven_by(stretches[0].chart, parts, stretches, times, poses)
+        motion, _ = _driven_by(stretches[0].chart, parts, stretches, times, poses, more)
     mended = motion.mended(np.zeros(len(times), dtype=int), np.arange(len(times)), poses)
     return replace(mended, failed=np.zeros_like(motion.failed))
 
@@ -340,11 +350,11 @@ def _starts_alike(motion: Motion, first: Motion) -> bool:
     )
 
 
-def _alone(stretch: ChartStretch) -> Motion:
+def _alone(stretch: ChartStretch, more: tuple[Effort, ...]) -> Motion:
     some = stretch.asked
     states, accelerations = stretch.states[:, some], stretch.accelerations[:, some]
     asked = replace(stretch, times=stretch.times[some], states=states, accelerations=accelerations)
-    return in_time(stretch.chart, asked.times, _moved(asked), first_configuration(stretch.chart.start, 0))
+    return in_time(stretch.chart, asked.times, _moved(asked), first_configuration(stretch.chart.start, 0), more)
 
 
 def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pose]:
@@ -365,7 +375,12 @@ def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pos
 
 
 def _driven_by(
-    chart: DriverChart, parts: list[Motion], stretches: list[ChartStretch], times: Number, poses: Mapping[str, Pose]
+    chart: DriverChart,
+    parts: list[Motion],
+    stretches: list[ChartStretch],
+    times: Number,
+    poses: Mapping[str, Pose],
+    more: tuple[Effort, ...],
 ) -> tuple[Motion, bool]:
     """Return the motion by the free drivers of one chart, and whether it has the poses of the simulation."""
     moved = {name: _followed(chart, name, parts, stretches) for name in chart.free}
@@ -373,7 +388,7 @@ def _driven_by(
                           dimensions_at(chart.start.structure, 0, 0))  # fmt: skip
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        motion = in_time(chart, times, moved, first)
+        motion = in_time(chart, times, moved, first, more)
     off = [np.abs(one.c[0] - other.c[0]) / scale for name, pose in motion.poses.items()
            for one, other, scale in ((pose.z, poses[name].z, motion.size), (pose.u, poses[name].u, 1.0))]  # fmt: skip
     agrees = bool(np.all(motion.regular)) and all(bool(np.all(one < SAME)) for one in off)
@@ -415,11 +430,15 @@ def _moved(stretch: ChartStretch) -> dict[str, SolvedCourse]:
 
 
 def in_time(
-    chart: DriverChart, times: Number, moved: Mapping[str, SolvedCourse], first: Configuration | None
+    chart: DriverChart,
+    times: Number,
+    moved: Mapping[str, SolvedCourse],
+    first: Configuration | None,
+    more: tuple[Effort, ...] = (),
 ) -> Motion:
     """Return a motion in time of a chart's mechanism, whose free drivers have laws through their simulated courses."""
     laws = {**chart.laws, **{name: motion_table(times, *one) for name, one in moved.items()}}
     drives = [Drive(item.name, item.link, item.on, item.pair, law=laws[item.name]) for item in chart.mechanism.items
               if isinstance(item, Drive)]  # fmt: skip
-    mechanism = chart.mechanism.replace(*drives, time=times)
+    mechanism = chart.mechanism.replace(*drives, *more, time=times)
     return solve(mechanism, time=times, order=ORDER, modes=first)

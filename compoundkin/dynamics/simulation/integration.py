@@ -20,19 +20,21 @@ from compoundkin.dynamics.simulation.driver_state import DriverState, SimulatedS
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
+    CatchWatch,
     LoadBreak,
     SimulationEvent,
     StopWatch,
     Watch,
     after_impact,
-    at_stop,
     ended_pair,
     first_passed,
     stop_watches,
 )
-from compoundkin.dynamics.simulation.stop_contacts import StopContact
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.latch import Latch
+from compoundkin.model.loads.stop import Stop
 
 # The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
 LONGEST_MOVE = 1.0
@@ -127,10 +129,10 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
     watched = (*course.watched, *stop_watches(step.chart))
     for one in first_passed(watched, step.chart, (step.first, step.last), step.between) if watched else ():
         n, watch = len(step.chart.free), one.watch
-        if isinstance(watch, StopWatch):
+        if isinstance(watch, StopWatch | CatchWatch):
             course.cut(one.time, False)
             damped = course.damped(watch.contact, True)
-            met = at_stop(step.chart, one.time, one.state, watch.contact, course.fastest)
+            met = watch.passage(step.chart, one.time, one.state, course.fastest)
             course.fastest = max(course.fastest, met.approach)
             course.events.append(replace(met.event, lost=met.event.lost + damped))
             return _Interruption(one.time, met.state)
@@ -471,6 +473,18 @@ class Step:
         self.chart.recall(memory)
         return found
 
+    def holding(self, time: float) -> list[tuple[StopContact, float]]:
+        """Return the contacts that hold a coordinate at a time in the step, with their forces."""
+        chart, memory, n = self.chart, self.chart.memory, len(self.chart.free)
+        chart.recall(self.memory)
+        rigid, y, forces = chart.rigid, self.between(np.array(time)), np.empty(0)
+        if rigid:
+            here = chart.state(time, y[:n], y[n : 2 * n])
+            free = chart.unheld_rates(time, y[:n], y[n : 2 * n])
+            forces = holding([one.at(here) for one in rigid], here, free)
+        chart.recall(memory)
+        return list(zip(rigid, forces.tolist(), strict=True))
+
     def accelerations_at(self, times: Number, states: Number) -> Number:
         """Return the accelerations of the free drivers at times in the step, in columns."""
         n = len(self.chart.free)
@@ -539,6 +553,15 @@ class SimulatedCourse:
             total -= contact.stored(first.state(first.first))
             total += contact.stored(self.steps[-1].state(self.last)) if is_left else 0.0
         return total
+
+    def holding(self, times: Number) -> dict[Stop | Latch, Number]:
+        """Return the efforts that rigid stops and latches have at times while they hold a coordinate."""
+        index = np.minimum(np.searchsorted([step.last for step in self.steps], times), len(self.steps) - 1)
+        found: dict[Stop | Latch, Number] = {}
+        for k, time in enumerate(times):
+            for one, force in self.steps[index[k]].holding(float(time)):
+                found.setdefault(one.stop, np.zeros(len(times)))[k] += one.side * force
+        return found
 
     @property
     def losses(self) -> dict[str, float]:

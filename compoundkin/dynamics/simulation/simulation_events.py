@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,10 +12,11 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import SimulatedState
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, impact, margins
+from compoundkin.dynamics.simulation.driver_state import DriverState, SimulatedState
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
 from compoundkin.kinematics.solving_order import AT_END
 from compoundkin.model.loads.amounts import corners_in_time, function_of_time
+from compoundkin.model.loads.latch import Latch, as_latch
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profile_contact import as_profile_contact
@@ -33,6 +34,8 @@ END = "end"
 REST = "rest"
 # The names of the events at which a contact at a stop is hit, is closed for some time, and is left.
 STOP, RESTS, LEAVES = "stop", "rests", "leaves"
+# The names of the events of latches, the last one at the end.
+CATCHES, OPENS, TOOTH, IDLE = "catches", "opens", "tooth", "idle"
 Function = Callable[[SimulatedState], Any]
 
 
@@ -82,6 +85,14 @@ class Watch:
         return found
 
 
+class StopPassage(NamedTuple):
+    """What happens at a stop or a latch: the event, the state behind it, and the speed of an impact."""
+
+    event: SimulationEvent
+    state: Number
+    approach: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class StopWatch(Watch):
     """A contact at a stop, whose function falls to zero where it closes or, closed, where it opens."""
@@ -96,77 +107,182 @@ class StopWatch(Watch):
             return one.indentation(here) * (1.0 if one in chart.closed else -1.0)
         if one not in chart.closed:
             return one.at(here).gap
-        rigid = [other for other in chart.closed if not other.stop.is_elastic]
-        found = margins(rigid, here, chart.free_rates(time, state[:n], state[n : 2 * n]))
-        return float(found[rigid.index(one)])
+        found = margins(chart.rigid, here, chart.unheld_rates(time, state[:n], state[n : 2 * n]))
+        return float(found[chart.rigid.index(one)])
+
+    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+        """Close or open the contact; return what happens there."""
+        one, n = self.contact, len(chart.free)
+        name = one.stop.name
+        if one in chart.closed:
+            chart.closed = tuple(other for other in chart.closed if other != one)
+            return StopPassage(SimulationEvent(time, LEAVES, f"{name} is left", False, loser=name), state)
+        if one.stop.is_elastic:
+            chart.closed = (*chart.closed, one)
+            return StopPassage(SimulationEvent(time, STOP, f"{name}: {one.text}", False, loser=name), state)
+        here = one.at(chart.state(time, state[:n], state[n : 2 * n]))
+        slow = SLOW * max(fastest, float(np.abs(here.normal[:n]) @ np.abs(state[n : 2 * n])))
+        restitution = one.restitution if -here.rate > slow else 0.0
+        after, lost = _met(chart, time, state, one, restitution)
+        stays = one in chart.closed
+        text = f"{name}: {one.text}" + (", where it stays" if stays else "")
+        return StopPassage(
+            SimulationEvent(time, RESTS if stays else STOP, text, False, lost, name), after, abs(here.rate)
+        )
 
 
-def stop_watches(chart: DriverChart) -> tuple[StopWatch, ...]:
-    """Return the contacts at stops as watched functions."""
-    return tuple(StopWatch(STOP, _speed, one.text, False, True, contact=one) for one in chart.ends_of_stops)
-
-
-def at_stop(chart: DriverChart, time: float, state: Number, one: StopContact, fastest: float) -> StopPassage:
-    """Close or open a contact of a chart; return what happens there."""
+def _met(chart: DriverChart, time: float, state: Number, one: StopContact, restitution: float) -> tuple[Number, float]:
+    """Close a rigid contact by an impact, unless it is left again; return the state after it and the lost energy."""
     n = len(chart.free)
-    name = one.stop.name
-    if one in chart.closed:
-        chart.closed = tuple(other for other in chart.closed if other is not one)
-        return StopPassage(SimulationEvent(time, LEAVES, f"{name} is left", False, loser=name), state, 0.0)
-    here = chart.state(time, state[:n], state[n : 2 * n])
-    rate = one.at(here).rate
-    if one.stop.is_elastic:
-        chart.closed = (*chart.closed, one)
-        return StopPassage(SimulationEvent(time, STOP, f"{name}: {one.text}", False, loser=name), state, 0.0)
-    slow = SLOW * max(fastest, float(np.abs(one.at(here).normal) @ np.abs(here.speeds)))
-    restitution = 0.0 if one.stop.restitution is None else float(np.ravel(one.stop.restitution)[0])
-    bounces = restitution > 0.0 and -rate > slow
-    rigid = [other for other in chart.closed if not other.stop.is_elastic]
-    elastic = [other for other in chart.closed if other.stop.is_elastic]
-    hit = impact(one, restitution if bounces else 0.0, rigid, here)
+    hit = impact(one, restitution, chart.rigid, chart.state(time, state[:n], state[n : 2 * n]))
     after = np.array([*state[:n], *hit.speeds, state[-1] - hit.lost])
-    kept = (*hit.staying, *(() if bounces else (one,)))
-    chart.closed = (*elastic, *_pressing(chart, time, after, kept))
-    stays = one in chart.closed
-    text = f"{name}: {one.text}" + (", where it stays" if stays else "")
-    return StopPassage(SimulationEvent(time, RESTS if stays else STOP, text, False, hit.lost, name), after, -rate)
+    elastic = [other for other in chart.closed if other.stop.is_elastic]
+    chart.closed = (*elastic, *hit.staying, *(() if restitution else (one,)))
+    free = chart.unheld_rates(time, after[:n], after[n : 2 * n])
+    here = chart.state(time, after[:n], after[n : 2 * n])
+    while chart.rigid and np.min(found := margins(chart.rigid, here, free)) < 0.0:
+        left = chart.rigid[int(np.argmin(found))]
+        chart.closed = tuple(other for other in chart.closed if other != left)
+    return after, hit.lost
+
+
+@dataclass(frozen=True, eq=False)
+class CatchWatch(Watch):
+    """A latch that catches where its coordinate comes to a value."""
+
+    contact: StopContact = field(kw_only=True)
+
+    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+        """Return the distance of the coordinate."""
+        n = len(chart.free)
+        return self.contact.at(chart.state(time, state[:n], state[n : 2 * n])).gap
+
+    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+        """Close the latch by an impact."""
+        one, name = self.contact, self.contact.stop.name
+        after, lost = _met(chart, time, state, one, 0.0)
+        text = f"{name} catches {one.stop.pair} at {one.end:.6g}"
+        return StopPassage(SimulationEvent(time, CATCHES, text, False, lost, name), after)
+
+
+@dataclass(frozen=True, eq=False)
+class ToothWatch(CatchWatch):
+    """A ratchet whose coordinate passes the next tooth."""
+
+    pitch: float = field(kw_only=True)
+
+    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+        """Return the distance of the next tooth."""
+        return abs(self.pitch) - super().value(chart, time, state)
+
+    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+        """Let the ratchet hold at this tooth from now on."""
+        one = self.contact
+        tooth = replace(one, end=one.end + self.pitch)
+        chart.stop_contacts = tuple(tooth if other == one else other for other in chart.stop_contacts)
+        text = f"{one.stop.name} passes a tooth at {tooth.end:.6g}"
+        return StopPassage(SimulationEvent(time, TOOTH, text, False), state)
+
+
+@dataclass(frozen=True, eq=False)
+class OpenWatch(CatchWatch):
+    """A closed latch, and a condition that opens it where it falls to zero or, if `rises`, changes its sign."""
+
+    margin: Callable[[DriverChart, DriverState, Number], float] = field(kw_only=True)
+
+    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+        """Return the condition."""
+        n = len(chart.free)
+        return self.margin(chart, chart.state(time, state[:n], state[n : 2 * n]), state)
+
+    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+        """Open the latch for good."""
+        one = self.contact
+        chart.closed = tuple(other for other in chart.closed if other != one)
+        chart.stop_contacts = tuple(other for other in chart.stop_contacts if other != one)
+        return StopPassage(SimulationEvent(time, OPENS, f"{one.stop.name} opens: {self.text}", False), state)
+
+
+def stop_watches(chart: DriverChart) -> Iterator[StopWatch | CatchWatch]:
+    """Yield the contacts at stops and in latches as watched functions."""
+    for one in chart.stop_contacts:
+        latch = as_latch(one.stop)
+        if latch is None or latch.teeth is not None:
+            yield StopWatch(STOP, _speed, one.text, False, True, contact=one)
+        elif one not in chart.closed:
+            yield CatchWatch(CATCHES, _speed, one.text, False, contact=one)
+        else:
+            yield from _opening(latch, one)
+        if latch is not None and latch.teeth is not None:
+            pitch = float(np.ravel(latch.teeth)[0])
+            yield ToothWatch(TOOTH, _speed, one.text, False, True, contact=one, pitch=pitch)
+
+
+def _opening(latch: Latch, one: StopContact) -> Iterator[OpenWatch]:
+    """Yield the conditions under which a closed latch opens."""
+
+    def number(value: Any) -> float:
+        return float(np.ravel(value)[0])
+
+    def force(chart: DriverChart, here: DriverState, state: Number) -> float:
+        n = len(chart.free)
+        free = chart.unheld_rates(here.time, state[:n], state[n : 2 * n])
+        forces = holding([other.at(here) for other in chart.rigid], here, free)
+        return number(latch.strength) - abs(float(forces[chart.rigid.index(one)]))
+
+    def until(chart: DriverChart, here: DriverState, state: Number) -> float:
+        return number(latch.until) - here.time
+
+    def over(chart: DriverChart, here: DriverState, state: Number) -> float:
+        return float(np.ravel(here.loaded.coordinate(latch.over).c[0])[0]) - number(latch.value)
+
+    if latch.strength is not None:
+        text = f"its force exceeds {number(latch.strength):.6g}"
+        yield OpenWatch(OPENS, _speed, text, False, True, contact=one, margin=force)
+    if latch.until is not None:
+        yield OpenWatch(OPENS, _speed, "its time has come", False, True, contact=one, margin=until)
+    if latch.over:
+        text = f"{latch.over} comes to {number(latch.value):.6g}"
+        yield OpenWatch(OPENS, _speed, text, False, contact=one, margin=over)
 
 
 # A start beyond a rigid end by less than this part of the size, or of a radian, is at the end.
 AT_STOP = 1e-9
 
 
-def check_stops(chart: DriverChart, state: Number) -> None:
-    """Raise InvalidInput for a start beyond a rigid stop. The elastic ones in which it is are closed."""
+def begin_at_stops(chart: DriverChart, state: Number) -> None:
+    """Find the contacts at stops and in latches at the start, and close those that are.
+
+    Raises InvalidInput for a start beyond a rigid stop, and for a latch that holds what moves.
+    """
     n = len(chart.free)
     here = chart.state(0.0, state[:n], state[n : 2 * n])
-    for one in chart.ends_of_stops:
-        gap = one.at(here).gap
+    chart.stop_contacts = contacts_of(chart.mechanism.loads.values(), here)
+    near = AT_STOP * max(chart.order.size, 1.0)
+    for one in chart.stop_contacts:
+        at = one.at(here)
         if one.stop.is_elastic:
             chart.closed += (one,) if one.indentation(here) > 0.0 else ()
-        elif gap < -AT_STOP * max(chart.order.size, 1.0):
-            what = f"it is {-gap:.4g} beyond {one.stop.name}, {one.text}"
+        elif one.both and abs(at.gap) < near:
+            if abs(at.rate) > SLOW * float(np.abs(at.normal) @ np.abs(here.speeds)):
+                what = f"{one.stop.name} holds {one.stop.pair}, which starts with the speed {at.rate:.6g}"
+                raise InvalidInput(Problem("start", what, "let it start at rest, or say where the latch catches"))
+            chart.closed += (one,)
+        elif not one.both and at.gap < -near:
+            what = f"it is {-at.gap:.4g} beyond {one.stop.name}, {one.text}"
             raise InvalidInput(Problem("start", what, "start inside, or move the stop"))
 
 
-def _pressing(chart: DriverChart, time: float, state: Number, contacts: tuple[StopContact, ...]) -> list[StopContact]:
-    """Return the rigid contacts that loads press together."""
-    n, kept = len(chart.free), list(contacts)
-    here, free = chart.state(time, state[:n], state[n : 2 * n]), chart.free_rates(time, state[:n], state[n : 2 * n])
-    while kept:
-        found = margins(kept, here, free)
-        if not np.min(found) < 0.0:
-            break
-        kept.pop(int(np.argmin(found)))
-    return kept
-
-
-class StopPassage(NamedTuple):
-    """What happens at a stop: the event, the state behind it, and the speed of an impact."""
-
-    event: SimulationEvent
-    state: Number
-    approach: float
+def idle_latches(chart: DriverChart, time: float) -> Iterator[SimulationEvent]:
+    """Yield what latches have not done until the end: not caught, or not opened."""
+    for one in chart.stop_contacts:
+        latch = as_latch(one.stop)
+        if latch is None or latch.teeth is not None:
+            continue
+        if one not in chart.closed:
+            yield SimulationEvent(time, IDLE, f"{latch.name} has not caught: {one.stop.pair} never meets it", False)
+        elif latch.opens:
+            yield SimulationEvent(time, IDLE, f"{latch.name} has not opened", False)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,11 +1,11 @@
-"""Contacts at stops: the force that holds a coordinate at a rigid end, the push of an elastic one, and impacts.
+"""Contacts at stops and in latches: the force that holds a coordinate, the push of an elastic end, and impacts.
 
 Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, sections 5 and 8.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +13,9 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.dynamics.simulation.driver_state import DriverState, Rates
-from compoundkin.model.loads.stop import LOW, Stop
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.latch import Latch, as_latch
+from compoundkin.model.loads.stop import HIGH, LOW, Stop, as_stop
 
 # A rigid end holds a coordinate while it pushes more than minus this part of what acts there: rounding does not decide.
 ROUNDING = 1e-11
@@ -30,16 +32,30 @@ class ContactState(NamedTuple):
 
 @dataclass(frozen=True)
 class StopContact:
-    """One end of a stop: its side, LOW or HIGH, and its coordinate."""
+    """One end of a stop, or a latch: its side, LOW or HIGH, and its coordinate. A latch holds to `both` sides."""
 
-    stop: Stop
+    stop: Stop | Latch
     side: float
     end: float
+    both: bool = False
 
     @property
     def text(self) -> str:
         """The coordinate and its end, in words."""
         return f"{self.stop.pair} at its {'low' if self.side == LOW else 'high'} end {self.end:.6g}"
+
+    @property
+    def restitution(self) -> float:
+        """The part of the speed with which it is left."""
+        stop = as_stop(self.stop)
+        return 0.0 if stop is None or stop.restitution is None else float(np.ravel(stop.restitution)[0])
+
+    @property
+    def elastic(self) -> Stop:
+        """Its stop, which is elastic."""
+        found = as_stop(self.stop)
+        assert found is not None
+        return found
 
     def at(self, state: DriverState) -> ContactState:
         """Return its gap and the derivatives of that at a state."""
@@ -51,45 +67,64 @@ class StopContact:
     def push(self, state: DriverState) -> float:
         """Return the force of an elastic end at a state, negative where it would have to pull."""
         series = state.loaded.coordinate(self.stop.pair)
-        depth = self.stop.depth(self.side, self.end, series, state.loaded)
-        return float(np.ravel(self.stop.push(self.side, depth, series, state.loaded))[0])
+        depth = self.elastic.depth(self.side, self.end, series, state.loaded)
+        return float(np.ravel(self.elastic.push(self.side, depth, series, state.loaded))[0])
 
     def indentation(self, state: DriverState) -> float:
         """Return the depth in an elastic end, negative where it does not push."""
-        stiffness = float(np.ravel(state.loaded.fitted(self.stop.stiffness))[0])
+        stiffness = float(np.ravel(state.loaded.fitted(self.elastic.stiffness))[0])
         return min(-self.at(state).gap, self.push(state) / stiffness)
 
     def stored(self, state: DriverState) -> float:
         """Return the energy of an elastic end by its depth."""
         gap = self.at(state).gap
-        return float(np.ravel(state.loaded.fitted(self.stop.stiffness))[0]) * gap * gap / 2.0
+        return float(np.ravel(state.loaded.fitted(self.elastic.stiffness))[0]) * gap * gap / 2.0
 
     def damping_power(self, state: DriverState) -> float:
         """Return the power that the damping of an elastic end takes."""
         rate = self.at(state).rate
-        return float(np.ravel(state.loaded.fitted(self.stop.damping))[0]) * rate * rate
+        return float(np.ravel(state.loaded.fitted(self.elastic.damping))[0]) * rate * rate
 
 
-def contacts_of(stops: Sequence[Stop], state: DriverState) -> tuple[StopContact, ...]:
-    """Return both ends of stops, with their coordinates for a design."""
-    return tuple(
-        StopContact(stop, side, float(np.ravel(state.loaded.fitted(end, stop.where))[0]))
-        for stop in stops
-        for side, end in stop.ends
-    )
+def contacts_of(loads: Iterable[Load], state: DriverState) -> tuple[StopContact, ...]:
+    """Return the contacts at stops and in latches, with their coordinates for a design.
+
+    A latch that does not catch, and a ratchet, hold where they are.
+    """
+    found: list[StopContact] = []
+
+    def number(value: Number | None, where: str) -> float:
+        return float(np.ravel(state.loaded.fitted(value, where))[0])
+
+    for load in loads:
+        stop, latch = as_stop(load), as_latch(load)
+        if stop is not None:
+            found += [StopContact(stop, side, number(end, stop.where)) for side, end in stop.ends]
+        elif latch is not None:
+            here = float(np.ravel(state.loaded.coordinate(latch.pair).c[0])[0])
+            side = LOW if latch.teeth is None or number(latch.teeth, latch.where) > 0.0 else HIGH
+            end = here if latch.at is None else number(latch.at, latch.where)
+            found.append(StopContact(latch, side, end, latch.teeth is None))
+    return tuple(found)
 
 
 def pressed(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Rates:
     """Return the rates under the contacts of those without them."""
+    found = sprung(contacts, state, free)
+    rigid = [one.at(state) for one in contacts if not one.stop.is_elastic]
+    if rigid:
+        normals = np.array([one.normal for one in rigid])
+        found = _pushed(state, found, holding(rigid, state, found) @ normals, 0.0)
+    return found
+
+
+def sprung(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Rates:
+    """Return the rates under the elastic contacts alone."""
     found = free
     for one in (one for one in contacts if one.stop.is_elastic):
         here, push = one.at(state), one.push(state)
         is_stored = one.stop.energy(state.loaded) is not None
         found = _pushed(state, found, here.normal * push, 0.0 if is_stored else push * here.rate)
-    rigid = [one.at(state) for one in contacts if not one.stop.is_elastic]
-    if rigid:
-        normals = np.array([one.normal for one in rigid])
-        found = _pushed(state, found, holding(rigid, state, found) @ normals, 0.0)
     return found
 
 
@@ -122,15 +157,14 @@ def _compliance(normals: Number, state: DriverState) -> Number:
 
 
 def margins(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Number:
-    """Return by how much each rigid contact is pressed, negative where it is left."""
+    """Return by how much each rigid contact is pressed, negative where it is left; a latch never is."""
     here = [one.at(state) for one in contacts]
     forces = holding(here, state, free)
     n = len(state.chart.free)
     size = np.abs(np.array([one.normal for one in here])[:, :n]) @ np.abs(free.accelerations)
     # at rest without loads nothing presses and nothing parts them
     sizes = size / np.maximum(np.diag(_compliance(np.array([one.normal for one in here]), state)), 1e-300)
-    found: Number = forces + ROUNDING * sizes
-    return found
+    return np.where([one.both for one in contacts], np.inf, forces + ROUNDING * sizes)
 
 
 class StopImpact(NamedTuple):
@@ -156,7 +190,7 @@ def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact],
         change = np.array([(1.0 + restitution) * here[0].rate, *(one.rate for one in here[1:])])
         impulses = -np.linalg.lstsq(_compliance(normals, state), change, rcond=None)[0]
         parted = [one for one, impulse in zip(kept, impulses[1:], strict=True)
-                  if impulse < -ROUNDING * abs(impulses[0])]  # fmt: skip
+                  if not one.both and impulse < -ROUNDING * abs(impulses[0])]  # fmt: skip
         if not parted:
             break
         kept.remove(parted[0])

@@ -10,6 +10,7 @@ from compoundkin.model.loads.damper import Damper, PairDamper, damper
 from compoundkin.model.loads.force import Force, Torque, force, torque
 from compoundkin.model.loads.friction import Friction, friction
 from compoundkin.model.loads.gravity import Gravity, gravity
+from compoundkin.model.loads.latch import Latch, latch
 from compoundkin.model.loads.mass import Mass, mass
 from compoundkin.model.loads.pretension import Pretension, pretension
 from compoundkin.model.loads.spring import PairSpring, Spring, spring
@@ -23,6 +24,7 @@ __all__ = [
     "Force",
     "Friction",
     "Gravity",
+    "Latch",
     "Load",
     "LoadElement",
     "Mass",
@@ -38,6 +40,7 @@ __all__ = [
     "force",
     "friction",
     "gravity",
+    "latch",
     "mass",
     "pretension",
     "spring",
@@ -45,7 +48,7 @@ __all__ = [
     "torque",
 ]
 # Every kind of load.
-KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper, Stop)
+KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper, Stop, Latch)
 # What each table of a mechanism file may hold.
 _TABLED: tuple[type[Any], ...] = (Mass, *KINDS, Friction, Pretension)
 WRITTEN: dict[str, tuple[type[Any], ...]] = {
