@@ -14,6 +14,8 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, FewDigits, InvalidInput, Problem
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.dynamics.simulation.body_chart import BodyChart
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
@@ -27,6 +29,8 @@ from compoundkin.model.mechanism import Mechanism, available_outputs
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Drivable, as_drivable, as_transmitting_pair
 
+# What a simulation is integrated in: the coordinates of free drivers, or those of all links.
+Chart = DriverChart | BodyChart
 # The number of pairs that are tried instead of a driver.
 TRIED = 4
 # Poses solved by different drivers agree within this part of the size.
@@ -129,3 +133,21 @@ def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> D
         what = f"friction ({', '.join(frictions)}) is simulated in mechanisms with one driver and without gears"
         raise InvalidInput(Problem("frictions", what, "leave it out, or write dampers"))
     return FrictionTable(start, free, laws)
+
+
+def by_links(chart: DriverChart, state: DriverState) -> tuple[BodyChart, Number]:
+    """Return the chart of the coordinates of all links, and a state of drivers in it."""
+    world = {link: _still(pose) for link, pose in state.block.world.items()}
+    found = BodyChart(chart.start, chart.free, chart.laws, world, chart.stop_contacts, chart.closed)
+    rates = [_rates(state.block.world[link]) for link in found.links]
+    return found, np.concatenate([found.first, np.ravel(rates)])
+
+
+def _still(pose: Pose) -> Pose:
+    return pose if pose is FIXED else pose.trimmed(0).entry((0, 0))
+
+
+def _rates(pose: Pose) -> tuple[float, float, float]:
+    """Return the rates of a link's coordinates: the last of a column, which is the true motion."""
+    z, turning = (complex(np.ravel(c)[-1]) for c in (pose.z.derivative(1), pose.u.turning().c[0]))
+    return z.real, z.imag, turning.real

@@ -12,9 +12,9 @@ import numpy as np
 from compoundkin.base.arrays import Number, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.dynamics.mass_motion import moving_masses
-from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
+from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers, prescribed_rates
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, pressed, sprung
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -22,8 +22,6 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.laws import Law
 from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.latch import as_latch
-from compoundkin.model.loads.stop import as_stop
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_drivable
 
@@ -59,7 +57,7 @@ class DriverChart:
         self.loads = sorted_loads(self.start)
         if self.adds_stops:
             stored, others = self.loads
-            self.loads = tuple(filter(_is_smooth, stored)), tuple(filter(_is_smooth, others))
+            self.loads = tuple(filter(is_no_contact, stored)), tuple(filter(is_no_contact, others))
         self.ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
         self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}
         self.states, self.near, self.turned = {}, {}, {}
@@ -81,9 +79,8 @@ class DriverChart:
 
     def prescribed(self, time: float) -> tuple[Number, Number, Number]:
         """Return values, speeds and accelerations of the prescribed drivers."""
-        moved = [law.coordinate(np.array([time]), 2) for law in self.laws.values()]
-        rows = [[float(np.ravel(one.derivative(k))[0]) for one in moved] for k in range(3)]
-        return np.array(rows[0]), np.array(rows[1]), np.array(rows[2])
+        rows = np.array([prescribed_rates(law, time) for law in self.laws.values()])
+        return rows[:, 0], rows[:, 1], rows[:, 2]
 
     def state(self, time: float, values: Number, speeds: Number) -> DriverState:
         """Return the state at values and speeds of the free drivers."""
@@ -161,6 +158,14 @@ class DriverChart:
             for pair in self.turned:
                 self.turned[pair] = found.angle_of(pair)
 
+    def digits_lost(self, time: float, state: Number) -> float:
+        """Return that rounding is as everywhere."""
+        return 0.0
+
+    def settled(self, time: float, state: Number) -> Number:
+        """Return a state as it is: drivers' coordinates have no constraints that could drift."""
+        return state
+
     def count_on(self, before: DriverState) -> None:
         """Count angles on from a state of another chart, at the same stops."""
         self.stop_contacts, self.closed = before.chart.stop_contacts, before.chart.closed
@@ -201,11 +206,6 @@ class DriverChart:
         part = self.start.inputs.driven(drives)
         block = self.order.start(self.ends, part.series(2), 2, (count + 1, 1))
         return run(self.order, block, _ConfigurationChoice(self, values))
-
-
-def _is_smooth(load: Load) -> bool:
-    """Whether a load is neither a stop nor a latch, which act as contacts."""
-    return as_stop(load) is None and as_latch(load) is None
 
 
 # Both sides of a jump are this part of the speed apart from it, and rates are differences over this part of the time.

@@ -19,6 +19,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.laws import Law
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.mobility_count import DrivenPair
@@ -39,6 +40,13 @@ class LinearAngle(NamedTuple):
 def by_drivers(value: Number, names: tuple[str, ...]) -> Number:
     """Return the rates of a coordinate by the drivers: all of a column but the last."""
     return np.broadcast_to(value, (len(names) + 1, 1))[:-1, 0]
+
+
+def prescribed_rates(law: Law, time: float) -> tuple[float, float, float]:
+    """Return value, speed and acceleration of a prescribed driver."""
+    moved = law.coordinate(np.array([time]), 2)
+    value, speed, acceleration = (float(np.ravel(moved.derivative(k))[0]) for k in range(3))
+    return value, speed, acceleration
 
 
 class StateChart(Protocol):
@@ -156,6 +164,18 @@ class DriverState:
         """The kinetic energy."""
         return float(self.speeds @ self.terms.matrix @ self.speeds) / 2.0
 
+    def response(self, along: Number) -> Number:
+        """Return the accelerations of all drivers by forces along the free ones alone."""
+        n, found = len(self.chart.free), np.zeros(len(self.speeds))
+        found[:n] = np.linalg.solve(self.terms.matrix[:n, :n], along[:n])
+        return found
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The state as a motion of one pose, with velocities and accelerations."""
+        second = np.concatenate([self.accelerations, self.prescribed])
+        return accelerated_motion(self, self.chart.start, self.speeds, second[:, None])
+
 
 ONLY = slice(0, 1)
 
@@ -250,11 +270,58 @@ def _number(value: Number, at: int = 0) -> Number:
     return value.item(at) if isinstance(value, np.ndarray) else value
 
 
+class KnownState(Protocol):
+    """The part of a state that events and stops need, whichever coordinates it is in."""
+
+    @property
+    def chart(self) -> Any:
+        """What it is a state of."""
+
+    @property
+    def loaded(self) -> LoadedState:
+        """The state as loads see it."""
+
+    @property
+    def prescribed(self) -> Number:
+        """The accelerations of the prescribed drivers that are coordinates."""
+
+    @property
+    def time(self) -> float:
+        """The time, seconds."""
+
+    @property
+    def speeds(self) -> Number:
+        """The rates of all coordinates."""
+
+    @property
+    def block(self) -> Block:
+        """The solved pose."""
+
+    @property
+    def motion(self) -> Motion:
+        """The state as a motion of one pose, with velocities and accelerations."""
+
+    @property
+    def kinetic(self) -> float:
+        """The kinetic energy."""
+
+    @property
+    def terms(self) -> InertiaTerms:
+        """The mass matrix, the bias and the weights."""
+
+    def slopes(self, pair: Pair) -> Number:
+        """Return the rates of a pair's coordinate by all coordinates."""
+
+    def response(self, along: Number) -> Number:
+        """Return the accelerations of all coordinates by a force along them alone."""
+
+
 @dataclass(frozen=True, eq=False)
 class SimulatedState:
     """A state of a simulation, with quantities by name as of a motion: ``state["B.y"]``."""
 
-    state: DriverState
+    state: KnownState
+    order: SolvingOrder
 
     @property
     def time(self) -> float:
@@ -262,28 +329,17 @@ class SimulatedState:
         return self.state.time
 
     @property
-    def order(self) -> SolvingOrder:
-        """The solving order."""
-        return self.state.chart.order
-
-    @property
     def block(self) -> Block:
         """The solved pose."""
         return self.state.block
 
-    def __getitem__(self, name: str) -> Any:
-        return np.ravel(quantity(self.motion, name).values)[0]
-
-    @cached_property
+    @property
     def motion(self) -> Motion:
         """The state as a motion of one pose, with velocities and accelerations."""
-        return motion_at(self.state, self.state.chart.start)
+        return self.state.motion
 
-
-def motion_at(state: DriverState, start: Motion) -> Motion:
-    """Return a state as a motion of one pose, with accelerations."""
-    second = np.concatenate([state.accelerations, state.prescribed])
-    return accelerated_motion(state, start, state.speeds, second[:, None])
+    def __getitem__(self, name: str) -> Any:
+        return np.ravel(quantity(self.motion, name).values)[0]
 
 
 def accelerated_motion(state: DriverState, start: Motion, speeds: Number, second: Number) -> Motion:

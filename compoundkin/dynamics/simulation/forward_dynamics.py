@@ -19,13 +19,13 @@ from compoundkin.base.errors import FewDigits, InvalidInput, Problem, Unassemble
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.simulation.coordinate_change import chart_of
+from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, load_breaks, watches
-from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
+from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart, counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.curve.driver_path import drawn_value
@@ -102,7 +102,7 @@ def simulate(
     with np.errstate(all="ignore"):
         _check_inertia(chart, state)
         begin_at_stops(chart, state)
-        integrate(chart, state, course, progress)
+        integrate(*_integrable(chart, state), course, progress)
         course.events += idle_latches(course.steps[-1].chart, course.last)
         asked = _times(course, times)
         stretches = course.at(asked)
@@ -141,6 +141,15 @@ def _check_progress(progress: Callable[[int, int], None] | None) -> None:
     except Exception as error:  # whatever a user's function does
         remedy = "give a function of two numbers: how much is done, of how much"
         raise InvalidInput(Problem("progress", f"it cannot be called: {error}", remedy)) from error
+
+
+def _integrable(chart: DriverChart, state: Number) -> tuple[Chart, Number]:
+    """Return the chart to begin in, with its state: with several drivers the coordinates of all links."""
+    if isinstance(chart, TabulatedChart):
+        return chart, state
+    n = len(chart.free)
+    found, begun = by_links(chart, chart.state(0.0, state[:n], state[n : 2 * n]))
+    return found, np.append(begun, state[-1])
 
 
 def _check_inertia(chart: DriverChart, state: Number) -> None:
@@ -320,14 +329,16 @@ def simulated_motion(stretches: list[ChartStretch], more: tuple[Effort, ...] = (
     loads.
     """
     if len(stretches) == 1:
-        return _alone(stretches[0], more)
-    parts = [in_time(one.chart, one.times, _moved(one), first_configuration(one.chart.start, 0)) for one in stretches]
+        return _solved(_asked(stretches[0]), more)
+    parts = [_solved(one) for one in stretches]
     times = np.concatenate([one.times[one.asked] for one in stretches])
     poses = _joined(parts, stretches)
-    charts = {one.chart.free: one.chart for one in reversed(stretches)}
-    tried: list[Motion] = []
-    for chart in list(charts.values())[:TRIES]:
+    known = {one.chart.free: one.chart for one in reversed(stretches) if isinstance(one.chart, DriverChart)}
+    charts, tried = list(known.values()), list[Motion]()
+    for chart in charts[:TRIES]:
         motion, agrees = _driven_by(chart, parts, stretches, times, poses, more)
+        # the coordinates of all links keep digits that those of drivers lose next to limit positions
+        agrees = agrees and all(isinstance(one.chart, DriverChart) for one in stretches)
         if agrees and _starts_alike(motion, stretches[0].chart.start):
             return motion
         tried.append(motion)
@@ -335,7 +346,7 @@ def simulated_motion(stretches: list[ChartStretch], more: tuple[Effort, ...] = (
     # coordinate of its stretch
     motion = tried[0]
     if not _starts_alike(motion, stretches[0].chart.start):
-        motion, _ = _driven_by(stretches[0].chart, parts, stretches, times, poses, more)
+        motion, _ = _driven_by(charts[-1], parts, stretches, times, poses, more)
     mended = motion.mended(np.zeros(len(times), dtype=int), np.arange(len(times)), poses)
     return replace(mended, failed=np.zeros_like(motion.failed))
 
@@ -350,11 +361,35 @@ def _starts_alike(motion: Motion, first: Motion) -> bool:
     )
 
 
-def _alone(stretch: ChartStretch, more: tuple[Effort, ...]) -> Motion:
+def _asked(stretch: ChartStretch) -> ChartStretch:
+    """Return the requested times of a stretch alone."""
     some = stretch.asked
     states, accelerations = stretch.states[:, some], stretch.accelerations[:, some]
-    asked = replace(stretch, times=stretch.times[some], states=states, accelerations=accelerations)
-    return in_time(stretch.chart, asked.times, _moved(asked), first_configuration(stretch.chart.start, 0), more)
+    return replace(stretch, times=stretch.times[some], states=states, accelerations=accelerations,
+                   asked=np.ones(int(np.count_nonzero(some)), dtype=bool))  # fmt: skip
+
+
+def _solved(stretch: ChartStretch, more: tuple[Effort, ...] = ()) -> Motion:
+    """Return the motion of a stretch. By the coordinates of all links its poses are known without the drivers."""
+    chart = stretch.chart
+    if isinstance(chart, DriverChart):
+        return in_time(chart, stretch.times, _moved(stretch), first_configuration(chart.start, 0), more)
+    poses = chart.poses(stretch.states, stretch.accelerations)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        courses = chart.courses(stretch.times, stretch.states, stretch.accelerations)
+        motion = in_time(chart, stretch.times, courses, first_configuration(chart.start, 0), more)
+    mended = motion.mended(np.zeros(len(stretch.times), dtype=int), np.arange(len(stretch.times)), poses)
+    return replace(mended, failed=np.zeros_like(motion.failed))
+
+
+def _has_poses(motion: Motion, poses: Mapping[str, Pose]) -> bool:
+    """Return whether a motion has given poses."""
+    return all(
+        bool(np.all(np.abs(one.c[0] - other.c[0]) < SAME * scale))
+        for name, pose in motion.poses.items()
+        for one, other, scale in ((pose.z, poses[name].z, motion.size), (pose.u, poses[name].u, 1.0))
+    )
 
 
 def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pose]:
@@ -389,10 +424,7 @@ def _driven_by(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         motion = in_time(chart, times, moved, first, more)
-    off = [np.abs(one.c[0] - other.c[0]) / scale for name, pose in motion.poses.items()
-           for one, other, scale in ((pose.z, poses[name].z, motion.size), (pose.u, poses[name].u, 1.0))]  # fmt: skip
-    agrees = bool(np.all(motion.regular)) and all(bool(np.all(one < SAME)) for one in off)
-    return motion, agrees
+    return motion, bool(np.all(motion.regular)) and _has_poses(motion, poses)
 
 
 def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[ChartStretch]) -> SolvedCourse:
@@ -430,7 +462,7 @@ def _moved(stretch: ChartStretch) -> dict[str, SolvedCourse]:
 
 
 def in_time(
-    chart: DriverChart,
+    chart: Chart,
     times: Number,
     moved: Mapping[str, SolvedCourse],
     first: Configuration | None,

@@ -14,9 +14,9 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pairs
+from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
-from compoundkin.dynamics.simulation.driver_state import DriverState, SimulatedState
+from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
@@ -31,7 +31,7 @@ from compoundkin.dynamics.simulation.simulation_events import (
     stop_watches,
 )
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding
-from compoundkin.dynamics.simulation.tabulated_chart import FASTER
+from compoundkin.dynamics.simulation.tabulated_chart import FASTER, TabulatedChart
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.latch import Latch
 from compoundkin.model.loads.stop import Stop
@@ -48,12 +48,16 @@ JUMP = "jump"
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
 SLOWEST = 1e-3
+# The name of the event where other coordinates take a driver's place, and how often one pair follows another as such.
+COORDINATE, MOST_CHANGES = "coordinate", 2
+# Next to a change point errors of steps may be rounding, up to this.
+LOOSEST = 1e-7
 # Progress counts so many parts.
 PARTS = 1000
 Progress = Callable[[int, int], None]
 
 
-def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
+def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
     """Add the steps and events that follow from a state of a chart."""
     n = len(chart.free)
     solver = _begun(chart, 0.0, state, course)
@@ -61,6 +65,9 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
         longest = course.until if chart.held is None and not chart.closed else course.until / HELD_STEPS
         solver.max_step = min(longest, longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n]))
         solver.h_abs = min(solver.h_abs, solver.max_step)
+        # next to a change point no tolerance is kept that is below the rounding there
+        loosened = max(1.0, min(chart.digits_lost(solver.t, solver.y), LOOSEST) / course.tolerance)
+        solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
         solver.step()
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
@@ -78,6 +85,9 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
             solver = _begun(chart, course.last, released, course)
         elif passed is None:
             chart.accept(solver.t, solver.y[:n], solver.y[n : 2 * n])
+            settled = chart.settled(solver.t, solver.y)
+            if settled is not solver.y:
+                solver.y, solver.f = settled, solver.fun(solver.t, settled)
             changed = _changed(chart, solver, course)
             if changed is not None:
                 chart, state = changed
@@ -91,15 +101,16 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
     return None
 
 
-def _begun(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> Any:
+def _begun(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> Any:
     """Return the integrator from a state, after a rest where friction holds it; None where it stays at rest."""
     n = len(chart.free)
     values, speeds = state[:n], state[n : 2 * n]
     if chart.begin(time, values, speeds):
         if chart.held is None and not speeds.any():
-            chart.held = _holding(chart, time, state, course)
-            if chart.held is not None:
-                _tell_held(course, time, chart.held)
+            held = _holding(chart, time, state, course)
+            if held is not None and isinstance(chart, DriverChart):
+                chart.held = held
+                _tell_held(course, time, held)
         return _solver(chart, time, state, course)
     last = chart.released(time, values, course.until)
     course.events.append(SimulationEvent(time, STICKS, "friction holds the mechanism", False))
@@ -139,7 +150,7 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
         if watch.name == REST and not watch.asked:
             course.cut(one.time)
             return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
-        here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]))
+        here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]), step.chart.order)
         is_end = watch.name == END and not watch.asked
         text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
         if watch.falls and one.time <= 0.0:
@@ -155,23 +166,33 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
             return _Interruption(one.time, None)
         if impact is not None:
             course.fastest = max(course.fastest, impact.approach)
-            return _Interruption(one.time, np.array([*one.state[:n], *impact.speeds, one.state[-1] - impact.lost]))
+            speeds = impact.speeds[:n]
+            return _Interruption(one.time, np.array([*one.state[:n], *speeds, one.state[-1] - impact.lost]))
     return None
 
 
-def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
-    """Return another chart and its state to continue with; None where the present one is regular or none is better."""
+def _changed(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart, Number] | None:
+    """Return another chart and its state to continue with; None where the present one is regular or none is better.
+
+    Next to a limit position of the driver another pair is the coordinate, where one is regular. Else, and where none
+    stays regular for long, the coordinates of all links are.
+    """
     n = len(chart.free)
-    if _hesitates(solver, course):
+    is_regular = chart.is_regular(solver.y[:n])
+    is_singular = chart.digits_lost(solver.t, solver.y) > course.tolerance or not is_regular
+    if _hesitates(solver, course) and (chart.mechanism.frictions or not is_singular):
         beyond = _beyond_jump(chart, solver, course)
         if beyond is not None:
             return chart, beyond
     stalls = _stalls(solver, course)
-    if chart.is_regular(solver.y[:n]) and not stalls:
+    if is_regular and not stalls:
         return None
-    here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
-    pairs = fastest_pairs(chart, here)
-    if stalls and not any(one.ratio >= FASTER for one in pairs):
+    if isinstance(chart, DriverChart):
+        here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
+        changed = _by_another(chart, here, stalls, solver, course)
+        if changed is not None:
+            return changed
+    if stalls:
         since = course.last - AGAIN * STALLED * course.until
         if sum(time > since for time in course.restarts) < MOST_JUMPS:
             # a jump that has just been passed leaves short steps
@@ -180,20 +201,35 @@ def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[
         solver.status = "finished"
         text = "the loads change there faster than they can be followed, or hold the motion between two sides of a jump"
         _stop(course, JUMP, text)
-        return None
-    fast = [one for one in pairs if one.ratio >= FASTER or stalls]
-    is_new = course.last - course.changed > STALLED * course.until
-    for one in fast if is_new or not stalls else ():
-        found = driven_there(chart, here, one)
-        if found is not None:
-            course.changed = course.last
-            text = f"next to a limit position of {one.driver}, {one.pair.name} takes its place as the coordinate"
-            course.events.append(SimulationEvent(course.last, "coordinate", text, False))
-            return found[0], np.append(found[1], solver.y[-1])
-    if stalls or (fast and fast[0].ratio > LIMIT):
-        driver = fast[0].driver if fast else chart.free[0]
-        _ended(solver, course, f"{driver} comes to a limit position, and no other pair can take its place")
     return None
+
+
+def _by_another(
+    chart: DriverChart, here: DriverState, stalls: bool, solver: Any, course: SimulatedCourse
+) -> tuple[Chart, Number] | None:
+    """Return a chart of other coordinates than the drivers', with its state; None where the drivers' will do."""
+    pairs = fastest_pairs(chart, here)
+    fast = [one for one in pairs if one.ratio >= FASTER]
+    has_table = isinstance(chart, TabulatedChart) and chart.table is not None
+    if not fast and has_table and not stalls:
+        return None
+    mayswitch = sum(event.name == COORDINATE for event in course.events) < MOST_CHANGES or chart.mechanism.frictions
+    for one in fast if mayswitch else ():
+        found = driven_there(chart, here, one)
+        if found is not None and found[0].is_regular(found[1][: len(chart.free)]):
+            text = f"next to a limit position of {one.driver}, {one.pair.name} takes its place as the coordinate"
+            course.events.append(SimulationEvent(course.last, COORDINATE, text, False))
+            return found[0], np.append(found[1], solver.y[-1])
+    if chart.mechanism.frictions:
+        if stalls or (fast and fast[0].ratio > LIMIT):
+            driver = fast[0].driver if fast else chart.free[0]
+            _ended(solver, course, f"{driver} comes to a limit position, and no other pair can take its place")
+        return None
+    driver = fast[0].driver if fast else chart.free[0]
+    text = f"no pair is a coordinate like {driver} for long: those of all links take its place"
+    course.events.append(SimulationEvent(course.last, COORDINATE, text, False))
+    links, state = by_links(chart, here)
+    return links, links.settled(solver.t, np.append(state, solver.y[-1]))
 
 
 # At a jump steps have this many times the tolerance at least, as parts of the longest.
@@ -237,7 +273,7 @@ class _Jump(NamedTuple):
     course: Callable[[Number], Number]
 
 
-def _next_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> _Jump | None:
+def _next_jump(chart: Chart, solver: Any, course: SimulatedCourse) -> _Jump | None:
     """Return the jump of the loads at which the integrator stalled; None where there is none just ahead.
 
     Up to the jump accelerations are those of the present state; its time is found by halving.
@@ -273,7 +309,7 @@ def _next_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> _Jum
     return _Jump(low, high, after) if jumps else None
 
 
-def _beyond_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Number | None:
+def _beyond_jump(chart: Chart, solver: Any, course: SimulatedCourse) -> Number | None:
     """Return the state behind the jump of the loads at which steps collapse, or held by it; None without one."""
     found = _next_jump(chart, solver, course)
     if found is None:
@@ -289,6 +325,7 @@ def _beyond_jump(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Nu
     if held is None:
         course.events.append(SimulationEvent(found.behind, JUMP, "the loads jump", False))
         return state
+    assert isinstance(chart, DriverChart)
     chart.held = held
     n = len(chart.free)
     state[n : 2 * n] = held.moved(chart, found.behind, state[:n], state[n : 2 * n], 0.0)
@@ -311,8 +348,13 @@ AT_REST = 1e-9
 NARROW = 0.01
 
 
-def _holding(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> HeldSpeed | None:
-    """Return the load that jumps with its speed at a state and holds it; None where the motion passes the jump."""
+def _holding(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> HeldSpeed | None:
+    """Return the load that jumps with its speed at a state and holds it; None where the motion passes the jump.
+
+    By the coordinates of all links none is held.
+    """
+    if not isinstance(chart, DriverChart):
+        return None
     n = len(chart.free)
     loads = [one for some in chart.loads for one in some]
     found = [held for held in (_held_by(load, chart, time, state, course) for load in loads) if held is not None]
@@ -347,7 +389,7 @@ def _holds(part: float) -> bool:
 ROUNDING = 1e-9
 
 
-def _fastest(chart: DriverChart, course: SimulatedCourse, speeds: Number) -> float:
+def _fastest(chart: Chart, course: SimulatedCourse, speeds: Number) -> float:
     """Return the size of the speeds up to now."""
     n = len(chart.free)
     known = [np.abs(step.between(np.array(step.first))[n : 2 * n]) for step in course.steps if step.chart is chart]
@@ -359,9 +401,10 @@ def _fastest(chart: DriverChart, course: SimulatedCourse, speeds: Number) -> flo
 HELD_STEPS, HELD_SAMPLES = 16, 8
 
 
-def _released(chart: DriverChart, course: SimulatedCourse) -> Number | None:
+def _released(chart: Chart, course: SimulatedCourse) -> Number | None:
     """Return the state in which a held speed is left in the last step; None where it is held on."""
     held, step, n = chart.held, course.steps[-1], len(chart.free)
+    assert isinstance(chart, DriverChart)
     assert held is not None
 
     def part(time: float) -> float:
@@ -395,7 +438,7 @@ def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
     _stop(course, "limit", text)
 
 
-def _behind_break(chart: DriverChart, solver: Any, course: SimulatedCourse) -> Any:
+def _behind_break(chart: Chart, solver: Any, course: SimulatedCourse) -> Any:
     """Return the integrator from the other side of a time at which a load jumps or has a corner."""
     one = next(one for one in course.breaks if one.before >= solver.t)
     if one.jumps:
@@ -408,7 +451,7 @@ def _stop(course: SimulatedCourse, name: str, text: str) -> None:
     course.events.append(SimulationEvent(course.last, name, text, True))
 
 
-def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> Any:
+def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> Any:
     """Return SciPy's integrator at a state of a chart."""
     from scipy.integrate import DOP853
 
@@ -424,10 +467,12 @@ def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCou
     energy = chart.state(time, state[:n], pace).kinetic
     allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
     end = next((one.before for one in course.breaks if one.before > time), course.until)
-    return DOP853(grown, time, state, end, rtol=course.tolerance, atol=allowed)
+    solver: Any = DOP853(grown, time, state, end, rtol=course.tolerance, atol=allowed)
+    solver.allowed = allowed
+    return solver
 
 
-def _driver_paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: float) -> Number:
+def _driver_paces(chart: Chart, speeds: Number, accelerations: Number, duration: float) -> Number:
     """Return the expected pace of each free driver, by its speed or by its acceleration over its scale."""
     quick = np.maximum(np.abs(speeds), np.sqrt(np.abs(accelerations) * chart.scales))
     # a driver at rest without a load is scaled by the others, and these by their scales over the whole time
@@ -435,7 +480,7 @@ def _driver_paces(chart: DriverChart, speeds: Number, accelerations: Number, dur
     return found
 
 
-def longest_step(chart: DriverChart, speeds: Number, accelerations: Number) -> float:
+def longest_step(chart: Chart, speeds: Number, accelerations: Number) -> float:
     """Return the longest time step in which no driver exceeds LONGEST_MOVE."""
     rate = np.max(np.abs(speeds) / chart.scales)
     growth = np.max(np.abs(accelerations) / chart.scales)
@@ -453,19 +498,19 @@ NODES = 8
 class Step:
     """A step of the integration: its chart, its times, and the state as a function of time."""
 
-    chart: DriverChart
+    chart: Chart
     first: float
     last: float
     between: Callable[[Number], Number]
     memory: tuple[Any, ...]  # the configuration at its beginning
 
-    def integral(self, function: Callable[[DriverState], float]) -> float:
+    def integral(self, function: Callable[[KnownState], float]) -> float:
         """Return the integral of a function of the state over the step."""
         nodes, weights = np.polynomial.legendre.leggauss(NODES)
         half = (self.last - self.first) / 2.0
         return half * float(weights @ [function(self.state(self.first + half * (one + 1.0))) for one in nodes])
 
-    def state(self, time: float) -> DriverState:
+    def state(self, time: float) -> KnownState:
         """Return the state at a time in the step."""
         n, y, memory = len(self.chart.free), self.between(np.array(time)), self.chart.memory
         self.chart.recall(self.memory)
@@ -500,7 +545,7 @@ class ChartStretch:
     `asked` is a mask of the requested times.
     """
 
-    chart: DriverChart
+    chart: Chart
     times: Number
     states: Number
     accelerations: Number
@@ -589,7 +634,8 @@ def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
     states, accelerations = [], []
     for k in np.unique(index):
         here = whole[index == k]
-        states.append(steps[k].between(here))
+        found = steps[k].between(here)
+        states.append(np.array([steps[k].chart.settled(t, y) for t, y in zip(here, found.T, strict=True)]).T)
         accelerations.append(steps[k].accelerations_at(here, states[-1]))
     whole_states, rates = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
     return ChartStretch(steps[0].chart, whole, whole_states, rates, np.isin(whole, own))

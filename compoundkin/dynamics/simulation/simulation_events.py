@@ -11,8 +11,8 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
-from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import DriverState, SimulatedState
+from compoundkin.dynamics.simulation.coordinate_change import Chart
+from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
 from compoundkin.kinematics.solving_order import AT_END
 from compoundkin.model.loads.amounts import corners_in_time, function_of_time
@@ -68,10 +68,10 @@ class Watch:
     falls: bool = False
     asked: bool = False
 
-    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+    def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the function at a state. Raises InvalidInput where it returns no number."""
         n = len(chart.free)
-        here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]))
+        here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]), chart.order)
         try:
             result = np.ravel(self.function(here))[0]
             if self.asked and (np.iscomplexobj(result) or np.isnan(result)):
@@ -99,7 +99,7 @@ class StopWatch(Watch):
 
     contact: StopContact = field(kw_only=True)
 
-    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+    def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the gap of an open contact, the depth or the force of a closed one."""
         n, one = len(chart.free), self.contact
         here = chart.state(time, state[:n], state[n : 2 * n])
@@ -110,7 +110,7 @@ class StopWatch(Watch):
         found = margins(chart.rigid, here, chart.unheld_rates(time, state[:n], state[n : 2 * n]))
         return float(found[chart.rigid.index(one)])
 
-    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+    def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
         """Close or open the contact; return what happens there."""
         one, n = self.contact, len(chart.free)
         name = one.stop.name
@@ -131,7 +131,7 @@ class StopWatch(Watch):
         )
 
 
-def _met(chart: DriverChart, time: float, state: Number, one: StopContact, restitution: float) -> tuple[Number, float]:
+def _met(chart: Chart, time: float, state: Number, one: StopContact, restitution: float) -> tuple[Number, float]:
     """Close a rigid contact by an impact, unless it is left again; return the state after it and the lost energy."""
     n = len(chart.free)
     hit = impact(one, restitution, chart.rigid, chart.state(time, state[:n], state[n : 2 * n]))
@@ -152,12 +152,12 @@ class CatchWatch(Watch):
 
     contact: StopContact = field(kw_only=True)
 
-    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+    def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the distance of the coordinate."""
         n = len(chart.free)
         return self.contact.at(chart.state(time, state[:n], state[n : 2 * n])).gap
 
-    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+    def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
         """Close the latch by an impact."""
         one, name = self.contact, self.contact.stop.name
         after, lost = _met(chart, time, state, one, 0.0)
@@ -171,11 +171,11 @@ class ToothWatch(CatchWatch):
 
     pitch: float = field(kw_only=True)
 
-    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+    def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the distance of the next tooth."""
         return abs(self.pitch) - super().value(chart, time, state)
 
-    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+    def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
         """Let the ratchet hold at this tooth from now on."""
         one = self.contact
         tooth = replace(one, end=one.end + self.pitch)
@@ -188,14 +188,14 @@ class ToothWatch(CatchWatch):
 class OpenWatch(CatchWatch):
     """A closed latch, and a condition that opens it where it falls to zero or, if `rises`, changes its sign."""
 
-    margin: Callable[[DriverChart, DriverState, Number], float] = field(kw_only=True)
+    margin: Callable[[Chart, KnownState, Number], float] = field(kw_only=True)
 
-    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+    def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the condition."""
         n = len(chart.free)
         return self.margin(chart, chart.state(time, state[:n], state[n : 2 * n]), state)
 
-    def passage(self, chart: DriverChart, time: float, state: Number, fastest: float) -> StopPassage:
+    def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
         """Open the latch for good."""
         one = self.contact
         chart.closed = tuple(other for other in chart.closed if other != one)
@@ -203,7 +203,7 @@ class OpenWatch(CatchWatch):
         return StopPassage(SimulationEvent(time, OPENS, f"{one.stop.name} opens: {self.text}", False), state)
 
 
-def stop_watches(chart: DriverChart) -> Iterator[StopWatch | CatchWatch]:
+def stop_watches(chart: Chart) -> Iterator[StopWatch | CatchWatch]:
     """Yield the contacts at stops and in latches as watched functions."""
     for one in chart.stop_contacts:
         latch = as_latch(one.stop)
@@ -224,16 +224,16 @@ def _opening(latch: Latch, one: StopContact) -> Iterator[OpenWatch]:
     def number(value: Any) -> float:
         return float(np.ravel(value)[0])
 
-    def force(chart: DriverChart, here: DriverState, state: Number) -> float:
+    def force(chart: Chart, here: KnownState, state: Number) -> float:
         n = len(chart.free)
         free = chart.unheld_rates(here.time, state[:n], state[n : 2 * n])
         forces = holding([other.at(here) for other in chart.rigid], here, free)
         return number(latch.strength) - abs(float(forces[chart.rigid.index(one)]))
 
-    def until(chart: DriverChart, here: DriverState, state: Number) -> float:
+    def until(chart: Chart, here: KnownState, state: Number) -> float:
         return number(latch.until) - here.time
 
-    def over(chart: DriverChart, here: DriverState, state: Number) -> float:
+    def over(chart: Chart, here: KnownState, state: Number) -> float:
         return float(np.ravel(here.loaded.coordinate(latch.over).c[0])[0]) - number(latch.value)
 
     if latch.strength is not None:
@@ -250,7 +250,7 @@ def _opening(latch: Latch, one: StopContact) -> Iterator[OpenWatch]:
 AT_STOP = 1e-9
 
 
-def begin_at_stops(chart: DriverChart, state: Number) -> None:
+def begin_at_stops(chart: Chart, state: Number) -> None:
     """Find the contacts at stops and in latches at the start, and close those that are.
 
     Raises InvalidInput for a start beyond a rigid stop, and for a latch that holds what moves.
@@ -273,7 +273,7 @@ def begin_at_stops(chart: DriverChart, state: Number) -> None:
             raise InvalidInput(Problem("start", what, "start inside, or move the stop"))
 
 
-def idle_latches(chart: DriverChart, time: float) -> Iterator[SimulationEvent]:
+def idle_latches(chart: Chart, time: float) -> Iterator[SimulationEvent]:
     """Yield what latches have not done until the end: not caught, or not opened."""
     for one in chart.stop_contacts:
         latch = as_latch(one.stop)
@@ -339,7 +339,7 @@ def _contact_force(name: str) -> Function:
 
 
 def first_passed(
-    watched: tuple[Watch, ...], chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
+    watched: tuple[Watch, ...], chart: Chart, times: tuple[float, float], between: Callable[[float], Number]
 ) -> list[Passed]:
     """Return the zeros in a step, in the order of time."""
     found = [Passed(one, time, between(time)) for one in watched for time in _zeros(one, chart, times, between)]
@@ -347,7 +347,7 @@ def first_passed(
 
 
 def _zeros(
-    watch: Watch, chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
+    watch: Watch, chart: Chart, times: tuple[float, float], between: Callable[[float], Number]
 ) -> Iterator[float]:
     """Yield the times of zeros; the first time where the function is negative throughout."""
 
@@ -434,7 +434,7 @@ def _jumps(values: Callable[[Number], Number], times: Number) -> Iterator[LoadBr
 
 
 class Impact(NamedTuple):
-    """An impact at a travel limit: the approach speed, the free drivers' speeds afterwards, the lost energy."""
+    """An impact at a travel limit: the approach speed, all coordinates' speeds afterwards, the lost energy."""
 
     approach: float
     speeds: Number
@@ -450,13 +450,10 @@ def after_impact(here: SimulatedState, restitution: float, fastest: float) -> Im
     Source: Newton's law of impact in generalized coordinates, D. T. Greenwood, Principles of Dynamics, section 4.8.
     """
     state, pair = here.state, ended_pair(here)
-    n = len(state.chart.free)
     along, speeds = state.slopes(pair), state.speeds
     approach = float(along @ speeds)
     if abs(approach) <= SLOW * max(fastest, float(np.abs(along) @ np.abs(speeds))):
         return None
-    push = np.linalg.solve(state.terms.matrix[:n, :n], along[:n])
-    after = speeds.copy()
-    after[:n] -= (1.0 + restitution) * approach / float(along[:n] @ push) * push
-    matrix = state.terms.matrix
-    return Impact(abs(approach), after[:n], float(speeds @ matrix @ speeds - after @ matrix @ after) / 2.0)
+    push, matrix = state.response(along), state.terms.matrix
+    after = speeds - (1.0 + restitution) * approach / float(along @ push) * push
+    return Impact(abs(approach), after, float(speeds @ matrix @ speeds - after @ matrix @ after) / 2.0)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.dynamics.simulation.driver_state import DriverState, Rates
+from compoundkin.dynamics.simulation.driver_state import KnownState, Rates
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.latch import Latch, as_latch
 from compoundkin.model.loads.stop import HIGH, LOW, Stop, as_stop
@@ -57,36 +57,41 @@ class StopContact:
         assert found is not None
         return found
 
-    def at(self, state: DriverState) -> ContactState:
+    def at(self, state: KnownState) -> ContactState:
         """Return its gap and the derivatives of that at a state."""
         slopes, bias = state.loaded.rates_of(self.stop.pair)
         gap = self.side * (float(np.ravel(state.loaded.coordinate(self.stop.pair).c[0])[0]) - self.end)
         normal = self.side * slopes
         return ContactState(gap, float(normal @ state.speeds), normal, self.side * bias)
 
-    def push(self, state: DriverState) -> float:
+    def push(self, state: KnownState) -> float:
         """Return the force of an elastic end at a state, negative where it would have to pull."""
         series = state.loaded.coordinate(self.stop.pair)
         depth = self.elastic.depth(self.side, self.end, series, state.loaded)
         return float(np.ravel(self.elastic.push(self.side, depth, series, state.loaded))[0])
 
-    def indentation(self, state: DriverState) -> float:
+    def indentation(self, state: KnownState) -> float:
         """Return the depth in an elastic end, negative where it does not push."""
         stiffness = float(np.ravel(state.loaded.fitted(self.elastic.stiffness))[0])
         return min(-self.at(state).gap, self.push(state) / stiffness)
 
-    def stored(self, state: DriverState) -> float:
+    def stored(self, state: KnownState) -> float:
         """Return the energy of an elastic end by its depth."""
         gap = self.at(state).gap
         return float(np.ravel(state.loaded.fitted(self.elastic.stiffness))[0]) * gap * gap / 2.0
 
-    def damping_power(self, state: DriverState) -> float:
+    def damping_power(self, state: KnownState) -> float:
         """Return the power that the damping of an elastic end takes."""
         rate = self.at(state).rate
         return float(np.ravel(state.loaded.fitted(self.elastic.damping))[0]) * rate * rate
 
 
-def contacts_of(loads: Iterable[Load], state: DriverState) -> tuple[StopContact, ...]:
+def is_no_contact(load: Load) -> bool:
+    """Return whether a load is neither a stop nor a latch."""
+    return as_stop(load) is None and as_latch(load) is None
+
+
+def contacts_of(loads: Iterable[Load], state: KnownState) -> tuple[StopContact, ...]:
     """Return the contacts at stops and in latches, with their coordinates for a design.
 
     A latch that does not catch, and a ratchet, hold where they are.
@@ -108,7 +113,7 @@ def contacts_of(loads: Iterable[Load], state: DriverState) -> tuple[StopContact,
     return tuple(found)
 
 
-def pressed(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Rates:
+def pressed(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> Rates:
     """Return the rates under the contacts of those without them."""
     found = sprung(contacts, state, free)
     rigid = [one.at(state) for one in contacts if not one.stop.is_elastic]
@@ -118,7 +123,7 @@ def pressed(contacts: Sequence[StopContact], state: DriverState, free: Rates) ->
     return found
 
 
-def sprung(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Rates:
+def sprung(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> Rates:
     """Return the rates under the elastic contacts alone."""
     found = free
     for one in (one for one in contacts if one.stop.is_elastic):
@@ -128,39 +133,37 @@ def sprung(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> 
     return found
 
 
-def _pushed(state: DriverState, free: Rates, push: Number, power: float) -> Rates:
+def _pushed(state: KnownState, free: Rates, push: Number, power: float) -> Rates:
     """Return the rates with a further force along the drivers' coordinates, and its power."""
-    n, matrix = len(state.chart.free), state.terms.matrix
-    more = np.linalg.solve(matrix[:n, :n], push[:n])
+    more = state.response(push)
     # prescribed drivers take their part
-    driven = float((matrix[n:, :n] @ more - push[n:]) @ state.speeds[n:])
-    return Rates(free.accelerations + more, free.power + power + driven)
+    driven = float(state.speeds @ (state.terms.matrix @ more - push))
+    return Rates(free.accelerations + more[: len(free.accelerations)], free.power + power + driven)
 
 
-def holding(contacts: Sequence[ContactState], state: DriverState, free: Rates) -> Number:
+def holding(contacts: Sequence[ContactState], state: KnownState, free: Rates) -> Number:
     """Return the forces that hold gaps at rest."""
     normals = np.array([one.normal for one in contacts])
     return -np.linalg.lstsq(_compliance(normals, state), _closing(contacts, state, free), rcond=None)[0]
 
 
-def _closing(contacts: Sequence[ContactState], state: DriverState, free: Rates) -> Number:
+def _closing(contacts: Sequence[ContactState], state: KnownState, free: Rates) -> Number:
     """Return the accelerations of gaps."""
     whole = np.concatenate([free.accelerations, state.prescribed])
     return np.array([float(one.normal @ whole) + one.bias for one in contacts])
 
 
-def _compliance(normals: Number, state: DriverState) -> Number:
+def _compliance(normals: Number, state: KnownState) -> Number:
     """Return the accelerations of gaps by unit forces at them."""
-    n = len(state.chart.free)
-    found: Number = normals[:, :n] @ np.linalg.solve(state.terms.matrix[:n, :n], normals[:, :n].T)
+    found: Number = normals @ np.array([state.response(one) for one in normals]).T
     return found
 
 
-def margins(contacts: Sequence[StopContact], state: DriverState, free: Rates) -> Number:
+def margins(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> Number:
     """Return by how much each rigid contact is pressed, negative where it is left; a latch never is."""
     here = [one.at(state) for one in contacts]
     forces = holding(here, state, free)
-    n = len(state.chart.free)
+    n = len(free.accelerations)
     size = np.abs(np.array([one.normal for one in here])[:, :n]) @ np.abs(free.accelerations)
     # at rest without loads nothing presses and nothing parts them
     sizes = size / np.maximum(np.diag(_compliance(np.array([one.normal for one in here]), state)), 1e-300)
@@ -175,7 +178,7 @@ class StopImpact(NamedTuple):
     staying: tuple[StopContact, ...]
 
 
-def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact], state: DriverState) -> StopImpact:
+def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact], state: KnownState) -> StopImpact:
     """Return the result of an impact at one contact while others are closed.
 
     M (v+ - v-) = N p with n . v+ = -e n . v- at the one, n . v+ = 0 and p > 0 at those that stay.
@@ -194,6 +197,5 @@ def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact],
         if not parted:
             break
         kept.remove(parted[0])
-    after = before.copy()
-    after[:n] += np.linalg.solve(matrix[:n, :n], normals[:, :n].T @ impulses)
+    after = before + state.response(normals.T @ impulses)
     return StopImpact(after[:n], float(before @ matrix @ before - after @ matrix @ after) / 2.0, tuple(kept))

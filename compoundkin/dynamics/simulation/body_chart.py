@@ -1,0 +1,551 @@
+"""The equation of motion in the coordinates of all links, held together by the equations of their pairs.
+
+No coordinate is chosen, so that none can fail: at limit positions of drivers and at change points the same equations
+hold, and redundant pairs repeat what others hold. With J the Jacobian of the pairs and of the prescribed drivers,
+J v = b and J a = c; what J leaves free of the accelerations, its null space N, obeys N' (M a + h - Q) = 0. After every
+step positions and velocities are projected on the pairs' equations.
+
+Source: F. E. Udwadia and R. E. Kalaba, Analytical Dynamics, Cambridge 1996, chapter 3; E. Hairer, C. Lubich and
+G. Wanner, Geometric Numerical Integration, 2nd ed., Springer 2006, section IV.4 (projection).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number, first_entry, whole_turns
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series
+from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, moving_masses
+from compoundkin.dynamics.simulation.driver_state import ONLY, LoadedState, Rates, prescribed_rates
+from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.driver_values import mapped
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.laws import Law
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends, Poses, constraint_scales
+
+# Equations that move a link by less than this part of what others do say nothing new: what drifts off redundant pairs
+# between two projections is far below, and a change point is that near for an instant only.
+RANK = 1e-8
+# A change point is near where the least singular value is this part of the greatest.
+NEAR = 1e-2
+# Projections end where they move nothing by more than this (parts of the size, radians), or after so many steps.
+PROJECTED, PROJECTIONS = 1e-14, 5
+# A freedom with less than this part of the greatest inertia has none: rounding squared.
+NO_MASS = 1e-20
+
+
+class _Pins(NamedTuple):
+    """All pins at once: the indices of their links, and their places there."""
+
+    first: Number
+    second: Number
+    own: Number
+    other: Number
+
+
+class _Bodies(NamedTuple):
+    """All masses at once: where their links' coordinates begin, and the mass matrix but for its eccentric terms."""
+
+    at: Number
+    mass: Number
+    centre: Number
+    matrix: Number
+
+
+class _HeldPair(NamedTuple):
+    """A pair that is no pin: the places of its members' columns, and the scales of its equations."""
+
+    pair: Pair
+    ends: Ends
+    columns: Number
+    scales: Number
+
+
+class _HeldCoordinate(NamedTuple):
+    """A coordinate that is prescribed: by the law of a driver, or at its first value."""
+
+    pair: Pair
+    ends: Ends
+    columns: Number
+    sense: float
+    scale: float
+    law: str | None
+    first: float
+
+
+class Equations(NamedTuple):
+    """The pairs' equations at a state, in parts of the size and radians: what is open, J, b and c."""
+
+    open: Number
+    jacobian: Number
+    rates: Number
+    second: Number
+
+
+@dataclass(eq=False)
+class BodyChart:
+    """All configurations of a mechanism, by the coordinates of its links: x, y and the angle of each.
+
+    `start` is a motion of one pose, `drivers` are its free drivers, and `laws` prescribe the others; `world` has the
+    poses that it starts from. It has the interface of a `DriverChart`, with the coordinates in the place of drivers.
+    """
+
+    start: Motion
+    drivers: tuple[str, ...]
+    laws: Mapping[str, Law]
+    world: Mapping[str, Pose]
+    held: ClassVar[None] = None
+    stop_contacts: tuple[StopContact, ...] = ()  # those at stops and in latches
+    closed: tuple[StopContact, ...] = ()
+    adds_stops: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        self.mechanism = self.start.mechanism
+        self.order: SolvingOrder = self.start.solving_order
+        self.size = self.order.size
+        self.names = (*self.drivers, *self.laws)
+        self.links = tuple(link for link in self.world if link != FRAME)
+        self.free = tuple(f"{link}.{part}" for link in self.links for part in ("x", "y", "angle"))
+        self.index = {link: k for k, link in enumerate(self.links)} | {FRAME: len(self.links)}
+        self.scales = np.tile([self.size, self.size, 1.0], len(self.links))
+        self.gravity = complex(first_entry(self.mechanism.free_fall))
+        stored, others = (tuple(filter(is_no_contact, loads)) for loads in sorted_loads(self.start))
+        self.loads = stored, others
+        known = self.start.inputs.cut(ONLY, ONLY).ends
+        self.ends = {name: tuple(mapped(end, _number) for end in ends) for name, ends in known.items()}
+        self.first = np.array([part for link in self.links for part in _coordinates(self.world[link])])
+        self.bodies = self._bodies(moving_masses(self.start.structure))
+        self.turned = {name: float(np.ravel(one.value)[0]) for name, one in self._angles()}
+        self._gather()
+
+    def _bodies(self, masses: Sequence[MovingMass]) -> _Bodies:
+        at = np.array([3 * self.index[own.link] for own in masses], dtype=int)
+        mass, centre = np.array([own.mass for own in masses]), np.array([own.centre for own in masses])
+        matrix = np.zeros((len(self.first), len(self.first)))
+        matrix[at, at] = matrix[at + 1, at + 1] = mass
+        matrix[at + 2, at + 2] = [own.inertia for own in masses] + mass * np.square(np.abs(centre))
+        return _Bodies(at, mass, centre, matrix)
+
+    def _angles(self) -> Iterable[tuple[str, Any]]:
+        return ((pair.name, self.start.pairs[pair.name]) for pair in self.start.structure.pairs
+                if pair.free_is_angle and pair.name in self.order.pairs)  # fmt: skip
+
+    def _gather(self) -> None:
+        """Sort the pairs into pins, others, and those whose coordinate is prescribed."""
+        structure = self.start.structure
+        pins = [pair for pair in structure.pairs if pair.is_simple and pair.free_is_angle]
+        members = np.array([[self.index[link] for link in pair.members] for pair in pins], dtype=int).reshape(-1, 2)
+        points = np.array([[end.point for end in self._ends(pair)] for pair in pins], dtype=complex).reshape(-1, 2)
+        self.pins = _Pins(members[:, 0], members[:, 1], points[:, 0], points[:, 1])
+        self.pairs = tuple(
+            _HeldPair(pair, self._ends(pair), self._columns(pair), np.array(constraint_scales(pair, self.size)))
+            for pair in structure.pairs
+            if pair not in pins
+        )
+        steps = [step for body in structure.bodies for step in body.driven if step.is_passive]
+        passive = [(step.pair, 1.0, None) for step in steps]
+        driven = [(own.pair, float(own.pair.driven_by(own.drive.link)), name)
+                  for name, own in structure.driven.items() if name in self.laws]  # fmt: skip
+        self.held_coordinates = tuple(self._held(*one) for one in (*passive, *driven))
+
+    def _held(self, pair: Any, sense: float, law: str | None) -> _HeldCoordinate:
+        ends = self._ends(pair)
+        scale = 1.0 if pair.free_is_angle else self.size
+        # angles of links may be written with other turns than the driver's
+        first = sense * _value(pair.coordinate(ends, self._still(pair)), 0)
+        return _HeldCoordinate(pair, ends, self._columns(pair), sense, scale, law, first)
+
+    def _still(self, pair: Pair) -> Poses:
+        """Return the first poses of a pair's members, with counted angles."""
+        world = self._world(self.first, np.zeros_like(self.first))
+        return tuple(world[link] for link in pair.members)
+
+    def _ends(self, pair: Pair) -> Ends:
+        known = self.ends.get(pair.name)
+        return known or tuple(mapped(end, _number) for end in pair.ends(self.mechanism.geometry))
+
+    def _columns(self, pair: Pair) -> Number:
+        """Return the places of the coordinates of a pair's members; the frame's are the last."""
+        return np.concatenate([3 * self.index[link] + np.arange(3) for link in pair.members])
+
+    def state(self, time: float, values: Number, speeds: Number) -> BodyState:
+        """Return the state at the coordinates of all links and their rates."""
+        return BodyState(self, time, values, speeds)
+
+    def rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates of a state.
+
+        Next to a change point they are those of the projected state: what is open there would be enlarged.
+        """
+        here = self.state(time, values, speeds)
+        if here.is_near_change_point:
+            n = len(values)
+            projected = self.settled(time, np.concatenate([values, speeds, [0.0]]))
+            here = self.state(time, projected[:n], projected[n : 2 * n])
+        return here.rates
+
+    free_rates = rates
+
+    def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates of a state, with the contacts at stops and in latches."""
+        free = self.rates(time, values, speeds)
+        return pressed(self.closed, self.state(time, values, speeds), free) if self.closed else free
+
+    def unheld_rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return the rates of a state without the rigid contacts."""
+        free = self.rates(time, values, speeds)
+        return sprung(self.closed, self.state(time, values, speeds), free) if self.closed else free
+
+    @property
+    def rigid(self) -> tuple[StopContact, ...]:
+        """The closed contacts that hold a coordinate."""
+        return tuple(one for one in self.closed if not one.stop.is_elastic)
+
+    def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
+        """Return the accelerations of all coordinates at a state of the solution."""
+        return self.followed_rates(time, values, speeds).accelerations
+
+    def begin(self, time: float, values: Number, speeds: Number) -> bool:
+        """Start from a state; it moves."""
+        return True
+
+    def released(self, time: float, values: Number, until: float) -> float:
+        """Return the end: nothing holds it."""
+        return until
+
+    def is_regular(self, values: Number) -> bool:
+        """Return that no coordinate is better."""
+        return True
+
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        """The contacts at stops: else a state says where everything is."""
+        return ((self.held, self.closed),)
+
+    def recall(self, memory: tuple[Any, ...]) -> None:
+        """Restore the contacts at stops."""
+        _, self.closed = memory[0]
+
+    def accept(self, time: float, values: Number, speeds: Number) -> None:
+        """Do nothing."""
+
+    def settled(self, time: float, state: Number) -> Number:
+        """Return a state with coordinates and rates projected on the equations of the pairs."""
+        n, found = len(self.free), state.copy()
+        for _ in range(PROJECTIONS):
+            here = self.state(time, found[:n], found[n : 2 * n])
+            moved = here.inverse @ here.equations.open
+            found[:n] -= self.scales * moved
+            if not np.max(np.abs(moved)) > PROJECTED:
+                break
+        here = self.state(time, found[:n], found[n : 2 * n])
+        off = here.equations.jacobian @ (found[n : 2 * n] / self.scales) - here.equations.rates
+        found[n : 2 * n] -= self.scales * (here.inverse @ off)
+        return found
+
+    def digits_lost(self, time: float, state: Number) -> float:
+        """Return the relative rounding error of accelerations: digits are lost twice next to change points."""
+        n = len(self.free)
+        return float(np.finfo(float).eps) / self.state(time, state[:n], state[n : 2 * n]).least ** 2
+
+    def courses(self, times: Number, states: Number, accelerations: Number) -> dict[str, tuple[Number, ...]]:
+        """Return value, speed and acceleration of the free drivers at states in columns."""
+        n, found = len(self.free), dict[str, tuple[Number, ...]]()
+        poses = self.poses(states, accelerations)
+        for name in self.drivers:
+            own = self.start.structure.driven[name]
+            sense = float(own.pair.driven_by(own.drive.link))
+            series = own.pair.coordinate(self._ends(own.pair), tuple(poses[link] for link in own.pair.members))
+            rows = [np.broadcast_to(_row(series.derivative(k)), times.shape) * sense for k in range(3)]
+            if own.pair.free_is_angle:
+                begun = float(np.ravel(self.start.drives[name].value)[0])
+                rows[0] = rows[0] + whole_turns(begun + sense * self._turning(own.pair, states[:n]) - rows[0])
+            found[name] = rows[0], rows[1], rows[2]
+        return found
+
+    def poses(self, states: Number, accelerations: Number) -> dict[str, Pose]:
+        """Return the poses of all links at states in columns, as a row."""
+        n, found = len(self.free), {FRAME: FIXED}
+        x, v = states[:n], states[n : 2 * n]
+        for link, k in self.index.items():
+            if link != FRAME:
+                found[link] = _pose(*(part[3 * k : 3 * k + 3][:, None, :] for part in (x, v, accelerations)))
+        return found
+
+    def _turning(self, pair: Pair, values: Number) -> Number:
+        """Return by which angle a pair has turned since the start."""
+        first, second = (self._angle_since(link, values) for link in pair.members[:2])
+        return second - first
+
+    def _angle_since(self, link: str, values: Number) -> Number:
+        k = self.index[link]
+        return np.zeros(values.shape[1:]) if link == FRAME else values[3 * k + 2] - self.first[3 * k + 2]
+
+    def turns_of(self, pair: str, angle: float, values: Number) -> float:
+        """Return an angle of a pair with its full turns."""
+        for name, own in self.start.structure.driven.items():
+            if own.pair.name == pair:
+                begun = float(np.ravel(self.start.drives[name].value)[0]) * own.pair.driven_by(own.drive.link)
+                break
+        else:
+            begun, own = self.turned.get(pair, angle), None
+        meant = self.order.pairs[pair] if own is None else own.pair
+        return angle + float(whole_turns(begun + self._turning(meant, values) - angle))
+
+    def _world(self, values: Number, speeds: Number) -> dict[str, Pose]:
+        """Return the poses of all links at a state, with their rates and without accelerations."""
+        z, w = values[0::3] + 1j * values[1::3], speeds[2::3]
+        dz, u = speeds[0::3] + 1j * speeds[1::3], np.exp(1j * values[2::3])
+        rows = zip(self.links, z.tolist(), dz.tolist(), u.tolist(), (1j * w * u).tolist(),
+                   (-0.5 * w * w * u).tolist(), values[2::3].tolist(), w.tolist(), strict=True)  # fmt: skip
+        found = {
+            link: Pose(Series((a, b, 0j)), Series((c, d, e)), Series((f, g, 0.0))) for link, a, b, c, d, e, f, g in rows
+        }
+        found[FRAME] = FIXED
+        return found
+
+    def equations(self, time: float, values: Number, speeds: Number, world: Mapping[str, Pose]) -> Equations:
+        """Return the equations of all pairs at a state."""
+        pins, m = self.pins, len(self.pins.own)
+        count = 2 * m + sum(len(one.scales) for one in self.pairs) + len(self.held_coordinates)
+        # the frame has columns, too, which are left out at last
+        width = len(values) + 3
+        matrix, off, second = np.zeros((count, width)), np.zeros(count), np.zeros(count)
+        rates = np.zeros(count)
+        z = np.append(values[0::3] + 1j * values[1::3], 0j)
+        u, w = np.append(np.exp(1j * values[2::3]), 1.0), np.append(speeds[2::3], 0.0)
+        own, other = u[pins.first] * pins.own, u[pins.second] * pins.other
+        gap = (z[pins.second] + other - z[pins.first] - own) / self.size
+        turned = (np.square(w[pins.first]) * own - np.square(w[pins.second]) * other) / self.size
+        off[0 : 2 * m : 2], off[1 : 2 * m : 2] = gap.real, gap.imag
+        second[0 : 2 * m : 2], second[1 : 2 * m : 2] = -turned.real, -turned.imag
+        even, odd = np.arange(0, 2 * m, 2), np.arange(1, 2 * m, 2)
+        matrix[even, 3 * pins.first] = matrix[odd, 3 * pins.first + 1] = -1.0
+        matrix[even, 3 * pins.second] = matrix[odd, 3 * pins.second + 1] = 1.0
+        matrix[even, 3 * pins.first + 2], matrix[odd, 3 * pins.first + 2] = own.imag / self.size, -own.real / self.size
+        matrix[even, 3 * pins.second + 2] = -other.imag / self.size
+        matrix[odd, 3 * pins.second + 2] = other.real / self.size
+        at, lengths = 2 * m, np.append(self.scales, self.scales[:3])
+        for one in self.pairs:
+            poses, rows = tuple(world[link] for link in one.pair.members), slice(at, at + len(one.scales))
+            found = np.reshape(one.pair.jacobian(one.ends, poses), (-1, len(one.columns)))[: len(one.scales)]
+            matrix[rows, one.columns] = found * lengths[one.columns] / one.scales[:, None]
+            closure = one.pair.closure(one.ends, poses)
+            off[rows] = [_value(series, 0) for series in closure] / one.scales
+            second[rows] = [-2.0 * _value(series, 2) for series in closure] / one.scales
+            at += len(one.scales)
+        for held in self.held_coordinates:
+            poses = tuple(world[link] for link in held.pair.members)
+            series = held.pair.coordinate(held.ends, poses)
+            value = held.sense * _value(series, 0)
+            wanted = (held.first, 0.0, 0.0) if held.law is None else prescribed_rates(self.laws[held.law], time)
+            apart = value - wanted[0]
+            row = np.reshape(held.pair.jacobian(held.ends, poses), (-1, len(held.columns)))[-1]
+            matrix[at, held.columns] = held.sense * row * lengths[held.columns] / held.scale
+            off[at] = (apart - whole_turns(apart) if held.pair.free_is_angle else apart) / held.scale
+            rates[at] = wanted[1] / held.scale
+            second[at] = (wanted[2] - 2.0 * held.sense * _value(series, 2)) / held.scale
+            at += 1
+        return Equations(off, matrix[:, :-3], rates, second)
+
+
+@dataclass(frozen=True, eq=False)
+class _LoadedBodies(LoadedState):
+    """A state by the coordinates of all links as loads see it. `slopes` are a pair's rates by them."""
+
+    slopes: Callable[[Pair], Number] | None = None
+
+    def rates_of(self, name: str) -> tuple[Number, float]:
+        """Return the rates of a coordinate by those of all links, and its acceleration at none of theirs."""
+        assert self.columns is not None
+        assert self.slopes is not None
+        pair, sign = self._meant(name)
+        moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members))
+        return sign * self.slopes(pair), sign * 2.0 * _value(moved, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyState:
+    """A pose of all links with their velocities, and its equation of motion."""
+
+    chart: BodyChart
+    time: float
+    values: Number
+    speeds: Number
+
+    @cached_property
+    def world(self) -> dict[str, Pose]:
+        """The poses of all links, with their rates."""
+        return self.chart._world(self.values, self.speeds)
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The equations of all pairs."""
+        return self.chart.equations(self.time, self.values, self.speeds, self.world)
+
+    @cached_property
+    def _parts(self) -> tuple[Number, Number, float]:
+        """The pseudoinverse of the Jacobian, its null space, and its least singular value as a part of the greatest."""
+        u, s, v = np.linalg.svd(self.equations.jacobian)
+        rank = int(np.count_nonzero(s > RANK * s[0])) if len(s) else 0
+        return (v[:rank].T / s[:rank]) @ u[:, :rank].T, v[rank:].T, float(s[rank - 1] / s[0]) if rank else 1.0
+
+    @property
+    def inverse(self) -> Number:
+        """The pseudoinverse of the Jacobian."""
+        return self._parts[0]
+
+    @property
+    def least(self) -> float:
+        """The least singular value of the Jacobian as a part of the greatest: small next to change points."""
+        return self._parts[2]
+
+    @property
+    def is_near_change_point(self) -> bool:
+        """Whether some equations are nearly the others' sum."""
+        return self.least < NEAR
+
+    @cached_property
+    def block(self) -> Block:
+        """The poses as a block."""
+        return Block((1, 1), self.chart.ends, self.world, {}, 1)
+
+    @cached_property
+    def loaded(self) -> LoadedState:
+        """The state as loads see it."""
+        flat = {name: pose if pose is FIXED else pose.trimmed(1) for name, pose in self.world.items()}
+        block = Block((1, 1), self.chart.ends, flat, {}, 1)
+        return _LoadedBodies(self.chart.start, block, ONLY, ONLY, columns=self.world, seconds=self.time,
+                             count=len(self.values), turns=self._turned, slopes=self.slopes)  # fmt: skip
+
+    def _turned(self, pair: str, angle: float) -> float:
+        return self.chart.turns_of(pair, angle, self.values)
+
+    @property
+    def prescribed(self) -> Number:
+        """Nothing: prescribed drivers are among what holds the links."""
+        return np.empty(0)
+
+    @cached_property
+    def terms(self) -> InertiaTerms:
+        """The mass matrix, the centrifugal terms and the weights, by the coordinates of the links."""
+        chart = self.chart
+        bodies, g = chart.bodies, chart.gravity
+        matrix, bias, weight = bodies.matrix.copy(), np.zeros(len(self.values)), np.zeros(len(self.values))
+        at = bodies.at
+        c = bodies.mass * bodies.centre * np.exp(1j * self.values[at + 2])
+        inward = np.square(self.speeds[at + 2]) * c
+        matrix[at, at + 2] = matrix[at + 2, at] = -c.imag
+        matrix[at + 1, at + 2] = matrix[at + 2, at + 1] = c.real
+        bias[at], bias[at + 1] = -inward.real, -inward.imag
+        weight[at], weight[at + 1] = bodies.mass * g.real, bodies.mass * g.imag
+        weight[at + 2] = c.real * g.imag - c.imag * g.real
+        return InertiaTerms(matrix, bias, weight)
+
+    @cached_property
+    def forces(self) -> tuple[Number, Number]:
+        """The forces along all coordinates: those with a potential, and the others."""
+        stored, others = (self._along(loads) for loads in self.chart.loads)
+        return self.terms.weight + stored, others
+
+    def _along(self, loads: Iterable[Load]) -> Number:
+        total = np.zeros(len(self.values) + 3)
+        for load in loads:
+            for link, wrench in load.wrenches(self.loaded):
+                free, at = self.loaded.freed(link, wrench), 3 * self.chart.index[link]
+                force = complex(_number(free.force))
+                total[at : at + 3] += force.real, force.imag, float(_number(free.about(self.world[link].z.c[0])))
+        return total[:-3]
+
+    def response(self, along: Number) -> Number:
+        """Return the accelerations by a force along all coordinates alone."""
+        scales, null = self.chart.scales, self._parts[1]
+        inertia = null.T @ (scales[:, None] * self.terms.matrix * scales) @ null
+        sizes, ways = np.linalg.eigh(inertia)
+        push = ways.T @ (null.T @ (scales * along))
+        moved = np.where(sizes > NO_MASS * sizes[-1:], push / sizes, 0.0)
+        found: Number = scales * (null @ (ways @ moved))
+        return found
+
+    @cached_property
+    def accelerations(self) -> Number:
+        """The accelerations of all coordinates."""
+        terms, push = self.terms, self.forces[0] + self.forces[1]
+        led = self.chart.scales * (self.inverse @ self.equations.second)
+        found: Number = led + self.response(push - terms.bias - terms.matrix @ led)
+        return found
+
+    @property
+    def rates(self) -> Rates:
+        """The rates of the state."""
+        given = 0.0
+        if self.chart.laws:
+            terms, push = self.terms, self.forces[0] + self.forces[1]
+            given = float(self.speeds @ (terms.matrix @ self.accelerations + terms.bias - push))
+        return Rates(self.accelerations, float(self.forces[1] @ self.speeds) + given)
+
+    @property
+    def kinetic(self) -> float:
+        """The kinetic energy."""
+        return float(self.speeds @ self.terms.matrix @ self.speeds) / 2.0
+
+    def slopes(self, pair: Pair) -> Number:
+        """Return the rates of a pair's coordinate by all coordinates."""
+        columns, poses = self.chart._columns(pair), tuple(self.world[link] for link in pair.members)
+        found = np.zeros(len(self.values) + 3)
+        found[columns] = np.reshape(pair.jacobian(self.chart._ends(pair), poses), (-1, len(columns)))[-1]
+        return found[:-3]
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The state as a motion of one pose, with velocities and accelerations."""
+        chart, start = self.chart, self.chart.start
+        column = np.concatenate([self.values, self.speeds])[:, None]
+        second = self.accelerations[:, None]
+        drives: dict[str, tuple[Number, ...]] = {
+            name: tuple(part[None] for part in course)
+            for name, course in chart.courses(np.zeros(1), column, second).items()
+        }
+        for name, law in chart.laws.items():
+            drives[name] = tuple(np.array([[part]]) for part in prescribed_rates(law, self.time))
+        inputs = replace(start.inputs.driven(drives), shape=(1,))
+        return replace(start, order=2, inputs=inputs, poses=chart.poses(column, second),
+                       failed=np.zeros((1, 1), dtype=int), time=np.full(1, self.time))  # fmt: skip
+
+
+def _coordinates(pose: Pose) -> tuple[float, float, float]:
+    z = complex(_number(pose.z.c[0]))
+    return z.real, z.imag, float(_number(pose.angle.c[0]))
+
+
+def _pose(x: Number, v: Number, a: Number) -> Pose:
+    """Return a pose by its coordinates, their rates and accelerations."""
+    u = np.exp(1j * x[2])
+    second = (1j * a[2] - np.square(v[2])) * u / 2.0
+    z = Series((x[0] + 1j * x[1], v[0] + 1j * v[1], (a[0] + 1j * a[1]) / 2.0))
+    return Pose(z, Series((u, 1j * v[2] * u, second)), Series((x[2], v[2], a[2] / 2.0)))
+
+
+def _number(value: Any) -> Any:
+    """Return the last of a column, a number as it is."""
+    return np.ravel(value)[-1].item() if isinstance(value, np.ndarray) else value
+
+
+def _row(value: Any) -> Number:
+    return np.ravel(value)
+
+
+def _value(series: Series, k: int) -> float:
+    return float(_number(series.c[k])) if len(series.c) > k else 0.0
