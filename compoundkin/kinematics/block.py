@@ -193,8 +193,10 @@ def with_poses(
     def put(series: Series, other: Series) -> Series:
         out = []
         for k in range(order + 1):
-            full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0.0 * series.c[0], shape))
-            full[at] = np.ravel(other.c[k]) if k < len(other.c) else 0.0
+            new = np.ravel(other.c[k]) if k < len(other.c) else 0.0
+            old = series.c[k] if k < len(series.c) else 0.0 * series.c[0]
+            full = np.array(np.broadcast_to(old, shape), dtype=np.result_type(old, new))
+            full[at] = new
             out.append(full)
         return Series(tuple(out))
 
