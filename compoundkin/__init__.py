@@ -73,7 +73,7 @@ if TYPE_CHECKING:
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
     from compoundkin.view.plot import plot
-    from compoundkin.view.report import page, report
+    from compoundkin.view.report import page, report, sheet
     from compoundkin.view.sketch import draw
 
 __version__ = VERSION
@@ -127,6 +127,7 @@ __all__ = [
     "roll",
     "roll_around",
     "save",
+    "sheet",
     "simulate",
     "singularities",
     "slide",
@@ -171,6 +172,7 @@ _LATE = {
     "quantity": "kinematics.quantities",
     "report": "view.report",
     "save": "files",
+    "sheet": "view.report.force_sheet",
     "simulate": "dynamics.simulation.forward_dynamics",
     "singularities": "analysis.singularities",
     "solve": "kinematics",

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.cli.drive_options import (
     DESIGN,
     HOLDING,
@@ -26,9 +27,9 @@ from compoundkin.cli.file_options import (
 )
 from compoundkin.cli.shell import working
 
-if TYPE_CHECKING:
-    pass
-
+SHEET = click.option(
+    "--sheet", is_flag=True, help="Write free bodies and equations of each link at one pose, to be printed."
+)
 ON = click.option("--on", "on", default="", metavar="LINK", help="Print all that acts on a link: its free body.")
 
 
@@ -39,6 +40,7 @@ Examples:
   compoundkin forces linkage.toml --speed 300rpm --step 1
   compoundkin forces linkage.toml --at 35 --statics
   compoundkin forces linkage.toml --at 35 --on rod
+  compoundkin forces linkage.toml --at 35 --statics --sheet -o sheet.html
   compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
   compoundkin forces linkage.toml -o forces.md
 """
@@ -49,24 +51,33 @@ Examples:
 @STATICS
 @HOLDING
 @ON
+@SHEET
 @report_or_table_options
 def command(
-    file: str, design: int, statics: bool, holding: str, on: str, form: str | None, path: str | None, **options: Any
-) -> int:
+    file: str, design: int, statics: bool, holding: str, on: str, sheet: bool, form: str | None, path: str | None,
+    **options: Any,
+) -> int:  # fmt: skip
     """Print forces in all pairs, efforts of drivers, the force on the frame.
 
     The mechanism states its units of length, mass and force, and has masses or loads. What is assumed comes first.
     With --output or -o PATH.csv it is a table with a row per pose. Exit code 3: some poses cannot be assembled.
     """
+    from compoundkin.view.report.force_sheet import sheet as force_sheet
     from compoundkin.view.report.forces_section import forces_report
 
-    tabulated = is_table(path, form, "--output" if options["outputs"] else "", f"--on {on}" if on else "")
+    if on and sheet:
+        raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))
+    report = "--sheet" if sheet else f"--on {on}" if on else ""
+    tabulated = is_table(path, form, "--output" if options["outputs"] else "", report)
     structure = solvable_structure(file, form, path if not tabulated else None)
     if on:
         structure.mechanism.link(on)
     forces = find_forces(solve_motion(structure, options), statics, holding)
     if tabulated:
         put_table(forces.table(*options["outputs"]), path)
+        return explain_gaps(forces.motion)
+    if sheet:
+        put_report(force_sheet(forces, design=design), form, path)
         return explain_gaps(forces.motion)
     with working("finding extremes"):
         result = forces_report(forces, design, on)

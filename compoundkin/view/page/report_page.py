@@ -28,9 +28,10 @@ from compoundkin.view.page.html_document import Document, asset, vendored_librar
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.live.compact_data import compact
 from compoundkin.view.page.live.live_assets import FIGURES, PANEL_SCRIPTS, PANEL_STYLES, is_live, scripts_of, styles_of
-from compoundkin.view.page.markup import data_script, element, safe
+from compoundkin.view.page.markup import data_script, element, lines, safe
 from compoundkin.view.page.viewer import PANEL_KEY, PANEL_TITLE, Viewer, panel_section, viewer_of
 from compoundkin.view.plot import Plot, bands, contributions, improvement, scatter_matrix, starts
+from compoundkin.view.report.force_sheet import ForceSheet
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Outcome, Section, Subject, TableBlock
@@ -234,12 +235,29 @@ def with_viewer(document: Document, moving: Viewer) -> Document:
 def study_figures(found: object) -> dict[str, str]:
     """Return the plots of a study, a tolerance analysis or a search as figures, by the keys of sections.
 
-    Without Matplotlib there are none.
+    Without Matplotlib there are none. Of a sheet of forces they are the free body and the polygon of each link.
     """
+    if isinstance(found, ForceSheet):
+        return (
+            {key: sheet_figures(found, link) for key, link in found.links.items()}
+            if _is_legible(found.forces.motion)
+            else {}
+        )
     pictures: dict[str, str] = {}
     for key, plot, caption in _study_plots(found) if find_spec("matplotlib") else ():
         pictures[key] = pictures.get(key, "") + _plot_figure(plot, caption)
     return pictures
+
+
+def sheet_figures(known: ForceSheet, link: str) -> str:
+    """Return the free body of a link beside the polygon of its forces, where two or more act."""
+    design, pose = known.scene.pose
+    body = draw(known.forces, kind="free-bodies", pose=pose, design=design, link=link)
+    figures = [picture_figure(body, f"The free body of {link}.")]
+    if sum(bool(one.force) for one in known.acting[link]) > 1:
+        polygon = draw(known.forces, kind="force-polygon", pose=pose, design=design, link=link)
+        figures.append(picture_figure(polygon, f"The polygon of the forces on {link}."))
+    return element("div", lines(figures), class_="beside")
 
 
 def _plot_figure(plot: Plot, caption: str) -> str:

@@ -6,7 +6,8 @@ A section is made of blocks (`report_data`); functions that make sections know n
 
 from __future__ import annotations
 
+from compoundkin.view.report.force_sheet import sheet
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.whole_report import page, report
 
-__all__ = ["Report", "page", "report"]
+__all__ = ["Report", "page", "report", "sheet"]
