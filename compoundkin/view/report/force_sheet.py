@@ -144,7 +144,7 @@ class ForceSheet:
 
 
 @dataclass(frozen=True)
-class Term:
+class EquationTerm:
     """A term of an equation: symbols and numbers of its factors."""
 
     symbols: tuple[str, ...]
@@ -158,11 +158,11 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Equation:
+class BalanceEquation:
     """An equation of equilibrium: its name, its terms, its unit, and what is rounding in it."""
 
     name: str
-    terms: tuple[Term, ...]
+    terms: tuple[EquationTerm, ...]
     unit: str
 
     def blocks(self, is_zero: bool) -> Iterator[FormulaBlock]:
@@ -307,23 +307,23 @@ class FreeBody:
         return f"Points{f' [{unit}]' if unit else ''}: {', '.join(places)}."
 
     @cached_property
-    def equations(self) -> tuple[Equation, Equation, Equation]:
+    def equations(self) -> tuple[BalanceEquation, BalanceEquation, BalanceEquation]:
         """The sums of forces along x and y, and of moments about the point of reference."""
         units = self.known.forces.units
         along = (
-            tuple(Term((f"{_symbol(one.name)},{axis}",), (value,)) for one in self.acting
+            tuple(EquationTerm((f"{_symbol(one.name)},{axis}",), (value,)) for one in self.acting
                   if abs(value := getattr(one.force, part)) > self.known.floor)
             for axis, part in (("x", "real"), ("y", "imag"))
         )  # fmt: skip
-        x, y = (Equation(f"ΣF{axis}", terms, units.force) for axis, terms in zip("xy", along, strict=True))
-        return x, y, Equation(f"ΣM({self.reference})", tuple(self._moments()), units.moment)
+        x, y = (BalanceEquation(f"ΣF{axis}", terms, units.force) for axis, terms in zip("xy", along, strict=True))
+        return x, y, BalanceEquation(f"ΣM({self.reference})", tuple(self._moments()), units.moment)
 
-    def _moments(self) -> Iterator[Term]:
+    def _moments(self) -> Iterator[EquationTerm]:
         """Yield the terms of the sum of moments."""
         base, floor = self.points.get(self.reference, 0j), self.known.floor
         for one in self.acting:
             if one.moment:
-                yield Term((_symbol(one.turning),), (one.moment,))
+                yield EquationTerm((_symbol(one.turning),), (one.moment,))
             letter = self._letter(self.points, one.at)
             arm = one.at - base
             for axis, lever, across, value in (
@@ -332,7 +332,7 @@ class FreeBody:
             ):
                 if abs(lever) > SAME_POINT * self.known.size and abs(value) > floor:
                     symbols = f"({axis}{letter} - {axis}{self.reference})", f"{_symbol(one.name)},{across}"
-                    yield Term(symbols, (lever, value), axis == "y")
+                    yield EquationTerm(symbols, (lever, value), axis == "y")
 
 
 def _symbol(name: str) -> str:
