@@ -172,7 +172,7 @@ _LATE = {
     "quantity": "kinematics.quantities",
     "report": "view.report",
     "save": "files",
-    "sheet": "view.report.force_sheet",
+    "sheet": "view.report.forces_section",
     "simulate": "dynamics.simulation.forward_dynamics",
     "singularities": "analysis.singularities",
     "solve": "kinematics",

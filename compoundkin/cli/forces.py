@@ -62,8 +62,8 @@ def command(
     The mechanism states its units of length, mass and force, and has masses or loads. What is assumed comes first.
     With --output or -o PATH.csv it is a table with a row per pose. Exit code 3: some poses cannot be assembled.
     """
-    from compoundkin.view.report.force_sheet import sheet as force_sheet
     from compoundkin.view.report.forces_section import forces_report
+    from compoundkin.view.report.forces_section import sheet as force_sheet
 
     if on and sheet:
         raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))

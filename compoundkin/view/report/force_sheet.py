@@ -13,28 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import degrees
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.link_wrench import INERTIA, WEIGHT
 from compoundkin.model.geometry import FRAME
-from compoundkin.view.report.forces_section import assumptions
-from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import (
     Alert,
     Block,
     Cell,
     Column,
     FormulaBlock,
-    Outcome,
     Paragraph,
-    Section,
     TableBlock,
 )
-from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import brief, column_texts, listed, number_text, point_text
 from compoundkin.view.sketch.force_arrows import NOTHING, ActingForce, acting_forces, forces_in, largest_force
-from compoundkin.view.sketch.picture_options import pose_notes, scene_of
+from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.scene import Scene
 
 # Places nearer to each other than this part of the mechanism's size are one point.
@@ -43,37 +37,12 @@ SAME_POINT = 1e-9
 MASS_CENTRE, NAMELESS = "S", "K"
 # The prefix of the keys of the sections of links.
 SHEET = "sheet"
-
-
-@checked
-def sheet(forces: Forces, at: Any = None, *, pose: int | None = None, design: int = 0) -> Report:
-    """Return the sheet of forces at one pose: free bodies and equations of equilibrium, a page for each link.
-
-    The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the one with the
-    index `pose`; else the one nearest to the mechanism's drawing. Symbols are those of the pictures of free bodies. The
-    report is a text, Markdown, or a page with pictures that is printed on A4. Raises InvalidInput, UnknownName and
-    NotAssembled for a pose that does not exist.
-
-    Source: free-body diagrams and three equations a body, any course of statics.
-
-    >>> from compoundkin.dynamics.force_analysis import force_analysis
-    >>> from compoundkin.kinematics import solve
-    >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import force
-    >>> from compoundkin.model.mechanism import Mechanism
-    >>> parts = link("frame", A=0), link("arm", A=0, B=2), drive("arm"), force("arm", (0, -30), at="B", name="F")
-    >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})
-    >>> of_arm = sheet(force_analysis(solve(arm, [0.0]))).section("sheet-2")
-    >>> [block.text for block in of_arm.blocks if isinstance(block, FormulaBlock)][-2:]
-    ['ΣM(A) = T₂ + (xB - xA)·F,y = 0', 'ΣM(A) = 60 + 2·(-30) = 0']
-    """
-    known = ForceSheet.at_pose(forces, at, pose, design)
-    first = Section(SHEET, "Forces at one pose", tuple(known.first_page()))
-    links = [name for name in known.scene.legend if known.acting[name]]
-    bodies = [Section(f"{SHEET}-{known.scene.numbers[name]}", f"{known.scene.numbers[name]} {name}",
-                      tuple(known.page(name))) for name in links]  # fmt: skip
-    outcome = Outcome(True, 1, 1)
-    return Report(forces.mechanism.title, (first, *bodies), outcome, design=design, studied=known)
+# What the symbols mean.
+SYMBOLS = (
+    "Links have numbers: F₂₃ is the force of link 2 on link 3, M₂₃ its moment, T₂ the torque and P₂ the thrust of a"
+    " driver on link 2, m₂g a weight, −m₂a₂ and −J₂α₂ inertia. F₂₃,x is a component, xB a place. Axes are those of the"
+    " frame; moments, torques and directions are positive counterclockwise."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,21 +75,6 @@ class ForceSheet:
         """The size of the mechanism."""
         found: float = self.scene.mechanism.geometry.size
         return found
-
-    def first_page(self) -> Iterator[Block]:
-        """Yield the pose, the assumptions, and the numbers of the links."""
-        sample = Sample(self.forces.motion, self.scene.pose[0])
-        yield Paragraph(f"Pose: {', '.join(pose_notes(self.scene))}.")
-        yield Paragraph(f"Assumed: {'; '.join(assumptions(sample, self.forces))}.")
-        yield Paragraph(
-            "Links have numbers: F₂₃ is the force of link 2 on link 3, M₂₃ its moment, T₂ the torque and P₂ the thrust"
-            " of a driver on link 2, m₂g a weight, −m₂a₂ and −J₂α₂ inertia. F₂₃,x is a component, xB a place. Axes are"
-            " those of the frame; moments, torques and directions are positive counterclockwise."
-        )
-        rows = tuple((number, name, len(self.acting[name])) for name, number in self.scene.legend.items())
-        yield TableBlock(
-            (Column("no.", style="each"), Column("link"), Column("forces and moments", style="each")), rows
-        )
 
     def page(self, link: str) -> Iterator[Block]:
         """Yield what acts on a link, and its equations."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.checks import verify
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.dynamics.driver_course import speed_text
 from compoundkin.dynamics.forces import Forces
@@ -22,12 +23,14 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import LoadFunction, LoadTable
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.units import customary_unit
+from compoundkin.view.report.force_sheet import SHEET, SYMBOLS, ForceSheet
 from compoundkin.view.report.outputs_section import extremes_columns, extremes_row
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.verification_sections import checks_table, outcome_of
 from compoundkin.view.report.wording import counted, listed, number_text, point_text, range_text
+from compoundkin.view.sketch.picture_options import pose_notes
 
 BALANCES = "balances written anew by Newton and Euler, and virtual work"
 # At most so many singular poses, and stretches of self-locking or wedging, are listed.
@@ -48,6 +51,47 @@ def forces_report(forces: Forces, design: int = 0, on: str = "") -> Report:
     section = free_body_section(forces, on, design) if on else forces_section(forces, design)
     outcome = outcome_of(forces.motion, verify(forces))
     return Report(forces.motion.mechanism.title, (section,), outcome, forces.motion, design=design)
+
+
+@checked
+def sheet(forces: Forces, at: Any = None, *, pose: int | None = None, design: int = 0) -> Report:
+    """Return the sheet of forces at one pose: free bodies and equations of equilibrium, a page for each link.
+
+    The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the one with the
+    index `pose`; else the one nearest to the mechanism's drawing. Symbols are those of the pictures of free bodies. The
+    report is a text, Markdown, or a page with pictures that is printed on A4. Raises InvalidInput, UnknownName and
+    NotAssembled for a pose that does not exist.
+
+    Source: free-body diagrams and three equations a body, any course of statics.
+
+    >>> from compoundkin.dynamics.force_analysis import force_analysis
+    >>> from compoundkin.kinematics import solve
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.loads import force
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> parts = link("frame", A=0), link("arm", A=0, B=2), drive("arm"), force("arm", (0, -30), at="B", name="F")
+    >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})
+    >>> of_arm = sheet(force_analysis(solve(arm, [0.0]))).section("sheet-2")
+    >>> [block.text for block in of_arm.blocks if hasattr(block, 'latex')][-2:]
+    ['ΣM(A) = T₂ + (xB - xA)·F,y = 0', 'ΣM(A) = 60 + 2·(-30) = 0']
+    """
+    known = ForceSheet.at_pose(forces, at, pose, design)
+    first = Section(SHEET, "Forces at one pose", tuple(_sheet_blocks(known)))
+    links = [name for name in known.scene.legend if known.acting[name]]
+    bodies = [Section(f"{SHEET}-{known.scene.numbers[name]}", f"{known.scene.numbers[name]} {name}",
+                      tuple(known.page(name))) for name in links]  # fmt: skip
+    outcome = Outcome(True, 1, 1)
+    return Report(forces.mechanism.title, (first, *bodies), outcome, design=design, studied=known)
+
+
+def _sheet_blocks(known: ForceSheet) -> Iterator[Block]:
+    """Yield the pose, the assumptions, the meaning of the symbols, and the numbers of the links."""
+    sample = Sample(known.forces.motion, known.scene.pose[0])
+    yield Paragraph(f"Pose: {', '.join(pose_notes(known.scene))}.")
+    yield Paragraph(f"Assumed: {'; '.join(assumptions(sample, known.forces))}.")
+    yield Paragraph(SYMBOLS)
+    rows = tuple((number, name, len(known.acting[name])) for name, number in known.scene.legend.items())
+    yield TableBlock((Column("no.", style="each"), Column("link"), Column("forces and moments", style="each")), rows)
 
 
 def force_checks_sections(sample: Sample, forces: Forces | None) -> tuple[Section, ...]:
