@@ -18,6 +18,7 @@ from compoundkin.cli.drive_options import (
     force_options,
     force_picture,
     has_force_picture,
+    load_options,
     pose_options,
     solve_motion_at,
 )
@@ -93,6 +94,7 @@ Examples:
     "--singularities", is_flag=True, help="Instead: the singular poses of the motion, the branches that meet there."
 )
 @force_options
+@load_options
 @pose_options
 @click.option("--dimensions", is_flag=True, help="Add lengths, angles, radii, offsets of pivots and guides.")
 @LABELS
@@ -103,11 +105,12 @@ def command(file: str, path: str | None, **options: Any) -> None:
 
     A mechanism that cannot be solved is shown as drawn.
     """
+    from compoundkin.cli.typed_values import with_loads
     from compoundkin.structure import decompose
 
     if path is not None:
         file_format("picture", path)
-    put_picture(_picture(decompose(load_mechanism(file)), options), path)
+    put_picture(_picture(decompose(with_loads(load_mechanism(file), options)), options), path)
 
 
 def _picture(structure: Structure, options: Mapping[str, Any]) -> Picture:

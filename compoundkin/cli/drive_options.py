@@ -68,6 +68,25 @@ FORCE_OPTIONS: tuple[Any, ...] = (
 )
 
 
+# Masses and loads beside those of the file; `typed_values.with_loads` reads them.
+LOAD_OPTIONS: tuple[Any, ...] = (
+    click.option("--load", "forces_at", multiple=True, metavar="POINT=X,Y",
+                 help='A force on a point, or LINK.POINT: C=0,-500, "C=0,-0.5 kN". In the axes of the frame.'),
+    click.option("--torque", "torques", multiple=True, metavar="LINK=VALUE",
+                 help='A torque on a link, counterclockwise: rocker=-120, "rocker=-0.12 N m".'),
+    click.option("--mass", "masses", multiple=True, metavar="LINK=VALUE",
+                 help='The mass of a link, a uniform body: arm=15, "arm=150 g".'),
+    click.option("--gravity", "gravity", metavar="X,Y", help="In m/s^2: 0,-9.81."),
+    click.option("--units", "units", metavar="LENGTH,MASS,FORCE",
+                 help="Of a file without them: mm,kg,N; its own unit of length, kg and N if left out."),
+)  # fmt: skip
+
+
+def load_options(command: F) -> F:
+    """Add the options of masses and loads beside those of the file."""
+    return _with_options(command, LOAD_OPTIONS)
+
+
 def names_option(flag: str, name: str, metavar: str, text: str) -> Callable[[F], F]:
     """Return an option of names, each given by itself or several with commas between them."""
     return click.option(flag, name, multiple=True, metavar=metavar, callback=lambda _c, _p, given: split_names(given),

@@ -132,12 +132,18 @@ def _checked_path(context: click.Context, _: click.Parameter, path: str | None) 
     return path
 
 
-def solvable_structure(file: str, form: str | None, path: str | None) -> Structure:
-    """Return the structure of a file. One with faults is reported, and the command exits."""
+def solvable_structure(
+    file: str, form: str | None, path: str | None, change: Callable[[Mechanism], Mechanism] | None = None
+) -> Structure:
+    """Return the structure of a file, its mechanism changed first.
+
+    One with faults is reported, and the command exits.
+    """
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
-    structure = decompose(load_mechanism(file))
+    mechanism = load_mechanism(file)
+    structure = decompose(mechanism if change is None else change(mechanism))
     if structure.faults:
         put_report(report(structure), form, path)
         raise click.exceptions.Exit(report_unsolvable(len(structure.faults)))

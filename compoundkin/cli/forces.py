@@ -14,6 +14,7 @@ from compoundkin.cli.drive_options import (
     drive_options,
     explain_gaps,
     find_forces,
+    load_options,
     solve_motion,
 )
 from compoundkin.cli.file_options import (
@@ -41,6 +42,7 @@ Examples:
   compoundkin forces linkage.toml --at 35 --statics
   compoundkin forces linkage.toml --at 35 --on rod
   compoundkin forces linkage.toml --at 35 --statics --sheet -o sheet.html
+  compoundkin forces scissor-lift --at 1.6 --statics --load T=0,-3000
   compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
   compoundkin forces linkage.toml -o forces.md
 """
@@ -50,6 +52,7 @@ Examples:
 @DESIGN
 @STATICS
 @HOLDING
+@load_options
 @ON
 @SHEET
 @report_or_table_options
@@ -62,6 +65,7 @@ def command(
     The mechanism states its units of length, mass and force, and has masses or loads. What is assumed comes first.
     With --output or -o PATH.csv it is a table with a row per pose. Exit code 3: some poses cannot be assembled.
     """
+    from compoundkin.cli import typed_values
     from compoundkin.view.report.forces_section import forces_report
     from compoundkin.view.report.forces_section import sheet as force_sheet
 
@@ -69,7 +73,9 @@ def command(
         raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))
     report = "--sheet" if sheet else f"--on {on}" if on else ""
     tabulated = is_table(path, form, "--output" if options["outputs"] else "", report)
-    structure = solvable_structure(file, form, path if not tabulated else None)
+    structure = solvable_structure(
+        file, form, path if not tabulated else None, lambda own: typed_values.with_loads(own, options)
+    )
     if on:
         structure.mechanism.link(on)
     forces = find_forces(solve_motion(structure, options), statics, holding)

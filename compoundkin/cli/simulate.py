@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import SUFFIXES, Kind, alternatives, file_format, suffix_of
-from compoundkin.cli.drive_options import MODE, names_option, read_assembly_modes
+from compoundkin.cli.drive_options import MODE, load_options, names_option, read_assembly_modes
 from compoundkin.cli.file_options import mechanism_argument, put_report, solvable_structure, to_file
 from compoundkin.cli.shell import counting, say, working
 from compoundkin.model.attributes import SPEED
@@ -43,6 +43,7 @@ Examples:
 @click.option("--step", type=float, metavar="SECONDS", help="From one pose of the results to the next.")
 @click.option("--tolerance", type=float, default=1e-10, show_default=True, help="The error of a step.")
 @MODE
+@load_options
 @names_option("--output", "outputs", "QUANTITY",
               "Columns of a table, such as G.velocity, A.force; repeat it, or write commas.")  # fmt: skip
 @to_file(f"Write {alternatives('table')}, {alternatives('animation')}, or the report as .html, .md or .txt.")
@@ -51,10 +52,11 @@ def command(file: str, path: str | None, outputs: tuple[str, ...], **options: An
 
     Its drivers do not drive: their coordinates are computed. Those with a law follow it. The energy error is reported.
     """
+    from compoundkin.cli.typed_values import with_loads
     from compoundkin.view.report.motion_report import simulation_report
 
     kind = output_kind(path)
-    structure = solvable_structure(file, None, None)
+    structure = solvable_structure(file, None, None, lambda own: with_loads(own, options))
     found = run_simulation(structure, options)
     if path is None or kind == "report":
         put_report(simulation_report(found), None, path)

@@ -1,4 +1,4 @@
-"""Values of drivers, rates and assembly modes as they are written on the command line."""
+"""Values of drivers, rates, masses and loads as they are written on the command line."""
 
 from __future__ import annotations
 
@@ -9,10 +9,15 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import Number, degrees, first_entry
-from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.base.display import count_phrase
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.files.read_values import MOST_VALUES, rate, spaced, warn_of_radians, worded_rate, written_end
 from compoundkin.kinematics.driver_values import FULL_TURN
-from compoundkin.model.elements import Drive
+from compoundkin.model.elements import Drive, Item
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads import force, gravity, mass, torque
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.units import KNOWN, Units, as_units
 from compoundkin.structure import Structure
 
 HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
@@ -153,6 +158,140 @@ def _rate(text: str, option: str, name: str, is_angle: bool) -> float:
     if not is_angle:
         raise _invalid(where, f"{text!r} is not a valid speed", "write lengths a second")
     return float(rate(worded, where, True))
+
+
+HOW_LOADS = {
+    "--load": 'write POINT=X,Y, such as C=0,-500 or "C=0,-0.5 kN"',
+    "--torque": 'write LINK=VALUE, such as rocker=-120 or "rocker=-0.12 N m"',
+    "--mass": 'write LINK=VALUE, such as arm=15 or "arm=150 g"',
+    "--gravity": "write two numbers in m/s^2: 0,-9.81",
+    "--units": "write a unit of length, of mass and of force: mm,kg,N",
+}
+
+
+def with_loads(mechanism: Mechanism, options: Mapping[str, Any]) -> Mechanism:
+    """Return the mechanism with the masses and loads of the command line, which replace those of the same name.
+
+    Raises InvalidInput for what cannot be read, UnknownName for unknown points and links.
+    """
+    given = {option: options[name] for option, name in LOADS.items() if options[name]}
+    if not given:
+        return mechanism
+    units = _units(mechanism, options["units"])
+    items = [_force(mechanism, units, text) for text in options["forces_at"]]
+    for text in options["torques"]:
+        link, (value,) = _of_link(mechanism, "--torque", text, _moments(units))
+        items.append(torque(link, value, name=f"torque {link}"))
+    for text in options["masses"]:
+        link, (value,) = _of_link(mechanism, "--mass", text, _sizes("mass", units.mass))
+        items.append(mass(link, value))
+    if options["gravity"]:
+        x, y = _measured("--gravity", options["gravity"], options["gravity"], 2, {})
+        items.append(gravity(x, y))
+    twice = next((one for k, one in enumerate(items) if _key(one) in map(_key, items[:k])), None)
+    if twice is not None:
+        raise _invalid("--load, --torque, --mass", f"two are on {_key(twice)[-1]}", "add them up, or leave one out")
+    return mechanism.replace(*items, **({} if mechanism.units is not None else {"unit": "", "units": units}))
+
+
+# The options of masses and loads, by their values' names.
+LOADS = {"--load": "forces_at", "--torque": "torques", "--mass": "masses", "--gravity": "gravity", "--units": "units"}
+
+
+def _key(item: Item) -> tuple[str, ...]:
+    """Return what a mass or a load replaces."""
+    return type(item).__name__, str(getattr(item, "name", "")), str(getattr(item, "link", ""))
+
+
+def _force(mechanism: Mechanism, units: Units, text: str) -> Item:
+    """Return a force on a pin, or on a point of one link."""
+    place, x, y = _named(mechanism, "--load", text, 2, _sizes("force", units.force))
+    link, _, letter = place.rpartition(".")
+    carriers = mechanism.carriers
+    if letter not in carriers:
+        raise UnknownName(
+            Problem(f"--load {text}", f"there is no point {letter!r}", suggestion(letter, list(carriers)))
+        )
+    if link and link not in mechanism.links:
+        raise UnknownName(
+            Problem(f"--load {text}", f"there is no link {link!r}", suggestion(link, list(mechanism.links)))
+        )
+    if link and link not in carriers[letter]:
+        raise _invalid(f"--load {text}", f"{link} has no point {letter}", f"it is on {', '.join(carriers[letter])}")
+    if set(carriers[letter]) == {FRAME}:
+        raise _invalid(
+            f"--load {text}", f"{letter} is on the frame alone, which holds every force", "name another point"
+        )
+    if not link and len(carriers[letter]) > 1:
+        return force(letter, (x, y), name=f"load {letter}")
+    return force(link or carriers[letter][0], (x, y), at=letter, name=f"load {letter}")
+
+
+def _of_link(mechanism: Mechanism, option: str, text: str, sizes: Mapping[str, float]) -> tuple[str, tuple[float]]:
+    """Return a link and its value."""
+    name, value = _named(mechanism, option, text, 1, sizes)
+    if name not in mechanism.links:
+        where = f"{option} {text}"
+        raise UnknownName(Problem(where, f"there is no link {name!r}", suggestion(name, list(mechanism.links))))
+    return name, (value,)
+
+
+def _named(mechanism: Mechanism, option: str, text: str, count: int, sizes: Mapping[str, float]) -> tuple[Any, ...]:
+    """Return a name and its numbers."""
+    name, equals, value = text.partition("=")
+    if not (equals and name.strip()):
+        raise _invalid(f"{option} {text}", "it names nothing", HOW_LOADS[option])
+    return name.strip(), *_measured(option, text, value, count, sizes)
+
+
+def _measured(option: str, text: str, value: str, count: int, sizes: Mapping[str, float]) -> list[float]:
+    """Return numbers in the mechanism's units; `sizes` are those of the units that may stand behind them."""
+    where, how = f"{option} {text}", HOW_LOADS[option]
+    *first, last = value.split(",")
+    number, _, unit = last.strip().partition(" ")
+    unit = unit.strip()
+    if unit and unit not in sizes:
+        raise _invalid(where, f"{unit!r} is no unit here", suggestion(unit, list(sizes)) if sizes else how)
+    numbers = [read_number(part, where, how) for part in (*first, number)]
+    if len(numbers) != count:
+        raise _invalid(where, f"{count_phrase(len(numbers), 'number')} instead of {count}", how)
+    return [one * sizes.get(unit, 1.0) for one in numbers]
+
+
+def _sizes(kind: str, own: str) -> dict[str, float]:
+    """Return how many of a mechanism's own unit of mass or force each unit has."""
+    return {name: size / KNOWN[kind][own] for name, size in KNOWN[kind].items()}
+
+
+def _moments(units: Units) -> dict[str, float]:
+    """Return how many of a mechanism's unit of moments each unit has."""
+    forces, lengths = _sizes("force", units.force), _sizes("length", units.length)
+    return {f"{force} {length}": a * b for force, a in forces.items() for length, b in lengths.items()}
+
+
+def _units(mechanism: Mechanism, given: str | None) -> Units:
+    """Return the mechanism's units; of one without, those given, else its unit of length, kg and N."""
+    if mechanism.units is not None:
+        if given:
+            own = mechanism.units
+            what = f"the file has units: {own.length}, {own.mass}, {own.force}"
+            raise _invalid(f"--units {given}", what, "leave the option out")
+        return mechanism.units
+    words = [word.strip() for word in given.split(",")] if given else [mechanism.unit, "kg", "N"]
+    if len(words) != 3:
+        raise _invalid(f"--units {given}", f"{count_phrase(len(words), 'unit')} instead of 3", HOW_LOADS["--units"])
+    if not given and mechanism.unit not in KNOWN["length"]:
+        what = (
+            f"the file's unit of length, {mechanism.unit!r}, has no size" if mechanism.unit else "the file has no units"
+        )
+        raise _invalid("--units", what, HOW_LOADS["--units"])
+    found = as_units(dict(zip(KNOWN, words, strict=True)))
+    assert found is not None
+    if given and mechanism.unit in KNOWN["length"] and found.length != mechanism.unit:
+        raise _invalid(
+            f"--units {given}", f"the file's lengths are in {mechanism.unit}", f"begin with {mechanism.unit}"
+        )
+    return found
 
 
 def _by_driver(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:

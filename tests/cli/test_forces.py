@@ -129,3 +129,76 @@ def test_wrong_input(run: Run, args: tuple[str, ...], said: str) -> None:
     result = run(*args)
     assert result.exit_code != 0
     assert said in result.output + str(result.exception)
+
+
+def test_the_statics_of_a_lift_are_three_commands(run: Run, tmp_path: Path) -> None:
+    """Those of the page; y = 2 sqrt(L^2 - x^2) gives the thrust by virtual work."""
+    page = (Path(__file__).parents[2] / "docs" / "cli.md").read_text(encoding="utf-8")
+    section = page[page.index("## Forces") : page.index("## Equations")]
+    commands = [line.split()[1:] for line in section.splitlines() if line.startswith("    compoundkin ")]
+    assert len(commands) == 3
+    for command in commands:
+        found = run(*command)
+        assert found.exit_code == 0, found.output
+    told = json.loads(run(*commands[1], "--format", "json").stdout)
+    tables = [block for block in told["sections"]["forces"]["blocks"] if block["kind"] == "table"]
+    (drivers,) = [table for table in tables if table["columns"][0]["name"] == "driver"]
+    assert drivers["rows"][0][:3] == ["foot-block", "thrust", "N"]
+    assert drivers["rows"][0][3] == pytest.approx(-3000 * 2 * 1.6 / 1.2, rel=1e-12)
+    assert "-8000 N" in section
+    assert "The free body of platform" in (tmp_path / "lift.html").read_text(encoding="utf-8")
+
+
+def efforts(run: Run, *options: str) -> float:
+    found = run("forces", "scissor-lift", "--at", "1.6", "--statics", "--output", "foot-block.effort", *options)
+    assert found.exit_code == 0, found.output
+    head, row = found.stdout.splitlines()[-2:]
+    return float(row.split(",")[[name.partition(" ")[0] for name in head.split(",")].index("foot-block.effort")])
+
+
+def test_loads_of_the_command_line_are_in_their_units(run: Run) -> None:
+    lifted = -2 * 1.6 / 1.2  # dy/dx of the platform; its arms 1 and 2 are lifted by a quarter of that
+    assert efforts(run, "--load", "platform.T=0,-3 kN") == pytest.approx(3000 * lifted)
+    assert efforts(run, "--load", "E=70,-100", "--load", "T=0,-200") == pytest.approx(300 * lifted)
+    weighed = "--mass", "platform=60", "--mass", "arm-1=15000 g", "--gravity", "0,-10"
+    assert efforts(run, *weighed) == pytest.approx((600 + 150 / 4) * lifted)
+    # arm 1 turns by dphi = -dx / (L sin phi)
+    assert efforts(run, "--torque", "arm-1=120 N mm") == pytest.approx(0.12 / 1.2)
+    assert efforts(run, "--units", "m,lb,lbf", "--load", "T=0,-3 N") == pytest.approx(3 / 4.4482216152605 * lifted)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--load", "Q=0,-3"), "there is no point 'Q'"),
+        (("--load", "arm-9.T=0,-3"), "did you mean 'arm-4'?"),
+        (("--load", "arm-1.T=0,-3"), "it is on platform"),
+        (("--load", "T=0,-3,4"), "3 numbers instead of 2"),
+        (("--load", "T=0,-3 kNN"), "did you mean 'kN'?"),
+        (("--load", "0,-3"), "it names nothing"),
+        (("--load", "T=0,x"), "'x' is not a number"),
+        (("--load", "T=0,-1", "--load", "platform.T=0,-2"), "two are on platform"),
+        (("--torque", "arm-9=1"), "there is no link 'arm-9'"),
+        (("--torque", "arm-1=1 N"), "'N' is no unit here"),
+        (("--mass", "arm-1=-3"), "a mass is above zero"),
+        (("--mass", "frame=3"), "frame"),
+        (("--gravity", "9"), "1 number instead of 2"),
+        (("--units", "m,kg", "--load", "T=0,-1"), "2 units instead of 3"),
+        (("--units", "mm,kg,N", "--load", "T=0,-1"), "lengths are in m"),
+        (("--units", "m,kg,M", "--load", "T=0,-1"), "no known unit of force"),
+    ],
+)
+def test_loads_that_cannot_be_are_explained(run: Run, options: tuple[str, ...], told: str) -> None:
+    found = run("forces", "scissor-lift", "--at", "1.6", *options)
+    assert found.exit_code == 2
+    assert told in " ".join(found.output.split())
+
+
+def test_units_are_needed_once(run: Run) -> None:
+    assert "write a unit of length" in run("forces", "jansen-leg", "--load", "G=0,-3").output
+    assert "the file has units: mm, kg, N" in run("forces", "loaded", "--units", "mm,kg,N", "--load", "G=0,-3").output
+    assert run("draw", "scissor-lift", "--at", "1.6", "--load", "T=0,-3", "--free-bodies", "-o", "a.svg").exit_code == 0
+    fallen = run(
+        "simulate", "crank-rocker", "--until", "0.1", "--mass", "crank=2", "--gravity", "0,-9.81", "--units", "mm,kg,N"
+    )
+    assert fallen.exit_code == 0, fallen.output
