@@ -138,6 +138,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "quantity": {"motion": motion, "name": "C.x"},
         "rack": {"rack": "a", "pinion": "b", "name": "n", "through": "A", "at": "B", "angle": 0.0, "toward": None,
                  "radius": 1.0, "teeth": None, "module": None, "side": 1, "phase": None},
+        "release": {"pair": "A", "strength": 2.0, "until": 1.0, "over": "crank", "value": 1.0, "name": "n"},
         "report": {"what": motion, "outputs": (), "design": 0},
         "roll": {"link": "a", "on": "b", "through": "A", "at": "B", "angle": 0.0, "toward": None, "radius": 1.0,
                  "side": 1, "phase": None, "name": "n"},

@@ -219,13 +219,14 @@ def text_of(what: Forces | Simulation) -> str:
 
 @_parts.register
 def _(what: Forces | Simulation) -> Iterator[str]:
-    yield from forces_html(what, len(what.motion.mechanism.links) <= MOST_LINKS)
+    motion = what.phases[0].motion if isinstance(what, Simulation) else what.motion
+    yield from forces_html(what, len(motion.mechanism.links) <= MOST_LINKS)
 
 
 def forces_html(what: Forces | Simulation, drawn: bool) -> Iterator[str]:
     """Yield a picture, if `drawn`, and tables of forces or a simulation."""
     if isinstance(what, Simulation):
-        yield framed_player(what.motion) if drawn else ""
+        yield from (framed_player(phase.motion) for phase in what.phases if drawn)
         yield from plain_sections(simulation_report(what).sections)
         return
     sample = Sample(what.motion)

@@ -74,6 +74,7 @@ def loaded(draw: st.DrawFn) -> ck.Mechanism:
         ck.stop("stroke", low=draw(finite), restitution=draw(st.none() | st.floats(0.0, 1.0))),
         ck.stop("D", low=-1e9, high=draw(st.floats(-1e8, 1e8)), stiffness=draw(positive), damping=draw(positive)),
         ck.latch("D", draw(finite), over="stroke", value=draw(finite), strength=draw(st.none() | positive)),
+        ck.release("C", until=draw(positive), strength=draw(st.none() | positive), over="D", value=draw(finite)),
         ck.latch("stroke", until=draw(positive), over="crank", value=draw(finite)),
         ck.friction("B", draw(positive), radius=draw(positive)),
         ck.friction("stroke", draw(positive), length=draw(st.none() | positive)),

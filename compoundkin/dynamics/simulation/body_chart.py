@@ -109,6 +109,8 @@ class BodyChart:
     held: ClassVar[None] = None
     stop_contacts: tuple[StopContact, ...] = ()  # those at stops and in latches
     closed: tuple[StopContact, ...] = ()
+    phase: int = 0
+    open_contacts: tuple[Any, ...] = ()  # those that have let go
     adds_stops: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

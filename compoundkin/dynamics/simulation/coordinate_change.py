@@ -135,10 +135,20 @@ def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> D
     return FrictionTable(start, free, laws)
 
 
+def integrable(chart: DriverChart, time: float, state: Number) -> tuple[Chart, Number]:
+    """Return the chart to begin in, with its state: with several drivers the coordinates of all links."""
+    if isinstance(chart, TabulatedChart):
+        return chart, state
+    n = len(chart.free)
+    found, begun = by_links(chart, chart.state(time, state[:n], state[n : 2 * n]))
+    return found, np.append(begun, state[-1])
+
+
 def by_links(chart: DriverChart, state: DriverState) -> tuple[BodyChart, Number]:
     """Return the chart of the coordinates of all links, and a state of drivers in it."""
     world = {link: _still(pose) for link, pose in state.block.world.items()}
-    found = BodyChart(chart.start, chart.free, chart.laws, world, chart.stop_contacts, chart.closed)
+    contacts = chart.stop_contacts, chart.closed, chart.phase, chart.open_contacts
+    found = BodyChart(chart.start, chart.free, chart.laws, world, *contacts)
     rates = [_rates(state.block.world[link]) for link in found.links]
     return found, np.concatenate([found.first, np.ravel(rates)])
 

@@ -63,6 +63,8 @@ class StateChart(Protocol):
     driven: dict[str, tuple[str, DrivenPair]]  # the drivers of pairs, by their names
     stop_contacts: tuple[Any, ...]  # those at stops and in latches
     closed: tuple[Any, ...]  # those of them that are closed
+    phase: int  # the number of the phase
+    open_contacts: tuple[Any, ...]  # the contacts that have let go
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""

@@ -7,7 +7,7 @@ every driver.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,13 +19,14 @@ from compoundkin.base.errors import FewDigits, InvalidInput, Problem, Unassemble
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, chart_of
+from compoundkin.dynamics.simulation.coordinate_change import Chart, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
-from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
+from compoundkin.dynamics.simulation.phases import Phase
+from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, load_breaks, watches
-from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart, counted_angles
+from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.curve.driver_path import drawn_value
@@ -73,7 +74,7 @@ def simulate(
     `events` are functions of the state by name, ``lambda state: state["B.y"] - 20``: a zero of one
     is an event, and the simulation stops there if `stop` names it. It stops at a travel limit of a guide, unless a
     coefficient of `restitution` (0 to 1) gives the rebound, and where a contact lifts off. At the ends of a `stop` it
-    goes on by what that says.
+    goes on by what that says, and where a `release` opens a pair in another one of its `phases`.
 
     The result is a motion in time at `times`, by default evenly spaced ones, with its forces and energies.
     The error of a step is `tolerance` of the drivers' values and speeds. Near a limit position of a driver another pair
@@ -102,15 +103,29 @@ def simulate(
     with np.errstate(all="ignore"):
         _check_inertia(chart, state)
         begin_at_stops(chart, state)
-        integrate(*_integrable(chart, state), course, progress)
+        integrate(*integrable(chart, 0.0, state), course, progress)
         course.events += idle_latches(course.steps[-1].chart, course.last)
         asked = _times(course, times)
-        stretches = course.at(asked)
-        motion = simulated_motion(stretches, _holding(course, asked))
-        energy = simulated_energy(motion, np.concatenate([one.states[-1, one.asked] for one in stretches]))
+        phases, energies = zip(*_phases(course, asked), strict=True)
+    energy = joined_energy(energies)
     _warn(energy, tolerance)
     counts = len(course.steps), course.evaluations
-    return Simulation(motion, energy, tuple(course.events), course.tolerance, *counts, course.losses)
+    return Simulation(phases, energy, tuple(course.events), course.tolerance, *counts, course.losses)
+
+
+def _phases(course: SimulatedCourse, times: Number) -> Iterator[tuple[Phase, SimulatedEnergy]]:
+    """Yield the phases with their energies; of several each has its first and its last time."""
+    stretches = course.at(times)
+    numbers = sorted({one.chart.phase for one in stretches})
+    for phase in numbers:
+        own = [one for one in stretches if one.chart.phase == phase]
+        first, last = float(own[0].times[0]), float(own[-1].times[-1])
+        if len(numbers) > 1:
+            own = [replace(one, asked=one.asked | np.isin(one.times, (first, last))) for one in own]
+        asked = np.concatenate([one.times[one.asked] for one in own])
+        motion = simulated_motion(own, _holding(course, phase, asked))
+        work = np.concatenate([one.states[-1, one.asked] for one in own])
+        yield Phase(first, last, motion), simulated_energy(motion, work)
 
 
 def _warn(energy: SimulatedEnergy, tolerance: float) -> None:
@@ -141,15 +156,6 @@ def _check_progress(progress: Callable[[int, int], None] | None) -> None:
     except Exception as error:  # whatever a user's function does
         remedy = "give a function of two numbers: how much is done, of how much"
         raise InvalidInput(Problem("progress", f"it cannot be called: {error}", remedy)) from error
-
-
-def _integrable(chart: DriverChart, state: Number) -> tuple[Chart, Number]:
-    """Return the chart to begin in, with its state: with several drivers the coordinates of all links."""
-    if isinstance(chart, TabulatedChart):
-        return chart, state
-    n = len(chart.free)
-    found, begun = by_links(chart, chart.state(0.0, state[:n], state[n : 2 * n]))
-    return found, np.append(begun, state[-1])
 
 
 def _check_inertia(chart: DriverChart, state: Number) -> None:
@@ -191,9 +197,9 @@ def _times(course: SimulatedCourse, times: Any) -> Number:
     return np.linspace(0.0, course.last, count + 1)
 
 
-def _holding(course: SimulatedCourse, times: Number) -> tuple[Effort, ...]:
+def _holding(course: SimulatedCourse, phase: int, times: Number) -> tuple[Effort, ...]:
     """Return what rigid stops and latches hold with, as loads over the motion: the drivers are left without effort."""
-    found = course.holding(times) if course.steps[-1].chart.adds_stops else {}
+    found = course.holding(phase, times) if course.steps[-1].chart.adds_stops else {}
     return tuple(effort(one.pair, force, name=f"hold of {one.name}") for one, force in found.items())
 
 

@@ -17,10 +17,11 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
+from compoundkin.dynamics.simulation.phases import OpenContact, landed, without_pair
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
-    CatchWatch,
+    ContactWatch,
     LoadBreak,
     SimulationEvent,
     StopWatch,
@@ -29,11 +30,12 @@ from compoundkin.dynamics.simulation.simulation_events import (
     ended_pair,
     first_passed,
     stop_watches,
+    watches,
 )
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER, TabulatedChart
 from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.latch import Latch
+from compoundkin.model.loads.latch import Latch, Release
 from compoundkin.model.loads.stop import Stop
 
 # The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
@@ -95,10 +97,32 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
             elif solver.status == "finished" and course.last < course.until and not course.ended:
                 solver = _behind_break(chart, solver, course)
         else:
-            solver = _begun(chart, passed.time, passed.state, course)
+            assert passed.state is not None
+            state = passed.state
+            if passed.released is not None or passed.landing is not None:
+                chart, state = _next_phase(chart, passed, state, course)
+                n = len(chart.free)
+            solver = _begun(chart, passed.time, state, course)
         if progress is not None:
             progress(int(PARTS * course.last / course.until), PARTS)
     return None
+
+
+def _next_phase(chart: Chart, passed: _Interruption, state: Number, course: SimulatedCourse) -> tuple[Chart, Number]:
+    """Return the chart and the state with which it goes on with other pairs; their events are watched there."""
+    n = len(chart.free)
+    chart.accept(passed.time, state[:n], state[n : 2 * n])
+    state = chart.settled(passed.time, state)
+    here = chart.state(passed.time, state[:n], state[n : 2 * n])
+    if passed.released is not None:
+        found = without_pair(here, passed.released, float(state[-1]))
+    else:
+        assert passed.landing is not None
+        found = landed(here, passed.landing, float(state[-1]))
+        course.events[-1] = replace(course.events[-1], lost=found.lost)
+    own = tuple(one for one in course.watched if one.asked)
+    course.watched = (*watches(found.chart.mechanism, {}, ()), *own)
+    return found.chart, found.state
 
 
 def _begun(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> Any:
@@ -132,6 +156,8 @@ class _Interruption(NamedTuple):
 
     time: float
     state: Number | None
+    released: Release | None = None  # the pair that comes apart there
+    landing: OpenContact | None = None  # the contact that closes there
 
 
 def _passed(course: SimulatedCourse) -> _Interruption | None:
@@ -140,13 +166,13 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
     watched = (*course.watched, *stop_watches(step.chart))
     for one in first_passed(watched, step.chart, (step.first, step.last), step.between) if watched else ():
         n, watch = len(step.chart.free), one.watch
-        if isinstance(watch, StopWatch | CatchWatch):
+        if isinstance(watch, ContactWatch):
             course.cut(one.time, False)
-            damped = course.damped(watch.contact, True)
+            damped = course.damped(watch.contact, True) if isinstance(watch, StopWatch) else 0.0
             met = watch.passage(step.chart, one.time, one.state, course.fastest)
             course.fastest = max(course.fastest, met.approach)
             course.events.append(replace(met.event, lost=met.event.lost + damped))
-            return _Interruption(one.time, met.state)
+            return _Interruption(one.time, None if met.event.stops else met.state, met.released, met.landing)
         if watch.name == REST and not watch.asked:
             course.cut(one.time)
             return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
@@ -599,12 +625,13 @@ class SimulatedCourse:
             total += contact.stored(self.steps[-1].state(self.last)) if is_left else 0.0
         return total
 
-    def holding(self, times: Number) -> dict[Stop | Latch, Number]:
-        """Return the efforts that rigid stops and latches have at times while they hold a coordinate."""
-        index = np.minimum(np.searchsorted([step.last for step in self.steps], times), len(self.steps) - 1)
+    def holding(self, phase: int, times: Number) -> dict[Stop | Latch, Number]:
+        """Return the efforts that rigid stops and latches have at times in a phase while they hold a coordinate."""
+        steps = [step for step in self.steps if step.chart.phase == phase]
+        index = np.minimum(np.searchsorted([step.last for step in steps], times), len(steps) - 1)
         found: dict[Stop | Latch, Number] = {}
         for k, time in enumerate(times):
-            for one, force in self.steps[index[k]].holding(float(time)):
+            for one, force in steps[index[k]].holding(float(time)):
                 found.setdefault(one.stop, np.zeros(len(times)))[k] += one.side * force
         return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +51,16 @@ class SimulatedEnergy(ShortRepr):
         error = float(np.max(np.abs(self.error)))
         rounding = ROUNDING * float(np.max(np.abs(self.total)))
         return error / self.peak if error > rounding and self.peak else 0.0
+
+
+def joined_energy(parts: Sequence[SimulatedEnergy]) -> SimulatedEnergy:
+    """Return the energies of several phases in a row."""
+    if len(parts) == 1:
+        return parts[0]
+    kinetic, potential, work = (
+        np.concatenate([getattr(one, name) for one in parts]) for name in ("kinetic", "potential", "work")
+    )
+    return SimulatedEnergy(kinetic, potential, work)
 
 
 def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:

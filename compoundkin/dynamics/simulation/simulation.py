@@ -10,8 +10,10 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.simulation.phases import Phase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.kinematics.motion import Motion
@@ -21,11 +23,13 @@ from compoundkin.kinematics.motion import Motion
 class Simulation(DisplaysHtml, DisplaysText):
     """The motion of a mechanism under its loads. `motion` is a motion in time, solved again at `times`.
 
+    Where pairs come apart there are several `phases`, each with its own mechanism and motion, and no single motion.
+
     `events` are in the order of time. `steps` and `evaluations` count those of the integration. `losses` are the
     energies lost at stops and ends of guides, by their names.
     """
 
-    motion: Motion
+    phases: tuple[Phase, ...]
     energy: SimulatedEnergy
     events: tuple[SimulationEvent, ...]
     tolerance: float
@@ -35,8 +39,16 @@ class Simulation(DisplaysHtml, DisplaysText):
 
     @property
     def times(self) -> Number:
-        """The times of the poses, seconds."""
-        return self.motion.time
+        """The times of the poses, seconds; a phase has its first and its last one."""
+        return np.concatenate([phase.motion.time for phase in self.phases])
+
+    @property
+    def motion(self) -> Motion:
+        """The motion of the only phase. Raises InvalidInput where there are several."""
+        if len(self.phases) > 1:
+            what = f"pairs come apart, and there are {len(self.phases)} phases, each with a motion of its own"
+            raise InvalidInput(Problem("motion", what, "take .phases[0].motion and so on"))
+        return self.phases[0].motion
 
     @cached_property
     def forces(self) -> Forces:
@@ -44,6 +56,6 @@ class Simulation(DisplaysHtml, DisplaysText):
         return force_analysis(self.motion)
 
     def __repr__(self) -> str:
-        title, last = self.motion.mechanism.title, float(np.ravel(self.times)[-1])
+        title, last = self.phases[0].mechanism.title, float(np.ravel(self.times)[-1])
         events = f", {count_phrase(len(self.events), 'event')}" if self.events else ""
         return f"Simulation({title!r} over {last:.6g} s in {count_phrase(self.steps, 'step')}{events})"

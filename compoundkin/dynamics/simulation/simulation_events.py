@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,10 +14,11 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
+from compoundkin.dynamics.simulation.phases import LANDED, OpenContact, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
 from compoundkin.kinematics.solving_order import AT_END
 from compoundkin.model.loads.amounts import corners_in_time, function_of_time
-from compoundkin.model.loads.latch import Latch, as_latch
+from compoundkin.model.loads.latch import Latch, Release, as_latch, as_release
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profile_contact import as_profile_contact
@@ -36,6 +38,8 @@ REST = "rest"
 STOP, RESTS, LEAVES = "stop", "rests", "leaves"
 # The names of the events of latches, the last one at the end.
 CATCHES, OPENS, TOOTH, IDLE = "catches", "opens", "tooth", "idle"
+# The name of the event at which a contact that has let go closes.
+LANDS = "lands"
 Function = Callable[[SimulatedState], Any]
 
 
@@ -91,6 +95,8 @@ class StopPassage(NamedTuple):
     event: SimulationEvent
     state: Number
     approach: float = 0.0
+    released: Release | None = None  # the pair that comes apart
+    landing: OpenContact | None = None  # the contact that closes
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,11 +190,15 @@ class ToothWatch(CatchWatch):
         return StopPassage(SimulationEvent(time, TOOTH, text, False), state)
 
 
-@dataclass(frozen=True, eq=False)
-class OpenWatch(CatchWatch):
-    """A closed latch, and a condition that opens it where it falls to zero or, if `rises`, changes its sign."""
+Margin = Callable[[Chart, KnownState, Number], float]
 
-    margin: Callable[[Chart, KnownState, Number], float] = field(kw_only=True)
+
+@dataclass(frozen=True, eq=False)
+class OpenWatch(Watch):
+    """A closed latch or a pair, and a condition that opens it where it falls to zero or changes its sign."""
+
+    item: Latch | Release = field(kw_only=True)
+    margin: Margin = field(kw_only=True)
 
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the condition."""
@@ -196,14 +206,35 @@ class OpenWatch(CatchWatch):
         return self.margin(chart, chart.state(time, state[:n], state[n : 2 * n]), state)
 
     def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
-        """Open the latch for good."""
-        one = self.contact
-        chart.closed = tuple(other for other in chart.closed if other != one)
-        chart.stop_contacts = tuple(other for other in chart.stop_contacts if other != one)
-        return StopPassage(SimulationEvent(time, OPENS, f"{one.stop.name} opens: {self.text}", False), state)
+        """Open the latch for good, or release the pair."""
+        item = self.item
+        chart.closed = tuple(one for one in chart.closed if one.stop is not item)
+        chart.stop_contacts = tuple(one for one in chart.stop_contacts if one.stop is not item)
+        event = SimulationEvent(time, OPENS, f"{item.name} opens: {self.text}", False)
+        return StopPassage(event, state, released=as_release(item))
 
 
-def stop_watches(chart: Chart) -> Iterator[StopWatch | CatchWatch]:
+@dataclass(frozen=True, eq=False)
+class LandWatch(Watch):
+    """A contact that has let go, and closes where both links meet."""
+
+    landing: OpenContact = field(kw_only=True)
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return the gap."""
+        n = len(chart.free)
+        return self.landing.gap(chart.state(time, state[:n], state[n : 2 * n])) + LANDED * chart.order.size
+
+    def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
+        """Close the contact; it goes on as before, if it is the last one that has let go."""
+        name = self.landing.contact.name
+        is_last = self.landing is chart.open_contacts[-1]
+        text = f"the contact at {name} closes" + ("" if is_last else " while another is open: it cannot go on")
+        event = SimulationEvent(time, LANDS, text, not is_last, loser=name)
+        return StopPassage(event, state, landing=self.landing)
+
+
+def stop_watches(chart: Chart) -> Iterator[ContactWatch]:
     """Yield the contacts at stops and in latches as watched functions."""
     for one in chart.stop_contacts:
         latch = as_latch(one.stop)
@@ -212,38 +243,66 @@ def stop_watches(chart: Chart) -> Iterator[StopWatch | CatchWatch]:
         elif one not in chart.closed:
             yield CatchWatch(CATCHES, _speed, one.text, False, contact=one)
         else:
-            yield from _opening(latch, one)
+            yield from _opening(latch, partial(_latched, one))
         if latch is not None and latch.teeth is not None:
             pitch = float(np.ravel(latch.teeth)[0])
             yield ToothWatch(TOOTH, _speed, one.text, False, True, contact=one, pitch=pitch)
+    for load in chart.mechanism.loads.values():
+        release = as_release(load)
+        if release is not None and release.opens:
+            yield from _opening(release, partial(_joining, release))
+        elif release is not None:
+            name = pair_meant(chart, release.pair).name
+            text = f"the contact at {name} lets go"
+            yield OpenWatch(OPENS, _speed, text, False, True, item=release, margin=partial(_pressed, name))
+    for landing in chart.open_contacts:
+        yield LandWatch(LANDS, _speed, landing.contact.name, False, True, landing=landing)
 
 
-def _opening(latch: Latch, one: StopContact) -> Iterator[OpenWatch]:
-    """Yield the conditions under which a closed latch opens."""
+def _latched(one: StopContact, chart: Chart, here: KnownState, state: Number) -> float:
+    """Return the force with which a latch holds."""
+    n = len(chart.free)
+    free = chart.unheld_rates(here.time, state[:n], state[n : 2 * n])
+    return abs(float(holding([other.at(here) for other in chart.rigid], here, free)[chart.rigid.index(one)]))
+
+
+def _pressed(name: str, chart: Chart, here: KnownState, state: Number) -> float:
+    """Return the normal force in a contact."""
+    return float(np.ravel(force_analysis(here.motion).pairs[name].normal)[0])
+
+
+def _joining(release: Release, chart: Chart, here: KnownState, state: Number) -> float:
+    """Return the force in a pair."""
+    forces = force_analysis(here.motion)
+    return float(np.abs(np.ravel(forces.pairs[pair_meant(chart, release.pair).name].wrench.force)[0]))
+
+
+def _opening(item: Latch | Release, force: Margin) -> Iterator[OpenWatch]:
+    """Yield the conditions under which a closed latch or a pair opens."""
 
     def number(value: Any) -> float:
         return float(np.ravel(value)[0])
 
-    def force(chart: Chart, here: KnownState, state: Number) -> float:
-        n = len(chart.free)
-        free = chart.unheld_rates(here.time, state[:n], state[n : 2 * n])
-        forces = holding([other.at(here) for other in chart.rigid], here, free)
-        return number(latch.strength) - abs(float(forces[chart.rigid.index(one)]))
-
     def until(chart: Chart, here: KnownState, state: Number) -> float:
-        return number(latch.until) - here.time
+        return number(item.until) - here.time
 
     def over(chart: Chart, here: KnownState, state: Number) -> float:
-        return float(np.ravel(here.loaded.coordinate(latch.over).c[0])[0]) - number(latch.value)
+        return float(np.ravel(here.loaded.coordinate(item.over).c[0])[0]) - number(item.value)
 
-    if latch.strength is not None:
-        text = f"its force exceeds {number(latch.strength):.6g}"
-        yield OpenWatch(OPENS, _speed, text, False, True, contact=one, margin=force)
-    if latch.until is not None:
-        yield OpenWatch(OPENS, _speed, "its time has come", False, True, contact=one, margin=until)
-    if latch.over:
-        text = f"{latch.over} comes to {number(latch.value):.6g}"
-        yield OpenWatch(OPENS, _speed, text, False, contact=one, margin=over)
+    def holds(chart: Chart, here: KnownState, state: Number) -> float:
+        return number(item.strength) - force(chart, here, state)
+
+    if item.strength is not None:
+        text = f"its force exceeds {number(item.strength):.6g}"
+        yield OpenWatch(OPENS, _speed, text, False, True, item=item, margin=holds)
+    if item.until is not None:
+        yield OpenWatch(OPENS, _speed, "its time has come", False, True, item=item, margin=until)
+    if item.over:
+        text = f"{item.over} comes to {number(item.value):.6g}"
+        yield OpenWatch(OPENS, _speed, text, False, item=item, margin=over)
+
+
+ContactWatch = StopWatch | CatchWatch | OpenWatch | LandWatch
 
 
 # A start beyond a rigid end by less than this part of the size, or of a radian, is at the end.
@@ -283,6 +342,10 @@ def idle_latches(chart: Chart, time: float) -> Iterator[SimulationEvent]:
             yield SimulationEvent(time, IDLE, f"{latch.name} has not caught: {one.stop.pair} never meets it", False)
         elif latch.opens:
             yield SimulationEvent(time, IDLE, f"{latch.name} has not opened", False)
+    for load in chart.mechanism.loads.values():
+        release = as_release(load)
+        if release is not None and release.opens:
+            yield SimulationEvent(time, IDLE, f"{load.name} has not opened", False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -315,7 +378,8 @@ def _speed(state: SimulatedState) -> float:
 def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:
     if any(as_travel_limited(pair) is not None for pair in mechanism.written_pairs):
         yield Watch(END, _to_end, "a guide ends", True, True)
-    for pair in mechanism.written_pairs:
+    released = {one.pair for item in mechanism.loads.values() if (one := as_release(item)) is not None}
+    for pair in (one for one in mechanism.written_pairs if one.name not in released):
         contact = as_profile_contact(pair)
         # in a groove the roller changes to the other flank
         if contact is not None and not contact.has_ends:

@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.dynamics.simulation.driver_state import KnownState, Rates
 from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.latch import Latch, as_latch
+from compoundkin.model.loads.latch import Latch, as_latch, as_release
 from compoundkin.model.loads.stop import HIGH, LOW, Stop, as_stop
 
 # A rigid end holds a coordinate while it pushes more than minus this part of what acts there: rounding does not decide.
@@ -87,8 +87,8 @@ class StopContact:
 
 
 def is_no_contact(load: Load) -> bool:
-    """Return whether a load is neither a stop nor a latch."""
-    return as_stop(load) is None and as_latch(load) is None
+    """Return whether a load is neither a stop nor a latch nor a release."""
+    return as_stop(load) is None and as_latch(load) is None and as_release(load) is None
 
 
 def contacts_of(loads: Iterable[Load], state: KnownState) -> tuple[StopContact, ...]:

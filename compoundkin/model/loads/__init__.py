@@ -10,7 +10,7 @@ from compoundkin.model.loads.damper import Damper, PairDamper, damper
 from compoundkin.model.loads.force import Force, Torque, force, torque
 from compoundkin.model.loads.friction import Friction, friction
 from compoundkin.model.loads.gravity import Gravity, gravity
-from compoundkin.model.loads.latch import Latch, latch
+from compoundkin.model.loads.latch import Latch, Release, latch, release
 from compoundkin.model.loads.mass import Mass, mass
 from compoundkin.model.loads.pretension import Pretension, pretension
 from compoundkin.model.loads.spring import PairSpring, Spring, spring
@@ -32,6 +32,7 @@ __all__ = [
     "PairLoad",
     "PairSpring",
     "Pretension",
+    "Release",
     "Spring",
     "Stop",
     "Torque",
@@ -43,12 +44,13 @@ __all__ = [
     "latch",
     "mass",
     "pretension",
+    "release",
     "spring",
     "stop",
     "torque",
 ]
 # Every kind of load.
-KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper, Stop, Latch)
+KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper, Stop, Latch, Release)
 # What each table of a mechanism file may hold.
 _TABLED: tuple[type[Any], ...] = (Mass, *KINDS, Friction, Pretension)
 WRITTEN: dict[str, tuple[type[Any], ...]] = {

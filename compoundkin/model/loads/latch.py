@@ -1,4 +1,4 @@
-"""Latches: they hold the coordinate of a pair until something opens them, from the start or from where they catch."""
+"""What opens in a simulation: latches, which hold the coordinate of a pair, and pairs that come apart."""
 
 from __future__ import annotations
 
@@ -11,29 +11,21 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem, suggestion
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
 from compoundkin.model.loads.attachments import COORDINATE, PairLoad
 from compoundkin.model.loads.contract import NO_RENAMING, Load, LoadedPoses, NamedParts
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Latch(PairLoad):
-    """A latch that holds the free coordinate of a pair, and the conditions under which it catches and opens.
+class OpeningLoad(PairLoad):
+    """What holds two links together until it opens: at a time, at a coordinate of a pair, or by too great a force.
 
-    It has no force of its own here: simulations hold the coordinate.
+    It has no force of its own here: simulations know what it holds with.
     """
 
-    at: Number | None = field(
-        default=None,
-        kw_only=True,
-        metadata=value_key("coordinate", "Where it catches; it holds from the start if left out. Degrees of an angle."),
-    )
-    teeth: Number | None = field(
-        default=None,
-        kw_only=True,
-        metadata=value_key("coordinate", "The pitch of a ratchet, negative if it goes backward; degrees of an angle."),
-    )
     strength: Number | None = field(
         default=None, kw_only=True, metadata=value_key("length", "The force or torque above which it opens.")
     )
@@ -47,11 +39,8 @@ class Latch(PairLoad):
         metadata=value_key("coordinate", "The coordinate of that pair at which it opens; degrees of an angle."),
     )
 
-    title: ClassVar[str] = "latch"
-    table: ClassVar[str] = "latches"
     own_variable: ClassVar[str] = COORDINATE
     coordinates_over: ClassVar[Mapping[str, str]] = {"value": "over"}
-
     is_elastic: ClassVar[bool] = False
 
     @property
@@ -60,7 +49,7 @@ class Latch(PairLoad):
         return self.strength is not None or self.until is not None or bool(self.over)
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
-        """Return the latch with other names of links and coordinates."""
+        """Return it with other names of links and coordinates."""
         return replace(super().renamed(links, coordinates), over=coordinates.get(self.over, self.over))
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
@@ -75,18 +64,70 @@ class Latch(PairLoad):
             yield Problem(f"{where}.strength", "a strength is above zero", "leave it out for one that holds anything")
         if self.until is not None and not np.all(np.asarray(self.until) >= 0.0):
             yield Problem(f"{where}.until", "a time is not negative", "give seconds after the start")
-        if self.teeth is not None and np.any(np.asarray(self.teeth) == 0.0):
-            yield Problem(f"{where}.teeth", "a ratchet has a pitch", "give the coordinate from tooth to tooth")
-        if self.teeth is not None and (self.at is not None or self.opens):
-            yield Problem(f"{where}.teeth", "a ratchet neither catches nor opens", "leave the other conditions out")
 
     def effort(self, at: LoadedPoses) -> Number:
         """Return its effort, none: what it holds is known to simulations only."""
         return 0.0 * at.coordinate(self.pair).c[0]
 
+    def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
+        """Yield nothing."""
+        yield from ()
+
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return its energy, none."""
-        return self.effort(at)
+        return 0.0 * at.pose(self.members[0]).u.c[0].real
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Latch(OpeningLoad):
+    """A latch that holds the free coordinate of a pair, from the start or from where it catches."""
+
+    at: Number | None = field(
+        default=None,
+        kw_only=True,
+        metadata=value_key("coordinate", "Where it catches; it holds from the start if left out. Degrees of an angle."),
+    )
+    teeth: Number | None = field(
+        default=None,
+        kw_only=True,
+        metadata=value_key("coordinate", "The pitch of a ratchet, negative if it goes backward; degrees of an angle."),
+    )
+
+    title: ClassVar[str] = "latch"
+    table: ClassVar[str] = "latches"
+
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
+        """Find unknown pairs, numbers out of range, and a ratchet with what only other latches have."""
+        yield from super().problems(written, where)
+        if self.teeth is not None and np.any(np.asarray(self.teeth) == 0.0):
+            yield Problem(f"{where}.teeth", "a ratchet has a pitch", "give the coordinate from tooth to tooth")
+        if self.teeth is not None and (self.at is not None or self.opens):
+            yield Problem(f"{where}.teeth", "a ratchet neither catches nor opens", "leave the other conditions out")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Release(OpeningLoad):
+    """A pair that comes apart: from there on its two links are joined by it no more."""
+
+    title: ClassVar[str] = "release"
+    table: ClassVar[str] = "releases"
+
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
+        """Find unknown pairs, numbers out of range, and a pair that nothing opens; a contact needs nothing to open."""
+        pair = written.pair(self.pair)
+        if pair is not None and as_profile_contact(pair) is not None:
+            if self.opens:
+                what = f"{self.pair!r} is a {pair.title}, which lets go where its force falls to zero"
+                yield Problem(where, what, "leave the conditions out")
+            return
+        yield from super().problems(written, where)
+        if not self.opens:
+            yield Problem(where, "nothing opens it", "give until, over and value, or strength")
+
+
+def as_release(load: Load) -> Release | None:
+    """Return a load as a release, or None."""
+    return load if isinstance(load, Release) else None
 
 
 def as_latch(load: Load) -> Latch | None:
@@ -122,3 +163,25 @@ def latch(
         key: None if number is None else real(f"{where}.{key}", number) for key, number in given.items()
     }
     return Latch(pair, **numbers, over=over, name=name)
+
+
+@checked
+def release(
+    pair: str, *, strength: Any = None, until: Any = None, over: str = "", value: Any = None, name: str = ""
+) -> Release:
+    """Return a pair that comes apart in a simulation, which goes on without it.
+
+    It opens as a `latch` does: at the time `until` (seconds), where the coordinate of the pair `over` comes to `value`
+    (radians, with full turns counted, or a length), or where the force in it exceeds `strength`. At a pin it is the
+    second of its links that leaves it. The contact of a cam or a flat face is released where its force falls to zero,
+    without any condition, and closes again where both meet.
+
+    >>> release("S", over="sling", value=2.4).name
+    'release along S'
+    """
+    where = f"releases.{name or pair}"
+    given = {"strength": strength, "until": until, "value": value}
+    numbers: dict[str, Any] = {
+        key: None if number is None else real(f"{where}.{key}", number) for key, number in given.items()
+    }
+    return Release(pair, **numbers, over=over, name=name)

@@ -145,13 +145,13 @@ def centres_report(motion: Motion, design: int = 0) -> Report:
 
 def simulation_report(found: Simulation) -> Report:
     """Report a simulation."""
-    motion = found.motion
+    motion = found.phases[0].motion
     return Report(motion.mechanism.title, (_simulation_section(found),), outcome_of(motion), motion)
 
 
 def whole_simulation_report(found: Simulation, outputs: Sequence[str] = ()) -> Report:
-    """Report a simulation and its motion."""
-    whole = report_of_motion(found.motion, outputs)
+    """Report a simulation and its motion, the first one where pairs come apart."""
+    whole = report_of_motion(found.phases[0].motion, outputs)
     about, *others = whole.sections
     return replace(whole, sections=(about, _simulation_section(found), *others))
 
@@ -161,14 +161,19 @@ def _simulation_section(found: Simulation) -> Section:
 
 
 def _simulation_blocks(found: Simulation) -> Iterator[Block]:
-    units = found.motion.mechanism.units
+    units = found.phases[0].mechanism.units
     times = np.ravel(found.times)
     length = f"{number_text(float(times[-1]))} s in {counted(found.steps, 'step')}, each to {brief(found.tolerance)}"
     energy = f"the energy balance is off by at most {brief(float(found.energy.worst))} of its peak"
     unit = "" if units is None else f" ({number_text(float(found.energy.peak))} {units.moment})"
     yield Paragraph(f"Free under masses and loads for {length}; {energy}{unit}.")
-    yield Paragraph("Drivers, whose coordinates are computed:")
-    yield _drivers_table(found)
+    several = len(found.phases) > 1
+    if several:
+        yield Paragraph(f"Pairs open or close: it has {len(found.phases)} phases, each with a mechanism of its own.")
+    for phase in found.phases:
+        within = f" from {number_text(phase.first)} to {number_text(phase.last)} s" if several else ""
+        yield Paragraph(f"Drivers, whose coordinates are computed{within}:")
+        yield _drivers_table(phase.motion)
     yield Paragraph("Energies; the work is that of loads without a potential and of drivers that are prescribed:")
     yield _energies_table(found)
     if found.losses:
@@ -181,9 +186,9 @@ def _simulation_blocks(found: Simulation) -> Iterator[Block]:
         yield TableBlock((Column("time", "s", "each"), Column("what"), Column("in words"), Column("then")), rows)
 
 
-def _drivers_table(found: Simulation) -> TableBlock:
+def _drivers_table(motion: Motion) -> TableBlock:
     """Return the first, last, least and greatest value of each driver, and its greatest speed."""
-    motion, rows = found.motion, list[tuple[Cell, ...]]()
+    rows = list[tuple[Cell, ...]]()
     for name, drive in motion.drives.items():
         value, rate = np.ravel(drive.value), np.ravel(drive.rate)
         unit = DEGREES if drive.is_angle else unit_of(motion.mechanism.unit, "length")
@@ -200,7 +205,7 @@ def _drivers_table(found: Simulation) -> TableBlock:
 
 def _energies_table(found: Simulation) -> TableBlock:
     """Return each energy at the beginning and the end, and its extremes."""
-    energy, units = found.energy, found.motion.mechanism.units
+    energy, units = found.energy, found.phases[0].mechanism.units
     unit = "" if units is None else units.moment
     named = {"kinetic": energy.kinetic, "potential": energy.potential, "work": energy.work}
     rows: list[tuple[Cell, ...]]

@@ -1,0 +1,313 @@
+"""Pairs that come apart and close again: phases of a simulation, against closed forms and hand-written equations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.errors import InvalidInput, InvalidMechanism
+from compoundkin.files import dumps, loads
+from compoundkin.view.report.motion_report import simulation_report
+from tests.dynamics.cases import SI
+
+G = 9.81
+
+
+def pendulum(*more: Any) -> ck.Mechanism:
+    """A point mass of 2 kg on a bar of 1 m."""
+    return ck.Mechanism(
+        "Pendulum",
+        ck.link("frame", A=0),
+        ck.link("bar", A=0, B=1),
+        ck.drive("bar"),
+        ck.mass("bar", 2.0, at="B", inertia=0.0),
+        ck.gravity(0, -G),
+        *more,
+        units=SI,
+    )
+
+
+def test_a_pendulum_that_breaks() -> None:
+    """Let go at the level it carries 3 m g sin(a) at the angle a: half the greatest at 30 degrees; then it falls."""
+    found = ck.simulate(pendulum(ck.release("A", strength=1.5 * 2.0 * G)), start=0.0, until=1.0)
+    event = found.events[0]
+    assert event.name == "opens"
+    before, after = (phase.motion.points["B"] for phase in found.phases)
+    assert np.angle(before.position[-1]) == pytest.approx(-np.pi / 6, abs=1e-9)
+    speed = np.sqrt(2.0 * G * 0.5) * np.exp(-1j * np.pi * 2.0 / 3.0)
+    assert after.velocity[0] == pytest.approx(speed, rel=1e-9)
+    since = found.phases[1].motion.time - event.time
+    flown = np.exp(-1j * np.pi / 6) + speed * since - 0.5j * G * since**2
+    np.testing.assert_allclose(after.position, flown, atol=1e-9)
+    assert found.energy.worst < 1e-9
+    assert [phase.first for phase in found.phases] == [0.0, event.time]
+    assert found.phases[1].last == 1.0
+    with pytest.raises(InvalidInput, match=r"phases\[0\]"):
+        _ = found.motion
+    assert "2 phases" in simulation_report(found).text()
+    assert "2 phases" in found._repr_html_()
+
+
+def test_a_block_flies_off_a_turning_arm() -> None:
+    """On the arm it goes as cosh; off it straight on, turning as it did. The arm is prescribed."""
+    turning, first, inertia = 3.0, 0.2, 0.05
+    arm = ck.Mechanism(
+        "Block on an arm",
+        ck.link("frame", O=0),
+        ck.link("arm", O=0, E=2),
+        ck.link("block", Q=0),
+        ck.slide("block", on="arm", at="Q", through="O", toward="E", name="way"),
+        ck.drive("arm"),
+        ck.drive("block", on="arm"),
+        ck.mass("block", 0.7, at="Q", inertia=inertia),
+        ck.release("way", until=0.4),
+        units=SI,
+    )
+    found = ck.simulate(arm, start={"block": first}, prescribed={"arm": lambda t: turning * t}, until=1.0)
+    r, u = first * np.cosh(turning * 0.4), np.exp(1j * turning * 0.4)
+    velocity = (first * turning * np.sinh(turning * 0.4) + 1j * turning * r) * u
+    block = found.phases[1].motion
+    np.testing.assert_allclose(block.points["Q"].position, r * u + velocity * (block.time - 0.4), atol=1e-9)
+    np.testing.assert_allclose(block.links["block"].angular_velocity, turning, rtol=1e-9)
+    assert found.energy.worst < 1e-9
+    kinetic = 0.7 * abs(velocity) ** 2 / 2.0 + inertia * turning**2 / 2.0
+    assert found.energy.kinetic[-1] == pytest.approx(kinetic, rel=1e-9)
+
+
+def four_bar(*more: Any) -> ck.Mechanism:
+    """A four-bar under gravity."""
+    return ck.Mechanism(
+        "Four-bar",
+        ck.link("frame", A=(0, 0), D=(0.4, 0)),
+        ck.link("crank", A=0, B=0.1),
+        ck.link("coupler", B=0, C=0.35),
+        ck.link("rocker", D=0, C=0.25),
+        ck.drive("crank"),
+        ck.mass("crank", 0.5, inertia=0.002),
+        ck.mass("coupler", 1.0, inertia=0.01),
+        ck.mass("rocker", 0.8, inertia=0.004),
+        ck.gravity(0, -G),
+        *more,
+        units=SI,
+    )
+
+
+def test_a_loop_that_opens_is_two_trees() -> None:
+    """Without its pin the rocker is a pendulum of its own, whose motion is that of one simulated alone."""
+    found = ck.simulate(four_bar(ck.release("C", until=0.1)), start={"crank": (1.0, 4.0)}, until=0.6, tolerance=1e-12)
+    before, after = (phase.motion for phase in found.phases)
+    assert found.phases[1].mechanism.drives[0].name == "crank"
+    assert len(after.drives) == 3
+    for name in ("crank", "coupler", "rocker"):
+        assert after.links[name].angular_velocity[0] == pytest.approx(before.links[name].angular_velocity[-1], rel=1e-9)
+    assert found.energy.worst < 1e-9
+    alone = ck.Mechanism(
+        "Rocker",
+        ck.link("frame", D=(0.4, 0)),
+        ck.link("rocker", D=0, C=0.25),
+        ck.drive("rocker"),
+        ck.mass("rocker", 0.8, inertia=0.004),
+        ck.gravity(0, -G),
+        units=SI,
+    )
+    state = before.links["rocker"]
+    own = ck.simulate(alone, start=(state.angle[-1], state.angular_velocity[-1]), until=0.5, tolerance=1e-12)
+    assert after.points["C"].position[0] == pytest.approx(before.points["C"].position[-1], abs=1e-12)
+    end = after.links["rocker"].angle[-1]
+    assert np.exp(1j * end) == pytest.approx(np.exp(1j * own.motion.links["rocker"].angle[-1]), abs=1e-8)
+
+
+def trebuchet(*more: Any) -> ck.Mechanism:
+    """A beam with a hung counterweight, and a sling without mass that holds a stone."""
+    return ck.Mechanism(
+        "Trebuchet",
+        ck.link("frame", O=0),
+        ck.link("beam", O=0, B=-1, T=4),
+        ck.link("weight", B=0, W=0.8),
+        ck.link("sling", T=0, S=3),
+        ck.drive("beam"),
+        ck.drive("weight", on="beam"),
+        ck.drive("sling", on="beam"),
+        ck.mass("beam", 5.0, at=(1.5, 0), inertia=12.0),
+        ck.mass("weight", 200.0, at="W", inertia=2.0),
+        ck.mass("sling", 1.5, at="S", inertia=0.0),
+        ck.gravity(0, -G),
+        *more,
+        units=SI,
+    )
+
+
+def trebuchet_rates(t: float, y: Any) -> Any:
+    """Return the rates of the three angles from the frame, by Lagrange's equations."""
+    a, c, s = y[:3]
+    ea, ec, es = np.exp(1j * a), np.exp(1j * c), np.exp(1j * s)
+    # mass, its velocities by each angle, and its centripetal acceleration
+    parts = (
+        (5.0, [1.5j * ea, 0, 0], -1.5 * ea * y[3] ** 2),
+        (200.0, [-1j * ea, 0.8j * ec, 0], ea * y[3] ** 2 - 0.8 * ec * y[4] ** 2),
+        (1.5, [4j * ea, 0, 3j * es], -4 * ea * y[3] ** 2 - 3 * es * y[5] ** 2),
+    )
+    matrix, push = np.diag([12.0, 2.0, 0.0]), np.zeros(3)
+    for mass, by, second in parts:
+        row = np.array(by)
+        matrix = matrix + mass * np.real(np.outer(np.conj(row), row))
+        push += mass * np.real(np.conj(row) * (-1j * G - second))
+    return np.concatenate([y[3:], np.linalg.solve(matrix, push)])
+
+
+def test_a_trebuchet_against_another_integrator() -> None:
+    """Where the sling is in line with the beam the stone flies: hand-written equations, SciPy, and the parabola."""
+    from scipy.integrate import solve_ivp
+
+    start = {"beam": ck.deg(-45), "weight": ck.deg(-45), "sling": ck.deg(-135)}
+    thrown = trebuchet(ck.release("T", over="sling", value=0.0))
+    found = ck.simulate(thrown, start=start, until=1.5, tolerance=1e-12)
+
+    def in_line(t: float, y: Any) -> float:
+        return float(y[2] - y[0])
+
+    in_line.terminal = True  # type: ignore[attr-defined]
+    first = [ck.deg(-45), ck.deg(-90), ck.deg(-180), 0.0, 0.0, 0.0]
+    own = solve_ivp(trebuchet_rates, (0.0, 1.5), first, "DOP853", rtol=1e-12, atol=1e-13, events=in_line)
+    a, _, s, u, _, w = own.y[:, -1]
+    time, place = own.t[-1], 4 * np.exp(1j * a) + 3 * np.exp(1j * s)
+    velocity = 4j * u * np.exp(1j * a) + 3j * w * np.exp(1j * s)
+    assert [event.name for event in found.events] == ["opens"]
+    assert found.events[0].time == pytest.approx(time, abs=1e-8)
+    stone, since = found.phases[1].motion.points["S"], 1.5 - time
+    assert stone.velocity[0] == pytest.approx(velocity, rel=1e-6)
+    assert stone.position[-1] == pytest.approx(place + velocity * since - 0.5j * G * since**2, abs=1e-6)
+    # the beam goes on with its weight
+    after = solve_ivp(
+        lambda t, y: trebuchet_rates_alone(y), (time, 1.5), own.y[[0, 1, 3, 4], -1], "DOP853", rtol=1e-12, atol=1e-13
+    )
+    beam = found.phases[1].motion.drives["beam"]
+    assert beam.value[-1] == pytest.approx(after.y[0, -1], abs=1e-6)
+    assert found.energy.worst < 1e-9
+
+
+def trebuchet_rates_alone(y: Any) -> Any:
+    """Return the rates of the beam and its weight."""
+    ea, ec = np.exp(1j * y[0]), np.exp(1j * y[1])
+    parts = (
+        (5.0, [1.5j * ea, 0], -1.5 * ea * y[2] ** 2),
+        (200.0, [-1j * ea, 0.8j * ec], ea * y[2] ** 2 - 0.8 * ec * y[3] ** 2),
+    )
+    matrix, push = np.diag([12.0, 2.0]), np.zeros(2)
+    for mass, by, second in parts:
+        row = np.array(by)
+        matrix = matrix + mass * np.real(np.outer(np.conj(row), row))
+        push += mass * np.real(np.conj(row) * (-1j * G - second))
+    return np.concatenate([y[2:], np.linalg.solve(matrix, push)])
+
+
+ECCENTRIC, REACH, MASS, INERTIA = 0.012, 0.038, 0.3, 5e-4
+
+
+def lift(q: float) -> tuple[float, float, float]:
+    """Return the lift of a roller over an eccentric disc, and its derivatives."""
+    c, s = ECCENTRIC * np.cos(q), ECCENTRIC * np.sin(q)
+    root = np.sqrt(REACH**2 - c**2)
+    first = c * s / root
+    return s + root, c + first, -s + (c * c - s * s) / root - first**2 / root
+
+
+def contact_rates(t: float, y: Any) -> Any:
+    """Return the rates of a cam with its follower."""
+    _, first, second = lift(y[0])
+    felt = INERTIA + MASS * first**2
+    return [y[1], -(MASS * first * second * y[1] ** 2 + MASS * G * first) / felt]
+
+
+def pressed(t: float, y: Any) -> float:
+    """Return the acceleration by which the follower does not fall freely."""
+    _, first, second = lift(y[0])
+    return float(first * contact_rates(t, y)[1] + second * y[1] ** 2 + G)
+
+
+def flies_until(t: float, y: Any, until: float) -> tuple[float, Any]:
+    """Return when a free follower meets the cam again, and the cam's state after that; or where they are at the end."""
+    from scipy.optimize import brentq
+
+    h, first, _ = lift(y[0])
+    speed = first * y[1]
+
+    def gap(since: float) -> float:
+        return float(h + speed * since - G * since**2 / 2.0 - lift(y[0] + y[1] * since)[0])
+
+    steps = np.linspace(1e-4, until - t, 4000)
+    late = next((k for k in range(1, len(steps)) if gap(steps[k]) < 0.0), None)
+    if late is None:
+        return until, y
+    since = brentq(gap, steps[late - 1], steps[late], xtol=1e-15)
+    q, fall = y[0] + y[1] * since, speed - G * since
+    first = lift(q)[1]
+    return t + since, [q, (INERTIA * y[1] + MASS * first * fall) / (INERTIA + MASS * first**2)]
+
+
+def test_a_follower_lifts_off_and_lands_against_another_integrator() -> None:
+    """A roller on an eccentric disc that turns freely: contact by SciPy, flight and landing by hand."""
+    from scipy.integrate import solve_ivp
+
+    cam = ck.Mechanism(
+        "Eccentric disc",
+        ck.link("frame", A=0),
+        ck.link("cam", A=0),
+        ck.link("follower", P=0),
+        ck.slide("follower", on="frame", at="P", through="A", angle=np.pi / 2, name="guide"),
+        ck.cam("follower", on="cam", at="P", profile=ck.profiles.disc(0.03, (ECCENTRIC, 0)), radius=0.008, name="nose"),
+        ck.mode(1, "follower"),
+        ck.drive("cam"),
+        ck.mass("cam", 2.0, at="A", inertia=INERTIA),
+        ck.mass("follower", MASS, at="P", inertia=0.0),
+        ck.gravity(0, -G),
+        ck.release("nose"),
+        units=SI,
+    )
+    until = 0.3
+    found = ck.simulate(cam, start={"cam": (-np.pi / 2, 40.0)}, until=until, tolerance=1e-12)
+    pressed.terminal, pressed.direction = True, -1.0  # type: ignore[attr-defined]
+    t, y, times = 0.0, [-np.pi / 2, 40.0], list[float]()
+    while t < until:
+        own = solve_ivp(contact_rates, (t, until), y, "DOP853", rtol=1e-12, atol=1e-13, events=pressed)
+        t, y = float(own.t[-1]), own.y[:, -1]
+        if t < until:
+            times.append(t)
+            t, y = flies_until(t, y, until)
+        if t < until:
+            times.append(t)
+    assert len(times) >= 3
+    assert [event.name for event in found.events] == ["opens", "lands"] * (len(times) // 2) + ["opens"] * (
+        len(times) % 2
+    )
+    np.testing.assert_allclose([event.time for event in found.events], times, atol=1e-7)
+    assert found.phases[2].motion.drives["cam"].rate[0] < found.phases[1].motion.drives["cam"].rate[-1]
+    assert found.energy.work[-1] == pytest.approx(-found.losses["nose"], rel=1e-9)
+    assert found.energy.worst < 1e-9
+
+
+def test_releases_that_cannot_be() -> None:
+    """Each is named: unknown pairs, nothing that opens them, loads along what opens."""
+    with pytest.raises(InvalidMechanism) as refused:
+        pendulum(ck.release("C", until=1.0), ck.release("A", name="b"), ck.release("A", over="bar", name="c"))
+    assert [problem.where for problem in refused.value.problems] == [
+        "releases[0].pair",
+        "releases[1]",
+        "releases[2].over",
+    ]
+    sprung = pendulum(ck.spring(pair="A", stiffness=2.0), ck.release("A", until=0.1))
+    with pytest.raises(InvalidInput, match="acts along A, which comes apart"):
+        ck.simulate(sprung, start=0.0, until=1.0)
+    never = ck.simulate(pendulum(ck.release("A", strength=100.0)), start=0.0, until=0.5)
+    assert [event.name for event in never.events] == ["idle"]
+    assert never.motion is never.phases[0].motion
+
+
+def test_releases_in_files() -> None:
+    """They read back, the other coordinate in degrees."""
+    written = pendulum(ck.release("A", strength=4.0, over="bar", value=ck.deg(-30)))
+    assert loads(dumps(written)) == written
+    assert "value = -30" in dumps(written)
