@@ -18,7 +18,7 @@ from compoundkin.analysis.singularities import Singularities, Singularity
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.simulation.phases import Phase
+from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.files.exchange.contract import Exported, Imported
 from compoundkin.kinematics import Motion
@@ -61,12 +61,12 @@ __all__ = [
     "Motion",
     "Optimum",
     "Page",
-    "Phase",
     "Picture",
     "Plot",
     "Quantity",
     "Report",
     "Simulation",
+    "SimulationPhase",
     "Singularities",
     "Singularity",
     "Structure",

@@ -22,7 +22,7 @@ from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.simulation.coordinate_change import Chart, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
-from compoundkin.dynamics.simulation.phases import Phase
+from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, load_breaks, watches
@@ -113,7 +113,7 @@ def simulate(
     return Simulation(phases, energy, tuple(course.events), course.tolerance, *counts, course.losses)
 
 
-def _phases(course: SimulatedCourse, times: Number) -> Iterator[tuple[Phase, SimulatedEnergy]]:
+def _phases(course: SimulatedCourse, times: Number) -> Iterator[tuple[SimulationPhase, SimulatedEnergy]]:
     """Yield the phases with their energies; of several each has its first and its last time."""
     stretches = course.at(times)
     numbers = sorted({one.chart.phase for one in stretches})
@@ -125,7 +125,7 @@ def _phases(course: SimulatedCourse, times: Number) -> Iterator[tuple[Phase, Sim
         asked = np.concatenate([one.times[one.asked] for one in own])
         motion = simulated_motion(own, _holding(course, phase, asked))
         work = np.concatenate([one.states[-1, one.asked] for one in own])
-        yield Phase(first, last, motion), simulated_energy(motion, work)
+        yield SimulationPhase(first, last, motion), simulated_energy(motion, work)
 
 
 def _warn(energy: SimulatedEnergy, tolerance: float) -> None:

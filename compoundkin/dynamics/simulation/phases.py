@@ -42,7 +42,7 @@ from compoundkin.structure import decompose
 
 
 @dataclass(frozen=True, eq=False)
-class Phase:
+class SimulationPhase:
     """A part of a simulation with the same pairs: its first and last time, its mechanism, and its motion in time."""
 
     first: float

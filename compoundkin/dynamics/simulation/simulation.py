@@ -13,7 +13,7 @@ from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.simulation.phases import Phase
+from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.kinematics.motion import Motion
@@ -29,7 +29,7 @@ class Simulation(DisplaysHtml, DisplaysText):
     energies lost at stops and ends of guides, by their names.
     """
 
-    phases: tuple[Phase, ...]
+    phases: tuple[SimulationPhase, ...]
     energy: SimulatedEnergy
     events: tuple[SimulationEvent, ...]
     tolerance: float
