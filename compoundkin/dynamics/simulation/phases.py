@@ -34,7 +34,7 @@ from compoundkin.model.laws import Law, constant_speed
 from compoundkin.model.loads.attachments import PairLoad, PairProperty
 from compoundkin.model.loads.latch import Release
 from compoundkin.model.mechanism import Mechanism, available_outputs
-from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs import Pair, pairs_among
 from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.model.pairs.prismatic import slide
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
@@ -189,8 +189,9 @@ def _opened_items(mechanism: Mechanism, pair: Pair) -> list[Item]:
     """Return the items without a pair: a written one is left out, at a pin the second link gets a point of its own."""
     gone = (Mode, Expectation)
     items = [item for item in mechanism.items if not isinstance(item, gone) and not _is_of(mechanism, item, pair)]
-    if any(isinstance(item, Pair) and item.name == pair.name for item in items):
-        return [item for item in items if not (isinstance(item, Pair) and item.name == pair.name)]
+    written = [one for one in pairs_among(items) if one.name == pair.name]
+    if written:
+        return [item for item in items if item not in written]
     leaver = next(name for name in reversed(pair.members) if name != FRAME)
     old, new = pair.letters[0], f"{pair.letters[0]} on {leaver}"
     return [_renamed_point(item, leaver, old, new) for item in items]
