@@ -38,10 +38,11 @@ from compoundkin.model.pairs.contract import Ends, Poses, constraint_scales
 # Equations that move a link by less than this part of what others do say nothing new: what drifts off redundant pairs
 # between two projections is far below, and a change point is that near for an instant only.
 RANK = 1e-8
-# A change point is near where the least singular value is this part of the greatest.
-NEAR = 1e-2
-# Projections end where they move nothing by more than this (parts of the size, radians), or after so many steps.
-PROJECTED, PROJECTIONS = 1e-14, 5
+# A change point is near where the least singular value is this part of what it has been, or of the greatest one.
+NEAR, NEAR_AT_ALL = 0.1, 1e-2
+# Projections end where they move nothing by more than this (parts of the size, radians), or after so many steps. Below
+# the third number the Jacobian has hardly changed and is used once more.
+PROJECTED, PROJECTIONS, CHORD = 1e-14, 8, 1e-6
 # A freedom with less than this part of the greatest inertia has none: rounding squared.
 NO_MASS = 1e-20
 
@@ -131,6 +132,7 @@ class BodyChart:
         self.bodies = self._bodies(moving_masses(self.start.structure))
         self.turned = {name: float(np.ravel(one.value)[0]) for name, one in self._angles()}
         self._gather()
+        self.farthest = self.state(0.0, self.first, np.zeros_like(self.first)).least
 
     def _bodies(self, masses: Sequence[MovingMass]) -> _Bodies:
         at = np.array([3 * self.index[own.link] for own in masses], dtype=int)
@@ -241,20 +243,26 @@ class BodyChart:
         _, self.closed = memory[0]
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
-        """Do nothing."""
+        """Note how far from a change point it has been."""
+        self.farthest = max(self.farthest, self.state(time, values, speeds).least)
 
     def settled(self, time: float, state: Number) -> Number:
         """Return a state with coordinates and rates projected on the equations of the pairs."""
         n, found = len(self.free), state.copy()
-        for _ in range(PROJECTIONS):
-            here = self.state(time, found[:n], found[n : 2 * n])
-            moved = here.inverse @ here.equations.open
-            found[:n] -= self.scales * moved
-            if not np.max(np.abs(moved)) > PROJECTED:
-                break
         here = self.state(time, found[:n], found[n : 2 * n])
-        off = here.equations.jacobian @ (found[n : 2 * n] / self.scales) - here.equations.rates
-        found[n : 2 * n] -= self.scales * (here.inverse @ off)
+        inverse, is_near = here.inverse, here.is_near_change_point
+        for _ in range(PROJECTIONS):
+            moved = inverse @ here.equations.open
+            found[:n] -= self.scales * moved
+            here = self.state(time, found[:n], found[n : 2 * n])
+            largest = float(np.max(np.abs(moved), initial=0.0))
+            if largest <= PROJECTED:
+                break
+            if largest > CHORD or is_near:
+                inverse = here.inverse
+        jacobian, rates = here.equations.jacobian, here.equations.rates
+        for _ in range(2):
+            found[n : 2 * n] -= self.scales * (inverse @ (jacobian @ (found[n : 2 * n] / self.scales) - rates))
         return found
 
     def digits_lost(self, time: float, state: Number) -> float:
@@ -318,8 +326,9 @@ class BodyChart:
         found[FRAME] = FIXED
         return found
 
-    def equations(self, time: float, values: Number, speeds: Number, world: Mapping[str, Pose]) -> Equations:
+    def equations(self, state: BodyState) -> Equations:
         """Return the equations of all pairs at a state."""
+        values, speeds = state.values, state.speeds
         pins, m = self.pins, len(self.pins.own)
         count = 2 * m + sum(len(one.scales) for one in self.pairs) + len(self.held_coordinates)
         # the frame has columns, too, which are left out at last
@@ -341,7 +350,7 @@ class BodyChart:
         matrix[odd, 3 * pins.second + 2] = other.real / self.size
         at, lengths = 2 * m, np.append(self.scales, self.scales[:3])
         for one in self.pairs:
-            poses, rows = tuple(world[link] for link in one.pair.members), slice(at, at + len(one.scales))
+            poses, rows = tuple(state.world[link] for link in one.pair.members), slice(at, at + len(one.scales))
             found = np.reshape(one.pair.jacobian(one.ends, poses), (-1, len(one.columns)))[: len(one.scales)]
             matrix[rows, one.columns] = found * lengths[one.columns] / one.scales[:, None]
             closure = one.pair.closure(one.ends, poses)
@@ -349,10 +358,10 @@ class BodyChart:
             second[rows] = [-2.0 * _value(series, 2) for series in closure] / one.scales
             at += len(one.scales)
         for held in self.held_coordinates:
-            poses = tuple(world[link] for link in held.pair.members)
+            poses = tuple(state.world[link] for link in held.pair.members)
             series = held.pair.coordinate(held.ends, poses)
             value = held.sense * _value(series, 0)
-            wanted = (held.first, 0.0, 0.0) if held.law is None else prescribed_rates(self.laws[held.law], time)
+            wanted = (held.first, 0.0, 0.0) if held.law is None else prescribed_rates(self.laws[held.law], state.time)
             apart = value - wanted[0]
             row = np.reshape(held.pair.jacobian(held.ends, poses), (-1, len(held.columns)))[-1]
             matrix[at, held.columns] = held.sense * row * lengths[held.columns] / held.scale
@@ -395,7 +404,7 @@ class BodyState:
     @cached_property
     def equations(self) -> Equations:
         """The equations of all pairs."""
-        return self.chart.equations(self.time, self.values, self.speeds, self.world)
+        return self.chart.equations(self)
 
     @cached_property
     def _parts(self) -> tuple[Number, Number, float]:
@@ -417,7 +426,7 @@ class BodyState:
     @property
     def is_near_change_point(self) -> bool:
         """Whether some equations are nearly the others' sum."""
-        return self.least < NEAR
+        return self.least < max(NEAR * self.chart.farthest, NEAR_AT_ALL)
 
     @cached_property
     def block(self) -> Block:

@@ -61,9 +61,9 @@ Progress = Callable[[int, int], None]
 
 def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
     """Add the steps and events that follow from a state of a chart."""
-    n = len(chart.free)
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
+        n = len(chart.free)
         longest = course.until if chart.held is None and not chart.closed else course.until / HELD_STEPS
         solver.max_step = min(longest, longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n]))
         solver.h_abs = min(solver.h_abs, solver.max_step)
@@ -251,11 +251,28 @@ def _by_another(
             driver = fast[0].driver if fast else chart.free[0]
             _ended(solver, course, f"{driver} comes to a limit position, and no other pair can take its place")
         return None
+    if not np.isfinite(here.terms.matrix).all():
+        here = _retraced(chart, course)
     driver = fast[0].driver if fast else chart.free[0]
     text = f"no pair is a coordinate like {driver} for long: those of all links take its place"
     course.events.append(SimulationEvent(course.last, COORDINATE, text, False))
     links, state = by_links(chart, here)
     return links, links.settled(solver.t, np.append(state, solver.y[-1]))
+
+
+# A step of a table is retraced in so many parts.
+RETRACED = 16
+
+
+def _retraced(chart: DriverChart, course: SimulatedCourse) -> DriverState:
+    """Return the present state with groups that have been followed here: in a table they are not."""
+    n, own = len(chart.free), [step for step in course.steps if step.chart is chart]
+    chart.recall(own[0].memory)
+    for step in own:
+        for time in np.linspace(step.first, step.last, RETRACED + 1)[1:]:
+            y = step.between(np.array(time))
+            DriverChart.accept(chart, float(time), y[:n], y[n : 2 * n])
+    return chart.state(own[-1].last, y[:n], y[n : 2 * n])
 
 
 # At a jump steps have this many times the tolerance at least, as parts of the longest.

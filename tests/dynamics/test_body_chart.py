@@ -1,0 +1,79 @@
+"""Simulations by the coordinates of all links: several free drivers, and one that no other pair can follow."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.dynamics.simulation import forward_dynamics
+from compoundkin.dynamics.simulation.coordinate_change import by_links
+
+
+def heavy(name: str) -> ck.Mechanism:
+    """A shipped mechanism under gravity, each link a kilogram with a radius of gyration of a tenth of the size."""
+    light = ck.load(name)
+    inertia = (0.1 * ck.solve(light).size) ** 2
+    masses = [ck.mass(link, 1.0, inertia=inertia) for link in light.links if link != "frame"]
+    return light.replace(*masses, ck.gravity(0, -9.81), units={"length": light.unit or "mm", "mass": "kg", "force": "N"})
+
+
+@pytest.mark.parametrize("name", ["crank-rocker", "crank-shaper", "sun-and-planet", "class-iii-six-bar"])
+def test_the_motion_is_that_of_the_only_driver(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    machine, times = heavy(name), np.linspace(0.0, 0.2, 41)
+    one = ck.simulate(machine, until=0.2, times=times)
+
+    def links(chart, state):  # type: ignore[no-untyped-def]
+        found, begun = by_links(chart, chart.state(0.0, state[:1], state[1:2]))
+        return found, np.append(begun, state[-1])
+
+    monkeypatch.setattr(forward_dynamics, "_integrable", links)
+    other = ck.simulate(machine, until=0.2, times=times)
+    driver = machine.drives[0].name
+    for found, known in ((other, one), (one, other)):
+        assert found.energy.worst < 1e-8
+        np.testing.assert_allclose(
+            found.motion.drives[driver].value, known.motion.drives[driver].value, rtol=1e-8, atol=1e-9
+        )
+    for link in machine.links:
+        off = np.exp(1j * other.motion.links[link].angle) - np.exp(1j * one.motion.links[link].angle)
+        assert np.max(np.abs(off)) < 1e-7
+    # what is left to the free driver is nothing, by the forces in the pairs
+    effort = np.abs(other.forces.drives[driver].effort)
+    assert np.all(effort < 1e-8 * np.max(np.abs(other.energy.potential)))
+
+
+def test_parallelograms_fall_through_their_change_points() -> None:
+    """The head of two parallelograms on each other stays level whichever way they lie, flat as well."""
+    lift = heavy("double-parallelogram-lift")
+    fall = ck.simulate(lift, until=0.2)
+    assert fall.times[-1] == 0.2
+    assert fall.energy.worst < 1e-5
+    level = fall.motion.links["head"].angle
+    assert np.max(np.abs(level - level[0])) < 1e-8
+    lower = fall.motion.drives["lower"].value
+    assert lower.min() < -0.2 < 0.3 < lower.max()  # it has been flat in between
+    assert ck.verify(fall.motion).passed
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(("name", "until"), [("peaucellier", 0.1), ("hart-inversor", 0.1)])
+def test_inversors_go_through_their_singular_configurations(name: str, until: float) -> None:
+    """Their points go on along the straight line, or leave it where the configurations meet, and no energy is lost."""
+    fall = ck.simulate(heavy(name), until=until)
+    assert fall.times[-1] == until
+    assert fall.energy.worst < 1e-4
+    for pair in fall.motion.structure.pairs:
+        if pair.title == "revolute pair":
+            first, second = (fall.motion.links[link] for link in pair.members)
+            ends = fall.motion.inputs.ends[pair.name]
+            gap = first.at(ends[0].point).position - second.at(ends[1].point).position
+            assert np.max(np.abs(gap)) < 1e-9 * fall.motion.size
+
+
+def test_a_platform_on_three_legs_falls() -> None:
+    fall = ck.simulate(heavy("3-rrr"), until=0.15)
+    assert fall.times[-1] == 0.15
+    assert fall.events == ()
+    assert fall.energy.worst < 1e-8
+    assert max(np.max(np.abs(fall.forces.drives[name].effort)) for name in fall.motion.drives) < 1e-5
