@@ -189,28 +189,29 @@ class BodyChart:
         return BodyState(self, time, values, speeds)
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
-        """Return the rates of a state.
+        """Return the rates of a state."""
+        return self._projected(time, values, speeds).rates
 
-        Next to a change point they are those of the projected state: what is open there would be enlarged.
-        """
+    free_rates = rates
+
+    def _projected(self, time: float, values: Number, speeds: Number) -> BodyState:
+        """Return a state, next to a change point the projected one: what is open there would be enlarged."""
         here = self.state(time, values, speeds)
         if here.is_near_change_point:
             n = len(values)
             projected = self.settled(time, np.concatenate([values, speeds, [0.0]]))
             here = self.state(time, projected[:n], projected[n : 2 * n])
-        return here.rates
-
-    free_rates = rates
+        return here
 
     def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state, with the contacts at stops and in latches."""
-        free = self.rates(time, values, speeds)
-        return pressed(self.closed, self.state(time, values, speeds), free) if self.closed else free
+        here = self._projected(time, values, speeds)
+        return pressed(self.closed, here, here.rates) if self.closed else here.rates
 
     def unheld_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state without the rigid contacts."""
-        free = self.rates(time, values, speeds)
-        return sprung(self.closed, self.state(time, values, speeds), free) if self.closed else free
+        here = self._projected(time, values, speeds)
+        return sprung(self.closed, here, here.rates) if self.closed else here.rates
 
     @property
     def rigid(self) -> tuple[StopContact, ...]:

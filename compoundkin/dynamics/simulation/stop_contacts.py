@@ -128,8 +128,7 @@ def sprung(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> R
     found = free
     for one in (one for one in contacts if one.stop.is_elastic):
         here, push = one.at(state), one.push(state)
-        is_stored = one.stop.energy(state.loaded) is not None
-        found = _pushed(state, found, here.normal * push, 0.0 if is_stored else push * here.rate)
+        found = _pushed(state, found, here.normal * push, push * here.rate if one.elastic.is_damped else 0.0)
     return found
 
 

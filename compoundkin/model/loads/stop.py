@@ -61,6 +61,11 @@ class Stop(PairLoad):
         return self.stiffness is not None
 
     @property
+    def is_damped(self) -> bool:
+        """Whether its ends have a damping, so that they give less back than they take."""
+        return self.damping is not None and bool(np.any(np.asarray(self.damping) != 0.0))
+
+    @property
     def ends(self) -> tuple[tuple[float, Number], ...]:
         """Its sides, LOW and HIGH, with their coordinates."""
         given = ((LOW, self.low), (HIGH, self.high))
@@ -114,7 +119,7 @@ class Stop(PairLoad):
 
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return the energy of elastic ends without damping; None with damping."""
-        if self.damping is not None and np.any(np.asarray(self.damping) != 0.0):
+        if self.is_damped:
             return None
         series = at.coordinate(self.pair)
         total: Number = 0.0 * series.c[0]
