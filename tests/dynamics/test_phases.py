@@ -120,6 +120,65 @@ def test_a_loop_that_opens_is_two_trees() -> None:
     assert np.exp(1j * end) == pytest.approx(np.exp(1j * own.motion.links["rocker"].angle[-1]), abs=1e-8)
 
 
+def slider_crank(*more: Any) -> ck.Mechanism:
+    """A slider-crank under gravity."""
+    return ck.Mechanism(
+        "Slider-crank",
+        ck.link("frame", O=0),
+        ck.link("crank", O=0, A=0.1),
+        ck.link("rod", A=0, B=0.35),
+        ck.link("piston", B=0),
+        ck.slide("piston", on="frame", at="B", through="O", angle=np.pi / 2, name="guide"),
+        ck.drawn(O=0, A=0.1, B=(0, 0.335)),
+        ck.drive("crank"),
+        ck.mass("crank", 3.0, at=(0.02, 0), inertia=0.02),
+        ck.mass("rod", 1.0, at=(0.15, 0), inertia=0.012),
+        ck.mass("piston", 2.0, at="B", inertia=0.01),
+        ck.gravity(0, -G),
+        *more,
+        units=SI,
+    )
+
+
+def five_bar(*more: Any) -> ck.Mechanism:
+    """A five-bar under gravity, driven at both fixed pins."""
+    return ck.Mechanism(
+        "Five-bar",
+        ck.link("frame", A=0, E=0.6),
+        ck.link("a", A=0, B=0.4),
+        ck.link("b", B=0, C=0.5),
+        ck.link("c", C=0, D=0.5),
+        ck.link("d", E=0, D=0.4),
+        ck.drive("a"),
+        ck.drive("d"),
+        *(ck.mass(name, 1.0, inertia=0.02) for name in "abcd"),
+        ck.gravity(0, -G),
+        *more,
+        units=SI,
+    )
+
+
+@pytest.mark.parametrize(
+    ("linkage", "pair", "start"),
+    [(four_bar, letter, {"crank": (1.0, 4.0)}) for letter in "ABCD"]
+    + [(slider_crank, pair, {"crank": (1.0, 4.0)}) for pair in ("O", "A", "B", "guide")]
+    + [(five_bar, letter, {"a": (2.0, 1.0), "d": (1.2, -1.0)}) for letter in "ABCDE"],
+)
+def test_any_pair_of_a_linkage_may_open(linkage: Any, pair: str, start: Any) -> None:
+    """Poses and velocities of all links go on, no energy is lost, and what is left is a motion that closes."""
+    found = ck.simulate(linkage(ck.release(pair, until=0.1)), start=start, until=0.4)
+    before, after = (phase.motion for phase in found.phases)
+    for name in before.mechanism.links:
+        one, other = before.links[name], after.links[name]
+        assert np.exp(1j * one.angle[-1]) == pytest.approx(np.exp(1j * other.angle[0]), abs=1e-9)
+        assert one.angular_velocity[-1] == pytest.approx(other.angular_velocity[0], abs=1e-7)
+    assert found.losses == {}
+    assert found.energy.worst < 1e-9
+    assert ck.verify(after).passed
+    forces = ck.force_analysis(after)
+    assert max(np.max(np.abs(drive.effort)) for drive in forces.drives.values()) < 1e-6
+
+
 def trebuchet(*more: Any) -> ck.Mechanism:
     """A beam with a hung counterweight, and a sling without mass that holds a stone."""
     return ck.Mechanism(

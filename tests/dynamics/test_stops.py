@@ -245,6 +245,29 @@ def test_two_stops_and_a_limit_position() -> None:
         assert before.time <= after.time
 
 
+def test_a_block_with_friction_bounces() -> None:
+    """Down an incline, against its stop, up and down again: each way has an acceleration of its own."""
+    incline = ck.Mechanism(
+        "Block on an incline",
+        ck.link("frame", O=(0, 0)),
+        ck.link("block", P=(0, 0)),
+        ck.slide("block", on="frame", at="P", through="O", angle=ck.deg(-30), name="way"),
+        ck.drive("block"),
+        ck.mass("block", MASS, at="P", inertia=0),
+        ck.gravity(0, -G),
+        ck.friction("way", 0.2),
+        ck.stop("way", high=1.0, restitution=0.5),
+        units=SI,
+    )
+    found = ck.simulate(incline, start=0.0, until=1.3)
+    down, up = (G * (0.5 + sense * 0.2 * np.cos(np.pi / 6)) for sense in (-1.0, 1.0))
+    first = np.sqrt(2.0 / down)
+    back = 0.5 * down * first
+    second = first + back / up + back / np.sqrt(up * down)
+    assert [event.time for event in found.events if event.name == "stop"] == pytest.approx([first, second], rel=1e-9)
+    assert found.energy.worst < 1e-9
+
+
 def test_stops_that_cannot_be() -> None:
     """Each is named, all at once; a start beyond a rigid stop is none."""
     wrong = (

@@ -90,7 +90,7 @@ def without_pair(state: KnownState, opened: Release, work: float) -> PhaseStart:
         items = [body if isinstance(item, Link) and item.name == carried.name else item for item in items]
         items, poses = [*items, *more[1:]], {**poses, **carried.poses}
     base = _written(chart.mechanism, items)
-    known = _driven_values(state)
+    known = {name: value for name, value in _driven_values(state).items() if name != dropped}
     kept = tuple(one for one in chart.stop_contacts if pair_meant(chart, one.stop.pair).name != pair.name)
     contact = as_profile_contact(pair)
     open_contacts = chart.open_contacts
@@ -290,7 +290,7 @@ def _carriage(
 MOST_PAIRS, MOST_CHOICES = 12, 200
 
 
-def _choices(mechanism: Mechanism) -> Iterator[list[Item]]:
+def _choices(mechanism: Mechanism) -> Iterator[list[Drive]]:
     """Yield the drivers by which a mechanism with freed coordinates may be driven."""
     structure = decompose(mechanism)
     count = structure.mobility.freedoms - len(mechanism.drives)
@@ -298,7 +298,11 @@ def _choices(mechanism: Mechanism) -> Iterator[list[Item]]:
     driven = {own.pair.name for own in structure.driven.values()}
     able = [pair for pair in structure.pairs if as_drivable(pair) and pair.name not in driven][:MOST_PAIRS]
     for some in list(combinations(able, count))[:MOST_CHOICES] if count >= 0 else ():
-        yield [_driver(pair, taken) for pair in some]
+        names, added = set(taken), list[Drive]()
+        for pair in some:
+            added.append(_driver(pair, names))
+            names.add(added[-1].name)
+        yield added
 
 
 def _driver(pair: Pair, taken: set[str]) -> Drive:
@@ -328,7 +332,7 @@ def _begun(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FewDigits)
         start = solve(mechanism, {one: [value] for one, value in values.items()}, order=1, modes=here)
-    if start.failed.any() or not start.regular.all():
+    if start.failed.any() or not start.regular.all() or not _has_poses(start, poses):
         raise InvalidInput(Problem("start", "it cannot be assembled there"))
     free = tuple(name for name in values if name not in laws)
     idle = _without_mass(DriverChart(start, free, laws), [values[name] for name in free], state.time)
@@ -338,6 +342,20 @@ def _begun(
     own_values = np.array([values[name] for name in free])
     speeds, lost = carried_speeds(state, chart, own_values)
     return _Begun(chart, np.concatenate([own_values, speeds]), lost)
+
+
+# Poses before and behind a change of pairs agree within this part of the size: what closes has a gap that is far below.
+SAME_POSE = 1e-6
+
+
+def _has_poses(start: Motion, poses: Mapping[str, Pose]) -> bool:
+    """Return whether a motion of one pose has the given poses."""
+    here = placed_at(start.poses, (0, 0))
+    return all(
+        abs(_last(one.z.c[0]) - _last(poses[link].z.c[0])) < SAME_POSE * start.size
+        and abs(_last(one.u.c[0]) - _last(poses[link].u.c[0])) < SAME_POSE
+        for link, one in here.items()
+    )
 
 
 # A driver that moves less than this part of the greatest inertia moves no mass: rounding squared.
