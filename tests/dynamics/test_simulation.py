@@ -715,3 +715,29 @@ def test_a_start_beyond_a_turn_winds_the_spring() -> None:
         lifted = sum(own.mass * 9.81 * (found.motion.links[own.link].at(own.at).y) for own in masses)
         stored = found.energy.potential - lifted - stiffness * angle**2 / 2.0
         assert np.ptp(stored) < 1e-9 * np.ptp(found.energy.potential)
+
+
+@pytest.mark.parametrize("rate", [1e2, 1e4])
+def test_a_stiff_damper_takes_an_implicit_method(rate: float) -> None:
+    """J w' = T - c w at the hundredfold and more of the time over which it dies away."""
+    rotor = rotor_under(ck.torque("rotor", 5.0)).replace(ck.damper(pair="O", rate=rate))
+    found = ck.simulate(rotor, start=(0.0, 3.0), until=1.0)
+    assert found.events[0].name == "stiff"
+    assert found.steps < 200
+    decay = 0.05 / rate
+    angle = 5.0 / rate * found.times + (3.0 - 5.0 / rate) * decay * (1.0 - np.exp(-found.times / decay))
+    np.testing.assert_allclose(found.motion.drives["rotor"].value, angle, rtol=0, atol=1e-10)
+    assert found.energy.worst < 1e-8
+
+
+def test_a_motion_in_syrup_is_that_of_the_limit_without_inertia() -> None:
+    """A heavy pendulum in syrup creeps: c q' = -m g l cos q, whose solution is the Gudermannian function."""
+    arm = ck.Mechanism(
+        "Pendulum", ck.link("frame", O=0), ck.link("arm", O=0, G=1.0), ck.drive("arm"),
+        ck.mass("arm", 1.0, at="G", inertia=0.0), ck.gravity(0, -9.81), ck.damper(pair="O", rate=1e5), units=SI,
+    )  # fmt: skip
+    slow = ck.simulate(arm, start=0.5, until=1e4)
+    assert slow.events[0].name == "stiff"
+    gudermann = 2.0 * np.arctanh(np.tan(0.25)) - 9.81e-5 * slow.times
+    exact = 2.0 * np.arctan(np.tanh(gudermann / 2.0))
+    np.testing.assert_allclose(slow.motion.drives["arm"].value, exact, atol=1e-8)

@@ -39,7 +39,7 @@ from compoundkin.model.pairs.contract import Ends, Poses, constraint_scales
 # between two projections is far below, and a change point is that near for an instant only.
 RANK = 1e-8
 # A change point is near where the least singular value is this part of what it has been, or of the greatest one.
-NEAR, NEAR_AT_ALL = 0.1, 1e-2
+NEAR, NEAR_AT_ALL = 0.1, 1e-3
 # Projections end where they move nothing by more than this (parts of the size, radians), or after so many steps. Below
 # the third number the Jacobian has hardly changed and is used once more.
 PROJECTED, PROJECTIONS, CHORD = 1e-14, 8, 1e-6

@@ -1,7 +1,8 @@
-"""The equation of motion integrated by an explicit method, and the course of its steps and states, chart by chart.
+"""The equation of motion integrated, and the course of its steps and states, chart by chart.
 
 Source: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
-section II.10: the method of Dormand and Prince of order 8, as SciPy has it.
+section II.10: the method of Dormand and Prince of order 8, as SciPy has it; E. Hairer and G. Wanner, Solving Ordinary
+Differential Equations II, 2nd ed., Springer 1996, section IV.8: Radau IIA, where loads are stiff.
 """
 
 from __future__ import annotations
@@ -52,6 +53,8 @@ STICKS = "sticks"
 SLOWEST = 1e-3
 # The name of the event where other coordinates take a driver's place, and how often one pair follows another as such.
 COORDINATE, MOST_CHANGES = "coordinate", 2
+# The name of the event where loads are stiff.
+STIFFNESS = "stiff"
 # Next to a change point errors of steps may be rounding, up to this.
 LOOSEST = 1e-7
 # Progress counts so many parts.
@@ -70,6 +73,7 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
         # next to a change point no tolerance is kept that is below the rounding there
         loosened = max(1.0, min(chart.digits_lost(solver.t, solver.y), LOOSEST) / course.tolerance)
         solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
+        before = _Begin(solver.t, solver.y, solver.f)
         solver.step()
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
@@ -78,7 +82,9 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
             chart, state = changed
             solver = _begun(chart, course.last, state, course)
             continue
-        course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output(), chart.memory))
+        course.steps.append(
+            Step(chart, float(solver.t_old), float(solver.t), _between(solver, before, n), chart.memory)
+        )
         passed = _passed(course)
         if passed is not None and (passed.state is None or passed.time >= course.until):
             return None
@@ -96,6 +102,8 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
                 solver = _begun(chart, course.last, state, course)
             elif solver.status == "finished" and course.last < course.until and not course.ended:
                 solver = _behind_break(chart, solver, course)
+            elif solver.status == "running" and course.turns_stiff(chart, solver):
+                solver = _begun(chart, course.last, solver.y, course)
         else:
             assert passed.state is not None
             state = passed.state
@@ -205,6 +213,8 @@ def _changed(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart,
     """
     n = len(chart.free)
     is_regular = chart.is_regular(solver.y[:n])
+    if _stalls(solver, course) and solver.status != "failed" and solver.step_size * _decay(chart, solver) > DYING:
+        return None
     is_singular = chart.digits_lost(solver.t, solver.y) > course.tolerance or not is_regular
     if _hesitates(solver, course) and (chart.mechanism.frictions or not is_singular):
         beyond = _beyond_jump(chart, solver, course)
@@ -495,8 +505,8 @@ def _stop(course: SimulatedCourse, name: str, text: str) -> None:
 
 
 def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> Any:
-    """Return SciPy's integrator at a state of a chart."""
-    from scipy.integrate import DOP853
+    """Return the integrator at a state of a chart."""
+    from scipy.integrate import DOP853, Radau
 
     n = len(chart.free)
 
@@ -510,9 +520,65 @@ def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse) -
     energy = chart.state(time, state[:n], pace).kinetic
     allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
     end = next((one.before for one in course.breaks if one.before > time), course.until)
-    solver: Any = DOP853(grown, time, state, end, rtol=course.tolerance, atol=allowed)
-    solver.allowed = allowed
+    method = Radau if course.implicit else DOP853
+    solver: Any = method(grown, time, state, end, rtol=course.tolerance, atol=allowed)
+    solver.allowed, solver.is_implicit = allowed, course.implicit
     return solver
+
+
+class _Begin(NamedTuple):
+    """The time, the state and its rates at the beginning of a step."""
+
+    time: float
+    state: Number
+    rates: Number
+
+
+def _between(solver: Any, begin: _Begin, n: int) -> Callable[[Number], Number]:
+    """Return the state as a function of the time in the last step.
+
+    What an implicit method knows in between is coarse: there coordinates are polynomials of order 5 by their values,
+    speeds and accelerations at both ends, and the work one of order 3 by the powers.
+    """
+    if not solver.is_implicit:
+        found: Callable[[Number], Number] = solver.dense_output()
+        return found
+    from scipy.interpolate import BPoly
+
+    ends, states, rates = [begin.time, solver.t], (begin.state, solver.y), (begin.rates, solver.f)
+    moved = [[y[:n], f[:n], f[n : 2 * n]] for y, f in zip(states, rates, strict=True)]
+    places = BPoly.from_derivatives(ends, moved)
+    work = BPoly.from_derivatives(ends, [[y[-1:], f[-1:]] for y, f in zip(states, rates, strict=True)])
+    speeds = places.derivative()
+    return lambda times: np.concatenate([places(times), speeds(times), work(times)], axis=-1).T
+
+
+# Steps are checked for stiffness so often; they are short for stability alone where they are longer than this over the
+# rate at which speeds die away, and the method is changed where that is so at as many checks in a row.
+CHECKED, STIFF, IN_A_ROW = 10, 2.0, 5
+# A step as long as this part of the time in which speeds die away has collapsed for that, and nothing else.
+DYING = 1e-2
+# The rate at which speeds die away is found by so many steps of the power method, with this part of the pace.
+POWERS, APART = 3, 1e-5
+
+
+def _decay(chart: Chart, solver: Any) -> float:
+    """Return the fastest rate at which speeds die away: the dominant derivative of accelerations by speeds."""
+    n = len(chart.free)
+    y, f = solver.y, solver.f
+    scales, found = chart.scales, 0.0
+    way = f[n : 2 * n] / scales
+    pace = float(np.max(np.abs(y[n : 2 * n]) / scales) + np.sqrt(np.max(np.abs(way))))
+    for _ in range(POWERS):
+        size = float(np.linalg.norm(way))
+        if not size > 0.0:
+            return 0.0
+        step = APART * pace * way / size
+        beside = chart.followed_rates(float(solver.t), y[:n], y[n : 2 * n] + scales * step).accelerations
+        change = (beside - f[n : 2 * n]) / scales
+        found = -float(step @ change) / float(step @ step)
+        way = change
+    return found
 
 
 def _driver_paces(chart: Chart, speeds: Number, accelerations: Number, duration: float) -> Number:
@@ -614,6 +680,19 @@ class SimulatedCourse:
     breaks: tuple[LoadBreak, ...] = ()
     restarts: list[float] = field(default_factory=list)  # times of restarts behind steps that collapsed
     ended: bool = False
+    implicit: bool = False  # whether an implicit method has taken over
+    short: int = 0  # checks in a row at which steps were short for stability alone
+
+    def turns_stiff(self, chart: Chart, solver: Any) -> bool:
+        """Return whether steps have become so short for stability alone that an implicit method takes over."""
+        if self.implicit or len(self.steps) % CHECKED:
+            return False
+        self.short = self.short + 1 if solver.step_size * _decay(chart, solver) > STIFF else 0
+        self.implicit = self.short == IN_A_ROW
+        if self.implicit:
+            text = "motions die away so fast that an implicit method (Radau IIA of order 5) takes over"
+            self.events.append(SimulationEvent(self.last, STIFFNESS, text, False))
+        return self.implicit
 
     def at(self, times: Number) -> list[ChartStretch]:
         """Return the states at times in order, chart by chart."""
