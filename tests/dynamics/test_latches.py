@@ -73,6 +73,38 @@ def test_a_capture_keeps_the_momentum() -> None:
     assert found.energy.worst < 1e-9
 
 
+def test_a_clutch_is_closed_and_opened() -> None:
+    """Two flywheels turn as one between two times: momentum, what is lost, and a torque that both share."""
+    wheels = ck.Mechanism(
+        "Flywheels with a clutch",
+        ck.link("frame", O=0),
+        ck.link("driving", O=0, P=1),
+        ck.link("driven", O=0, Q=1),
+        ck.drive("driving"),
+        ck.drive("driven"),
+        ck.mass("driving", 1.0, at="O", inertia=0.3),
+        ck.mass("driven", 1.0, at="O", inertia=0.2),
+        ck.torque("driving", 1.5),
+        ck.latch("O(driving-driven)", since=0.4, until=1.0, name="clutch"),
+        units=SI,
+    )
+    found = ck.simulate(wheels, start={"driving": (0.0, 20.0)}, until=1.5)
+    assert [(event.name, event.time) for event in found.events] == [
+        ("catches", pytest.approx(0.4, abs=1e-12)),
+        ("opens", pytest.approx(1.0, abs=1e-12)),
+    ]
+    slip = 20.0 + 5.0 * 0.4
+    common = 0.3 * slip / 0.5 + 3.0 * 0.6
+    assert found.motion.drives["driven"].rate[-1] == pytest.approx(common, rel=1e-9)
+    assert found.motion.drives["driving"].rate[-1] == pytest.approx(common + 5.0 * 0.5, rel=1e-9)
+    assert found.losses["clutch"] == pytest.approx(0.3 * 0.2 / 0.5 * slip**2 / 2.0, rel=1e-9)
+    assert found.energy.worst < 1e-9
+    # the driven flywheel is turned by the clutch alone
+    hold = found.motion.mechanism.loads["hold of clutch"].amount
+    within = (found.times > 0.45) & (found.times < 0.95)
+    np.testing.assert_allclose(np.abs(hold[within]), 0.2 * 3.0, rtol=1e-9)
+
+
 def test_a_detent_opens_where_its_force_is_too_great() -> None:
     """Two fifths of what pulls the second cart pass through it: 30 N of 75 N."""
     pull = ck.force("two", (lambda t: 60.0 * t, 0), at="Q")

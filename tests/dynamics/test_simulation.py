@@ -741,3 +741,29 @@ def test_a_motion_in_syrup_is_that_of_the_limit_without_inertia() -> None:
     gudermann = 2.0 * np.arctanh(np.tan(0.25)) - 9.81e-5 * slow.times
     exact = 2.0 * np.arctan(np.tanh(gudermann / 2.0))
     np.testing.assert_allclose(slow.motion.drives["arm"].value, exact, atol=1e-8)
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 0, 1, 2), (3, 2, 1, 0)])
+def test_springs_at_pins_do_not_depend_on_the_order_of_links(order: tuple[int, ...]) -> None:
+    """A pin may be taken the other way round when it is solved: its turns are counted in its own sense."""
+    links = (
+        ck.link("frame", A=0, D=0.4),
+        ck.link("crank", A=0, B=0.1),
+        ck.link("coupler", B=0, C=0.25),
+        ck.link("rocker", D=0, C=0.25),
+    )
+    sprung = ck.Mechanism(
+        "Sprung four-bar",
+        *(links[k] for k in order),
+        ck.drive("crank"),
+        ck.mode(1, "coupler"),
+        ck.mass("crank", 0.5, inertia=0.002),
+        ck.mass("coupler", 1.0, inertia=0.01),
+        ck.mass("rocker", 0.8, inertia=0.004),
+        ck.spring(pair="C", stiffness=0.5),
+        ck.spring(pair="B", stiffness=0.3),
+        units=SI,
+    )
+    found = ck.simulate(sprung, start={"crank": (1.0, 12.0)}, until=1.0)
+    assert found.energy.worst < 1e-9
+    assert np.max(np.abs(found.motion.pairs["C"].value)) > np.pi / 2

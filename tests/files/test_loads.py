@@ -76,6 +76,7 @@ def loaded(draw: st.DrawFn) -> ck.Mechanism:
         ck.latch("D", draw(finite), over="stroke", value=draw(finite), strength=draw(st.none() | positive)),
         ck.release("C", until=draw(positive), strength=draw(st.none() | positive), over="D", value=draw(finite)),
         ck.latch("stroke", until=draw(positive), over="crank", value=draw(finite)),
+        ck.latch("B", since=draw(positive), strength=draw(positive)),
         ck.friction("B", draw(positive), radius=draw(positive)),
         ck.friction("stroke", draw(positive), length=draw(st.none() | positive)),
     ]  # fmt: skip

@@ -22,7 +22,14 @@ from compoundkin.base.arrays import Number, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, moving_masses
-from compoundkin.dynamics.simulation.driver_state import ONLY, LoadedState, Rates, prescribed_rates
+from compoundkin.dynamics.simulation.driver_state import (
+    ONLY,
+    LoadedState,
+    Rates,
+    first_angle,
+    pair_named,
+    prescribed_rates,
+)
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
 from compoundkin.kinematics.block import Block
@@ -311,8 +318,10 @@ class BodyChart:
                 begun = float(np.ravel(self.start.drives[name].value)[0]) * own.pair.driven_by(own.drive.link)
                 break
         else:
-            begun, own = self.turned.get(pair, angle), None
-        meant = self.order.pairs[pair] if own is None else own.pair
+            if pair not in self.turned:
+                self.turned[pair] = first_angle(self.start, pair)
+            begun, own = self.turned[pair], None
+        meant = pair_named(self.start, pair) if own is None else own.pair
         return angle + float(whole_turns(begun + self._turning(meant, values) - angle))
 
     def _world(self, values: Number, speeds: Number) -> dict[str, Pose]:

@@ -12,7 +12,14 @@ import numpy as np
 from compoundkin.base.arrays import Number, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.dynamics.mass_motion import moving_masses
-from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers, prescribed_rates
+from compoundkin.dynamics.simulation.driver_state import (
+    DriverState,
+    LinearAngle,
+    Rates,
+    by_drivers,
+    first_angle,
+    prescribed_rates,
+)
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
 from compoundkin.kinematics.block import Block
@@ -197,8 +204,7 @@ class DriverChart:
             name, own = self.driven[pair]
             return float(values[self.names.index(name)]) * own.pair.driven_by(own.drive.link)
         if pair not in self.turned:
-            first = float(np.ravel(self.start.pairs[pair].value)[0])
-            self.turned[pair] = LinearAngle(first, None, np.zeros(len(self.names)))
+            self.turned[pair] = LinearAngle(first_angle(self.start, pair), None, np.zeros(len(self.names)))
         return angle + float(whole_turns(self.turned[pair].at(values) - angle))
 
     def _block(self, values: Number, speeds: Number) -> Block:

@@ -49,6 +49,21 @@ def prescribed_rates(law: Law, time: float) -> tuple[float, float, float]:
     return value, speed, acceleration
 
 
+def pair_named(start: Motion, name: str) -> Pair:
+    """Return a pair as a motion has it, or between two links of a multiple pin that no pair joins."""
+    found = start.solving_order.pairs.get(name) or start.mechanism.names.coordinate(name)
+    assert found is not None
+    return found
+
+
+def first_angle(start: Motion, name: str) -> float:
+    """Return the angle of a pair at the only pose of a motion."""
+    if name in start.solving_order.pairs:
+        return float(np.ravel(start.pairs[name].value)[0])
+    first, second = (float(np.ravel(start.links[link].angle)[0]) for link in pair_named(start, name).members[:2])
+    return second - first
+
+
 class StateChart(Protocol):
     """The part of a chart that its states need."""
 
@@ -112,8 +127,8 @@ class DriverState:
 
     def angle_of(self, name: str) -> LinearAngle:
         """Return the angle of a pair here, with its rates by the drivers."""
-        here = float(np.ravel(self.loaded.coordinate(name).c[0])[0])
-        return LinearAngle(here, self.values, self.slopes(self.chart.order.pairs[name]))
+        angle, slopes = self.loaded.counted_angle(pair_named(self.chart.start, name))
+        return LinearAngle(angle, self.values, slopes)
 
     @cached_property
     def forces(self) -> tuple[Number, Number]:
@@ -238,6 +253,13 @@ class LoadedState(LoadedBlock):
         slopes = np.broadcast_to(moved[1], (self.count + 1, 1))[:-1, 0] if len(moved) > 1 else np.zeros(self.count)
         bias = 2.0 * float(np.ravel(moved[2])[-1]) if len(moved) > 2 else 0.0
         return sign * slopes, sign * bias
+
+    def counted_angle(self, pair: Pair) -> tuple[float, Number]:
+        """Return the angle of a pair with its turns, and its rates by the drivers, in the sense of the pair itself."""
+        assert self.columns is not None
+        moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members)).c
+        slopes = np.broadcast_to(moved[1], (self.count + 1, 1))[:-1, 0] if len(moved) > 1 else np.zeros(self.count)
+        return float(np.ravel(self._counted(pair))[0]), slopes
 
     def _unit(self, link: str) -> Pose:
         """Return the pose of a link with its rates at unit rate of each coordinate."""

@@ -22,7 +22,7 @@ from compoundkin.dynamics.mass_motion import MovingMass, moving_masses
 from compoundkin.dynamics.simulation.body_chart import BodyChart
 from compoundkin.dynamics.simulation.coordinate_change import Chart, as_driven, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import KnownState, LinearAngle
+from compoundkin.dynamics.simulation.driver_state import KnownState, LinearAngle, pair_named
 from compoundkin.dynamics.simulation.stop_contacts import StopContact
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, placed_at
@@ -150,9 +150,8 @@ def _continued(
     chart.phase, chart.open_contacts = state.chart.phase + 1, open_contacts
     chart.stop_contacts = stop_contacts
     chart.closed = tuple(one for one in state.chart.closed if one in stop_contacts)
-    angles = {name: _angle(state, name) for name in state.chart.turned if name in chart.order.pairs}
-    angles |= {own.pair.name: _angle(state, own.pair.name) for own in state.chart.start.structure.driven.values()
-               if own.pair.free_is_angle and own.pair.name in chart.order.pairs}  # fmt: skip
+    driven = [own.pair.name for own in state.chart.start.structure.driven.values() if own.pair.free_is_angle]
+    angles = {name: _angle(state, chart, name) for name in (*state.chart.turned, *driven) if name in chart.order.pairs}
     none = np.zeros(len(chart.names))
     chart.turned |= {name: LinearAngle(angle, None, none) for name, angle in angles.items()}
     found, first = integrable(chart, state.time, np.append(begun.state, work - begun.lost))
@@ -161,8 +160,11 @@ def _continued(
     return PhaseStart(found, first, begun.lost)
 
 
-def _angle(state: KnownState, pair: str) -> float:
-    return float(np.ravel(state.loaded.coordinate(pair).c[0])[0])
+def _angle(state: KnownState, chart: DriverChart, name: str) -> float:
+    """Return an angle of a pair with its turns, in the sense of the pair in another chart."""
+    here, there = pair_named(state.chart.start, name), pair_named(chart.start, name)
+    angle, _ = state.loaded.counted_angle(here)
+    return angle if here.members == there.members else -angle
 
 
 def pair_meant(chart: Chart, name: str) -> Pair:

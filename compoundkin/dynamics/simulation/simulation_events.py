@@ -165,10 +165,32 @@ class CatchWatch(Watch):
 
     def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
         """Close the latch by an impact."""
+        return self._caught(chart, time, state)
+
+    def _caught(self, chart: Chart, time: float, state: Number) -> StopPassage:
         one, name = self.contact, self.contact.stop.name
         after, lost = _met(chart, time, state, one, 0.0)
         text = f"{name} catches {one.stop.pair} at {one.end:.6g}"
         return StopPassage(SimulationEvent(time, CATCHES, text, False, lost, name), after)
+
+
+@dataclass(frozen=True, eq=False)
+class ClutchWatch(CatchWatch):
+    """A latch that catches at a time, wherever it is."""
+
+    since: float = field(kw_only=True)
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return the time that is left."""
+        return self.since - time
+
+    def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
+        """Close the latch where it is."""
+        n = len(chart.free)
+        here = chart.state(time, state[:n], state[n : 2 * n]).loaded.coordinate(self.contact.stop.pair)
+        one = replace(self.contact, end=float(np.ravel(here.c[0])[0]))
+        chart.stop_contacts = tuple(one if other is self.contact else other for other in chart.stop_contacts)
+        return replace(self, contact=one)._caught(chart, time, state)
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,6 +262,9 @@ def stop_watches(chart: Chart) -> Iterator[ContactWatch]:
         latch = as_latch(one.stop)
         if latch is None or latch.teeth is not None:
             yield StopWatch(STOP, _speed, one.text, False, True, contact=one)
+        elif one not in chart.closed and latch.since is not None:
+            since = float(np.ravel(latch.since)[0])
+            yield ClutchWatch(CATCHES, _speed, one.text, False, True, contact=one, since=since)
         elif one not in chart.closed:
             yield CatchWatch(CATCHES, _speed, one.text, False, contact=one)
         else:

@@ -108,7 +108,9 @@ def contacts_of(loads: Iterable[Load], state: KnownState) -> tuple[StopContact, 
         elif latch is not None:
             here = float(np.ravel(state.loaded.coordinate(latch.pair).c[0])[0])
             side = LOW if latch.teeth is None or number(latch.teeth, latch.where) > 0.0 else HIGH
-            end = here if latch.at is None else number(latch.at, latch.where)
+            # one that catches at a time does so where it is then
+            start = here if latch.since is None else np.nan
+            end = start if latch.at is None else number(latch.at, latch.where)
             found.append(StopContact(latch, side, end, latch.teeth is None))
     return tuple(found)
 

@@ -87,6 +87,11 @@ class Latch(OpeningLoad):
         kw_only=True,
         metadata=value_key("coordinate", "Where it catches; it holds from the start if left out. Degrees of an angle."),
     )
+    since: Number | None = field(
+        default=None,
+        kw_only=True,
+        metadata=value_key("length", "The time at which it catches wherever it is, seconds."),
+    )
     teeth: Number | None = field(
         default=None,
         kw_only=True,
@@ -101,7 +106,13 @@ class Latch(OpeningLoad):
         yield from super().problems(written, where)
         if self.teeth is not None and np.any(np.asarray(self.teeth) == 0.0):
             yield Problem(f"{where}.teeth", "a ratchet has a pitch", "give the coordinate from tooth to tooth")
-        if self.teeth is not None and (self.at is not None or self.opens):
+        if self.since is not None and not np.all(np.asarray(self.since) >= 0.0):
+            yield Problem(f"{where}.since", "a time is not negative", "give seconds after the start")
+        if self.since is not None and self.at is not None:
+            yield Problem(f"{where}.since", "it catches at a time or at a coordinate", "leave one of both out")
+        if self.since is not None and self.until is not None and not np.all(np.asarray(self.since) < self.until):
+            yield Problem(f"{where}.until", "it opens before it catches", "give a later time")
+        if self.teeth is not None and (self.at is not None or self.since is not None or self.opens):
             yield Problem(f"{where}.teeth", "a ratchet neither catches nor opens", "leave the other conditions out")
 
 
@@ -140,6 +151,7 @@ def latch(
     pair: str,
     at: Any = None,
     *,
+    since: Any = None,
     teeth: Any = None,
     strength: Any = None,
     until: Any = None,
@@ -150,15 +162,16 @@ def latch(
     """Return a latch that holds the free coordinate of a pair.
 
     It holds from the start, or catches where the coordinate comes to `at` (radians, with full turns counted, or a
-    length). It opens at the time `until` (seconds), where the coordinate of the pair `over` comes to `value`, or where
-    its force exceeds `strength`; it holds for ever where none of these is given, and opens once. With `teeth` it is a
-    ratchet: the coordinate goes in the sense of that pitch only, and falls back to the last tooth at the most.
+    length), or at the time `since` (seconds) wherever it is, as a clutch. It opens at the time `until`, where the
+    coordinate of the pair `over` comes to `value`, or where its force exceeds `strength`; it holds for ever where none
+    of these is given, and opens once. With `teeth` it is a ratchet: the coordinate goes in the sense of that pitch
+    only, and falls back to the last tooth at the most.
 
     >>> latch("guide", until=0.5).opens, latch("A", 1.2, strength=300).at
     (True, 1.2)
     """
     where = f"latches.{name or pair}"
-    given = {"at": at, "teeth": teeth, "strength": strength, "until": until, "value": value}
+    given = {"at": at, "since": since, "teeth": teeth, "strength": strength, "until": until, "value": value}
     numbers: dict[str, Any] = {
         key: None if number is None else real(f"{where}.{key}", number) for key, number in given.items()
     }
