@@ -352,6 +352,7 @@ def _load(kinds: tuple[type[Any], ...], raw: Any, where: str, log: Recovery) -> 
     is_own = getattr(kind, "own_variable", "") == COORDINATE
     over = getattr(kind, "coordinates_over", {}) if isinstance(raw, dict) else {}
     others = {key: log.is_angle(str(raw.get(name))) for key, name in over.items()}
+    others |= dict.fromkeys(getattr(kind, "turning", ()), True)
     item: Item = kind(**log.table(raw, kind.keys, where, log.is_angle(str(pair)) if is_own else False, others))
     return item
 
@@ -369,7 +370,7 @@ def load_table(mechanism: Mechanism, item: Any) -> dict[str, Any]:
     """Return the amounts of a load as a file writes them. Raises InvalidInput for a Python function."""
     own = getattr(item, "own_variable", "") == COORDINATE and doc.name_is_angle(mechanism, item.pair)
     return {key: _amount(mechanism, f"{item.where}.{key}", getattr(item, key), bool(own))
-            for key in getattr(item, "amounts", ())}  # fmt: skip
+            for key in getattr(item, "amounts", ()) if getattr(item, key) is not None}  # fmt: skip
 
 
 def _amount(mechanism: Mechanism, where: str, held: Any, own: bool) -> Any:

@@ -16,6 +16,7 @@ from compoundkin.model.loads.contract import Load, NamedParts
 from compoundkin.model.loads.friction import Friction
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass
+from compoundkin.model.loads.motor import rotors
 from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.outlines import LinkOutline
 from compoundkin.model.pairs import Pair, Revolute, pairs_among
@@ -56,10 +57,13 @@ class LoadDefinition:
 
     @cached_property
     def masses(self) -> dict[str, Mass]:
-        """The masses by their links, completed from the links' points."""
+        """The masses by their links, completed from the links' points, with the rotors of motors that they turn."""
         stated = [item for item in self.items if isinstance(item, Mass)]
-        return {item.link: item if item.is_complete else item.completed(self.geometry.points[item.link])
-                for item in stated}  # fmt: skip
+        found = {item.link: item if item.is_complete else item.completed(self.geometry.points[item.link])
+                 for item in stated}  # fmt: skip
+        for link, inertia in rotors(self.loads.values()):
+            found[link] = replace(found[link], inertia=found[link].inertia + inertia)
+        return found
 
     @cached_property
     def gravity(self) -> Number:

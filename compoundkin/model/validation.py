@@ -21,6 +21,7 @@ from compoundkin.model.loads.contract import Load, NamedParts
 from compoundkin.model.loads.friction import Friction
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass, uniform_body
+from compoundkin.model.loads.motor import rotors
 from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.outlines import OUTLINES, LinkOutline
 from compoundkin.model.pairs import Pair
@@ -451,7 +452,18 @@ def load_problems(mechanism: MechanismDefinition, names: NamedParts, has_units: 
             whole = item.completed(names) if isinstance(item, Load) else item
             found += whole.problems(names, where)
             found += _unknown_tables(where, item, names)
+    found += _rotors_without_masses(mechanism, names)
     return [*found, *_repeated_loads(mechanism, names), *_gravity_problems(mechanism), *_load_shape_problems(mechanism)]
+
+
+def _rotors_without_masses(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:
+    """Find rotors with an inertia on links without a mass, in whose inertia they would be."""
+    heavy = {item.link for item in mechanism.items if isinstance(item, Mass)}
+    for where, item in placed_loads(mechanism):
+        for link, _ in rotors([item.completed(names)] if isinstance(item, Load) else []):
+            if link and link not in heavy:
+                remedy = f'write mass("{link}", ...) too, or leave the inertia out'
+                yield Problem(f"{where}.inertia", f"{link!r}, which it turns, has no mass", remedy)
 
 
 def placed_loads(mechanism: MechanismDefinition) -> Iterator[tuple[str, MassOrLoad]]:

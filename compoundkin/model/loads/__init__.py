@@ -12,6 +12,7 @@ from compoundkin.model.loads.friction import Friction, friction
 from compoundkin.model.loads.gravity import Gravity, gravity
 from compoundkin.model.loads.latch import Latch, Release, latch, release
 from compoundkin.model.loads.mass import Mass, mass
+from compoundkin.model.loads.motor import Motor, motor
 from compoundkin.model.loads.pretension import Pretension, pretension
 from compoundkin.model.loads.spring import PairSpring, Spring, spring
 from compoundkin.model.loads.stop import Stop, stop
@@ -28,6 +29,7 @@ __all__ = [
     "Load",
     "LoadElement",
     "Mass",
+    "Motor",
     "PairDamper",
     "PairLoad",
     "PairSpring",
@@ -43,6 +45,7 @@ __all__ = [
     "gravity",
     "latch",
     "mass",
+    "motor",
     "pretension",
     "release",
     "spring",
@@ -50,7 +53,19 @@ __all__ = [
     "torque",
 ]
 # Every kind of load.
-KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper, Stop, Latch, Release)
+KINDS: tuple[type[Load], ...] = (
+    Force,
+    Torque,
+    Effort,
+    Spring,
+    PairSpring,
+    Damper,
+    PairDamper,
+    Motor,
+    Stop,
+    Latch,
+    Release,
+)
 # What each table of a mechanism file may hold.
 _TABLED: tuple[type[Any], ...] = (Mass, *KINDS, Friction, Pretension)
 WRITTEN: dict[str, tuple[type[Any], ...]] = {

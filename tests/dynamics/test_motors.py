@@ -1,0 +1,131 @@
+"""Motors: torques over speed against closed forms and quadrature, gears against what they stand for, run-ups."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import compoundkin as ck
+from compoundkin.errors import InvalidMechanism
+from compoundkin.files import dumps, loads
+
+SI = {"length": "m", "mass": "kg", "force": "N"}
+
+
+def rotor(*more: object, inertia: float = 0.05) -> ck.Mechanism:
+    links = ck.link("frame", O=0), ck.link("rotor", O=0, P=1), ck.drive("rotor")
+    return ck.Mechanism("Rotor", *links, ck.mass("rotor", 1.0, at="O", inertia=inertia), *more, units=SI)
+
+
+def torques(motor: object, speeds: np.ndarray) -> np.ndarray:
+    """What a motor gives at speeds of its pair, by the effort that it leaves to the driver."""
+    found = [ck.force_analysis(ck.solve(rotor(motor), [0.0], speed=speed)).drives["rotor"].effort for speed in speeds]
+    return -np.ravel(found)
+
+
+def test_a_direct_current_motor_runs_up_as_an_exponential() -> None:
+    """J w' = M0 (1 - w / w0): w = w0 (1 - exp(-t / T)), T = J w0 / M0."""
+    found = ck.simulate(rotor(ck.motor("rotor", stall=4.0, no_load=100.0)), start=0.0, until=5.0)
+    lag = 0.05 * 100.0 / 4.0
+    rates = 100.0 * (1.0 - np.exp(-found.times / lag))
+    np.testing.assert_allclose(found.motion.drives["rotor"].rate, rates, rtol=0, atol=1e-8 * 100.0)
+    assert found.energy.worst < 1e-9
+
+
+def test_an_induction_motor_follows_kloss() -> None:
+    """The greatest torque is at its slip, and slips whose product is its square have the same torque."""
+    motor = ck.motor("rotor", breakdown=30.0, synchronous=157.0, slip=0.2)
+    at = lambda s: float(torques(motor, np.array([157.0 * (1.0 - s)]))[0])  # noqa: E731
+    assert at(0.2) == pytest.approx(30.0, rel=1e-14)
+    assert max(at(0.199), at(0.201)) < 30.0
+    for s in (0.01, 0.05, 0.5, 1.0):
+        assert at(s) == pytest.approx(at(0.04 / s), rel=1e-12)
+        assert at(s) == pytest.approx(60.0 / (s / 0.2 + 0.2 / s), rel=1e-13)
+    assert at(0.0) == pytest.approx(0.0, abs=1e-12)
+    assert at(-0.2) == pytest.approx(-30.0, rel=1e-14)  # a generator beyond the speed of its field
+
+
+def test_the_run_up_of_an_induction_motor_takes_the_time_of_the_quadrature() -> None:
+    """t = J int dw / (M(w) - ML)."""
+    motor, load = ck.motor("rotor", breakdown=30.0, synchronous=157.0, slip=0.2), ck.torque("rotor", -8.0)
+    reached = lambda state: state["rotor.angular_velocity"] - 140.0  # noqa: E731
+    found = ck.simulate(rotor(motor, load), start=0.0, until=5.0, events={"reached": reached}, stop="reached")
+
+    def surplus(w: float) -> float:
+        s = 1.0 - w / 157.0
+        return 60.0 / (s / 0.2 + 0.2 / s) - 8.0
+
+    time = 0.05 * quad(lambda w: 1.0 / surplus(w), 0.0, 140.0, epsabs=0, epsrel=1e-12)[0]
+    assert found.events[-1].time == pytest.approx(time, rel=1e-8)
+    held = ck.simulate(rotor(motor, load), start=0.0, until=5.0).motion.drives["rotor"].rate[-1]
+    slip = np.roots([8.0 / 0.2, -60.0, 8.0 * 0.2]).min()
+    assert held == pytest.approx(157.0 * (1.0 - slip), rel=1e-8)
+
+
+def test_a_gear_is_an_effort_and_an_inertia() -> None:
+    """Behind a gear a motor has gear times the torque, and the square of the gear times the inertia."""
+    geared = ck.motor("rotor", stall=0.4, no_load=1000.0, gear=10.0, inertia=2e-4)
+    direct = ck.effort("rotor", lambda w: 4.0 * (1.0 - w / 100.0))
+    one = ck.simulate(rotor(geared), start=0.0, until=2.0, times=[0.0, 1.0, 2.0])
+    other = ck.simulate(rotor(direct, inertia=0.05 + 0.02), start=0.0, until=2.0, times=[0.0, 1.0, 2.0])
+    np.testing.assert_allclose(one.motion.drives["rotor"].value, other.motion.drives["rotor"].value, rtol=1e-11)
+    assert np.max(np.abs(one.forces.drives["rotor"].effort)) < 1e-9
+    assert ck.verify(one.forces).passed
+
+
+@pytest.mark.parametrize(("speed", "torque"), [(-5.0, 4.0 / 0.8), (5.0, 4.0 * 0.8)])
+def test_the_loss_of_a_gear_is_against_the_flow_of_power(speed: float, torque: float) -> None:
+    """A motor that drives loses a part in the gear; one that is driven back is the harder to turn."""
+    motor = ck.motor("rotor", torque=0.4, gear=10.0, efficiency=0.8)
+    assert torques(motor, np.array([speed]))[0] == pytest.approx(torque, rel=1e-14)
+
+
+def test_a_table_and_its_bounds() -> None:
+    table = {"at": [0.0, 50.0, 100.0], "values": [5.0, 4.0, 0.0]}
+    found = torques(ck.motor("rotor", torque=table, limit=4.5, power=100.0), np.array([0.0, 20.0, 40.0, 75.0]))
+    np.testing.assert_allclose(found, [4.5, 4.5, 100.0 / 40.0, 100.0 / 75.0], rtol=1e-14)
+
+
+def test_a_servo_keeps_its_speed_as_far_as_its_torque_goes() -> None:
+    """At full torque up to near the speed, then exponentially: J w' = k (w0 - w)."""
+    servo = ck.motor("rotor", speed=20.0, gain=5.0, limit=2.0)
+    found = ck.simulate(rotor(servo), start=0.0, until=1.0)
+    bend = 20.0 - 2.0 / 5.0
+    time = 0.05 * bend / 2.0
+    rates = np.where(found.times < time, 40.0 * found.times, 20.0 - 0.4 * np.exp(-(found.times - time) * 100.0))
+    np.testing.assert_allclose(found.motion.drives["rotor"].rate, rates, rtol=0, atol=1e-7)
+
+
+def test_files_there_and_back() -> None:
+    motors = [
+        ck.motor("rotor", stall=4.0, no_load=100.0, gear=-3.0, efficiency=0.9, inertia=1e-3, limit=3.0),
+        ck.motor("rotor", breakdown=30.0, synchronous=157.0, slip=0.2, power=1e3, name="second"),
+        ck.motor("O", torque={"at": [0.0, 1.0], "values": [2.0, 1.0]}, name="third"),
+        ck.motor("O", speed=20.0, gain=5.0, name="fourth"),
+    ]
+    written = rotor(*motors)
+    assert loads(dumps(written)) == written
+    assert loads(dumps(written)).masses["rotor"].inertia == pytest.approx(0.05 + 9e-3)
+    rpm = dumps(rotor(ck.motor("rotor", stall=4.0, no_load=1.0))).replace("no_load = 1", "no_load = { rpm = 3000 }")
+    assert loads(rpm).loads["motor along rotor"].no_load == pytest.approx(np.pi * 100.0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        (ck.motor("rotor"), "nothing says which motor"),
+        (ck.motor("rotor", stall=3.0), "no_load: it is missing"),
+        (ck.motor("rotor", stall=3.0, no_load=-1.0), "no_load: -1 is no speed above zero"),
+        (ck.motor("rotor", stall=0.0, no_load=1.0), "stall: 0 is not above zero"),
+        (ck.motor("rotor", stall=3.0, no_load=1.0, slip=0.2), "slip: it belongs to another motor than stall"),
+        (ck.motor("rotor", breakdown=3.0, synchronous=1.0, slip=2.0), "slip: 2 is no slip"),
+        (ck.motor("rotor", torque=3.0, efficiency=1.2), "efficiency: 1.2 is no efficiency"),
+        (ck.motor("rotor", torque=3.0, gear=0.0), "gear: a motor that does not turn"),
+        (ck.motor("rotor", torque=3.0, inertia=-1.0), "inertia: an inertia is not below zero"),
+        (ck.motor("rotr", torque=3.0), "did you mean"),
+    ],
+)
+def test_impossible_motors_are_refused(wrong: object, told: str) -> None:
+    with pytest.raises(InvalidMechanism, match=told):
+        rotor(wrong)
