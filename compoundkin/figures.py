@@ -1,7 +1,8 @@
 """Figures that engineers compute of a motion and its forces.
 
 Mechanical advantage, poles and curvature of relative motion, features of paths, types of linkages, cams, workspaces,
-equivalent linkages; equivalent inertia, balancing, flywheels, efforts over a cycle, equilibrium positions.
+equivalent linkages; equivalent inertia, balancing, flywheels, efforts over a cycle, equilibrium positions, forces
+along the bars of links.
 
 >>> import compoundkin as ck
 >>> motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]}, speed=1)
@@ -47,6 +48,7 @@ from compoundkin.dynamics.equilibria import equilibria
 from compoundkin.dynamics.flywheel import flywheel
 from compoundkin.dynamics.harmonics import harmonics
 from compoundkin.dynamics.mass_motion import equivalent_inertia
+from compoundkin.dynamics.strength import strength
 
 __all__ = [
     "ForcePort",
@@ -82,6 +84,7 @@ __all__ = [
     "relative_point",
     "stationary_curvature",
     "straightness",
+    "strength",
     "tangential_circle",
     "workspace",
 ]

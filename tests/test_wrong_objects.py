@@ -278,6 +278,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "figures.force_ratio": {"motion": motion, "output": "rocker", "driver": "crank"},
         "figures.harmonics": {"of": h["forces"], "name": "frame.shaking_force", "orders": 3, "driver": "crank"},
         "figures.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},
+        "figures.strength": {"forces": h["forces"]},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
                            "size": None},

@@ -64,6 +64,11 @@ class Mass(ShortRepr):
         """Whether all of its values are given."""
         return self.mass is not None and self.at is not None and self.inertia is not None
 
+    @property
+    def is_uniform_bar(self) -> bool:
+        """Whether its mass centre and inertia are assumed to be those of a uniform bar."""
+        return "mass centre and inertia of a uniform bar" in self.assumed
+
     def completed(self, points: Mapping[str, Number]) -> Mass:
         """Return the mass with omitted values of a uniform body."""
         if self.is_complete:

@@ -1,0 +1,331 @@
+"""Strength at a glance: normal force, shear and bending moment along the bars of links; beam statics and no more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.dynamics.driver_course import Line, in_units, texts_of_designs
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.reactions.link_wrench import INERTIA, WEIGHT, LinkWrench
+from compoundkin.kinematics.extremes import extended_to
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.geometry import FRAME
+
+# Points of a link within this part of its length of a line are on it: they are so but for rounding.
+IN_LINE = 1e-9
+# Every bar has so many stations at equal distances, beside those at its points, its loads and where the shear is zero.
+EVEN_STATIONS = 21
+# The quantities along a bar.
+NORMAL, SHEAR, BENDING = "normal force", "shear", "bending moment"
+
+
+class BarExtreme(NamedTuple):
+    """The least or greatest value along a bar over all poses, its distance from the first point, and the pose."""
+
+    value: float
+    position: float
+    pose: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BarForces(ShortRepr):
+    """Normal force, shear and bending moment along the bar of a link, in the mechanism's units.
+
+    Arrays have the motion's shape and a last axis of stations, in order of their distance `position` from the first of
+    the `letters`; places where something acts stand twice, before and behind it. The bar's x axis is from the first
+    letter to the last, y is 90 degrees counterclockwise of it. The normal force is positive in tension; shear and
+    bending moment are those of all that acts before the station, forces up positive, so that the bending moment
+    grows along the bar as the shear. `assumed` says how its mass is counted.
+    """
+
+    motion: Motion = field(repr=False)
+    link: str
+    letters: tuple[str, ...]
+    length: Number
+    position: Number
+    normal: Number
+    shear: Number
+    bending: Number
+    assumed: str = ""
+
+    @cached_property
+    def _of_designs(self) -> Mapping[str, Number]:
+        """Each quantity and the positions, (designs, poses, stations)."""
+        shape = (*self.motion.failed.shape, -1)
+        values = {"position": self.position, NORMAL: self.normal, SHEAR: self.shear, BENDING: self.bending}
+        return {name: value.reshape(shape) for name, value in values.items()}
+
+    def extremes(self, what: str, design: int = 0) -> tuple[BarExtreme, BarExtreme]:
+        """Return the least and the greatest "normal force", "shear" or "bending moment" of a design at its poses.
+
+        NaN where no pose is known. Raises UnknownName for another quantity.
+        """
+        known = (NORMAL, SHEAR, BENDING)
+        if what not in known:
+            raise UnknownName(Problem(str(what), "a bar has no such quantity", suggestion(str(what), known)))
+        places = self._of_designs["position"][design]
+        values = np.where(_within(places, float(self.length[design])), self._of_designs[what][design], np.nan)
+        if not np.isfinite(values).any():
+            return (BarExtreme(np.nan, np.nan, 0),) * 2
+        found = (np.unravel_index(find(values), values.shape) for find in (np.nanargmin, np.nanargmax))
+        least, greatest = (BarExtreme(float(values[at]), float(places[at]), int(at[0])) for at in found)
+        return least, greatest
+
+    def lines(self, design: int) -> Iterator[Line]:
+        """Yield its lines of text: the extremes of each quantity with their places and poses."""
+        units = self.motion.mechanism.stated_units
+        yield (f"{self.link}: bar {'-'.join(self.letters)}", float(self.length[design]), units.length)
+        for what, unit in ((NORMAL, units.force), (SHEAR, units.force), (BENDING, units.moment)):
+            for word, one in zip(("least", "greatest"), self.extremes(what, design), strict=True):
+                own = in_units(f"{word} {what}", _shown(one.value, self._largest(what, design)), unit)
+                yield (*own, *[""] * (5 - len(own)), f"{one.position:.6g} {units.length} from {self.letters[0]}",
+                       f"at {_pose_text(self.motion, design, one.pose)}")  # fmt: skip
+        if self.assumed:
+            yield (self.assumed,)
+
+    def _largest(self, what: str, design: int) -> float:
+        """The largest value of all, by which what is rounding is told."""
+        size = max(max(abs(end.value) for end in self.extremes(name, design)) for name in (NORMAL, SHEAR))
+        own = max(abs(end.value) for end in self.extremes(what, design))
+        return max(own, size * float(self.length[design])) if what == BENDING else size
+
+
+def _within(places: Number, length: float) -> Number:
+    """Return which stations are on the bar: behind what acts at its first point, before what acts at its last."""
+    start, end = places <= 0.0, places >= length
+    again, since = np.roll(start, -1, axis=-1), np.roll(end, 1, axis=-1)
+    again[..., -1], since[..., 0] = False, False
+    return ~(start & again) & ~(end & since)
+
+
+# In a text, values below this part of the largest are rounding of the forces.
+ROUNDING = 1e-11
+
+
+def _shown(value: float, largest: float) -> float:
+    return 0.0 if abs(value) <= ROUNDING * largest else value
+
+
+def _pose_text(motion: Motion, design: int, pose: int) -> str:
+    """Return "crank 35 deg", the drivers at a pose."""
+    shape, texts = motion.failed.shape, []
+    for name, drive in motion.drives.items():
+        value = np.broadcast_to(drive.value, motion.shape).reshape(shape)[design, pose]
+        texts.append(f"{name} {np.rad2deg(value) if drive.is_angle else value:.6g}{' deg' if drive.is_angle else ''}")
+    return ", ".join(texts) or f"pose {pose}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Strength(ShortRepr):
+    """Strength at a glance: the forces along the bars of links, by beam statics and no more.
+
+    `bars` are by the link's name; `undefined` are the links without a bar, with the reason.
+    """
+
+    forces: Forces = field(repr=False)
+    bars: Mapping[str, BarForces]
+    undefined: Mapping[str, str]
+
+    def __repr__(self) -> str:
+        more = f"; no bar: {', '.join(self.undefined)}" if self.undefined else ""
+        return f"Strength(bars {', '.join(self.bars) or 'none'}{more})"
+
+    def text(self) -> str:
+        """Return it as text, a block for each design: units named, moments in N m as well, angles in degrees."""
+        return texts_of_designs(self.forces.motion.inputs.designs, self._lines)
+
+    def _lines(self, design: int) -> Iterator[Line]:
+        yield ("beam statics: rigid links, forces at the poses solved; no deflection, notches, fatigue or impact",)
+        for bar in self.bars.values():
+            yield from bar.lines(design)
+        for link, reason in self.undefined.items():
+            yield (f"{link}: {reason}",)
+
+
+@checked
+def strength(forces: Forces, *links: str) -> Strength:
+    """Return normal force, shear and bending moment along the bars of links at every pose, by beam statics.
+
+    Without names those are all links but the frame. A link is a bar where all its points, or all points at which
+    something acts, are in line. The mass of a uniform bar, where it is assumed to be one, acts along the bar; any other
+    is a force and a moment at the mass centre. What acts beside the bar acts at the nearest place of it, with its
+    moment about that.
+
+    Raises InvalidInput for a mechanism without masses and loads, UnknownName for an unknown link.
+
+    Source: any course of statics; R. C. Hibbeler, Engineering Mechanics: Statics, 14th ed., Pearson 2016, chapter 7.
+
+    >>> from compoundkin.dynamics.force_analysis import force_analysis
+    >>> from compoundkin.kinematics import solve
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> parts = link("frame", A=0), link("arm", A=0, B=2), drive("arm"), mass("arm", 3), gravity(0, -10)
+    >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})
+    >>> bar = strength(force_analysis(solve(arm, {"arm": [0.0]}))).bars["arm"]
+    >>> [round(one, 9) for one in bar.extremes("bending moment")[0]]            # -m g l / 2 at A
+    [-30.0, 0.0, 0]
+    """
+    mechanism = forces.mechanism
+    if not (mechanism.masses or mechanism.loads):
+        remedy = "give it masses or loads: ck.mass, ck.force, ck.gravity"
+        raise InvalidInput(Problem("forces", "the mechanism has no masses and no loads", remedy))
+    own = [name for name in mechanism.links if name != FRAME]
+    for name in links:
+        if name not in own:
+            what = "the frame is no bar" if name == FRAME else "there is no such link"
+            raise UnknownName(Problem(name, what, suggestion(name, own)))
+    bars, undefined = dict[str, BarForces](), dict[str, str]()
+    for name in links or own:
+        points = bar_points(forces, name)
+        if isinstance(points, str):
+            undefined[name] = points
+        else:
+            bars[name] = _bar(forces, name, points)
+    return Strength(forces, bars, undefined)
+
+
+def bar_points(forces: Forces, link: str) -> tuple[str, ...] | str:
+    """Return the letters of a link's bar in their order along it, or the reason why it has none.
+
+    They are all letters of the link where these are in line, else those at which something acts.
+    """
+    places = forces.mechanism.geometry.points[link]
+    if len(places) < 2:
+        return "a link of one point is no bar"
+    if (found := _in_line(places)) is not None:
+        return found
+    acting = {one.at for one in forces.on(link) if one.kind not in (WEIGHT, INERTIA)}
+    loaded = {letter: place for letter, place in places.items() if letter in acting}
+    if len(loaded) > 1 and (found := _in_line(loaded)) is not None:
+        return found
+    return f"no bar is defined: forces act at {', '.join(loaded) or 'no letter'}, which are not in line"
+
+
+def _in_line(places: Mapping[str, Number]) -> tuple[str, ...] | None:
+    """Return letters in their order along their line, by the first design; None where they have none."""
+    letters = list(places)
+    z = np.array(np.broadcast_arrays(*places.values()), dtype=complex).reshape(len(letters), -1)
+    far = np.argmax(np.abs(z[:, None, 0] - z[None, :, 0]))
+    first, last = sorted(divmod(int(far), len(letters)))
+    whole = z[last] - z[first]
+    if np.any(np.abs(whole) == 0.0):
+        return None
+    along = (z - z[first]) / whole
+    if np.any(np.abs(along.imag) > IN_LINE):
+        return None
+    order = np.argsort(along[:, 0].real, kind="stable")
+    return tuple(letters[k] for k in order)
+
+
+class Acting(NamedTuple):
+    """What acts on a bar at a distance from its first point: force in the bar's axes, moment about that place."""
+
+    place: Number
+    force: Number
+    moment: Number
+
+
+def _bar(forces: Forces, link: str, letters: Sequence[str]) -> BarForces:
+    """Return the forces along a bar through some letters of a link."""
+    motion = forces.motion
+    shape = motion.failed.shape
+    own = forces.mechanism.geometry.points[link]
+    first, last = (np.broadcast_to(extended_to(motion, own[letter]), shape) for letter in (letters[0], letters[-1]))
+    length = np.abs(last - first)
+    axis = (last - first) / length
+    pose = motion.poses[link]
+    direction = np.broadcast_to(pose.u.c[0], shape) * axis
+    start = np.broadcast_to(pose.z.c[0] + pose.u.c[0] * first, shape)
+    mass = forces.mechanism.masses.get(link)
+    spread = mass is not None and mass.is_uniform_bar and len(letters) == len(own)
+    taken = [one for one in forces.on(link) if not (spread and one.kind in (WEIGHT, INERTIA))]
+    known = {letter: np.abs(np.broadcast_to(extended_to(motion, own[letter]), shape) - first) for letter in letters}
+    acting = [_acting(one, start, direction, length, known) for one in taken]
+    constant, slope = _along(forces, link, first, axis) if spread else (np.zeros(shape), np.zeros(shape))
+    constant, slope = constant / length / direction, slope / length / direction
+    position, values = _section_forces(length, acting, constant, slope)
+    values = np.where((motion.failed == 0)[..., None], values, np.nan)
+    shown = (*motion.shape, position.shape[-1])
+    normal, shear, bending = (value.reshape(shown) for value in values)
+    assumed = "" if mass is None else mass.assumed if spread else "its mass acts as a force and a moment at its centre"
+    at = position.reshape(shown)
+    return BarForces(motion, link, tuple(letters), length[:, 0], at, normal, shear, bending, assumed)
+
+
+def _acting(one: LinkWrench, start: Number, direction: Number, length: Number, known: Mapping[str, Number]) -> Acting:
+    """Return a wrench on the bar at the place nearest to its point of attack."""
+    attack = np.where(np.isfinite(one.attack), one.attack, start)
+    if one.at in known:
+        place = known[one.at]
+    else:
+        place = np.clip(((attack - start) / direction).real, 0.0, length)
+        for other in known.values():
+            place = np.where(np.abs(place - other) <= IN_LINE * length, other, place)
+    force, moment = one.determined.force, one.determined.about(start + direction * place)
+    return Acting(place, np.broadcast_to(force / direction, length.shape), np.broadcast_to(moment, length.shape))
+
+
+def _along(forces: Forces, link: str, first: Number, axis: Number) -> tuple[Number, Number]:
+    """Return weight and inertia of a uniform bar in the world, of its whole mass: at its first point, and its rate."""
+    motion, mass = forces.motion, forces.mechanism.masses[link]
+    heavy = np.broadcast_to(extended_to(motion, mass.mass), motion.failed.shape) * forces.units.inertia
+    constant, slope = heavy * forces.mechanism.free_fall, np.zeros(heavy.shape, dtype=complex)
+    pose = motion.poses[link]
+    if forces.inertia:
+        z, u = (2.0 * part.c[2] if len(part.c) > 2 else 0j for part in (pose.z, pose.u))
+        constant = constant - heavy * (z + u * first)
+        slope = -heavy * u * axis
+    return constant, slope
+
+
+def _section_forces(length: Number, acting: Sequence[Acting], constant: Number, slope: Number) -> tuple[Number, Number]:
+    """Return the stations, and normal force, shear and bending moment there, (3, designs, poses, stations)."""
+    shape = length.shape
+    places = np.stack([np.zeros(shape), *(one.place for one in acting), length], axis=-1)
+    even = length[..., None] * np.linspace(0.0, 1.0, EVEN_STATIONS)
+    edges = np.sort(places, axis=-1)
+    zeros = _zeros_of_shear(edges, acting, constant, slope)
+    position = np.concatenate([places, even, zeros, places], axis=-1)
+    behind = np.arange(position.shape[-1]) >= position.shape[-1] - places.shape[-1]
+    order = np.lexsort((np.broadcast_to(behind, position.shape), position), axis=-1)
+    position, behind = np.take_along_axis(position, order, axis=-1), behind[order]
+    return position, _sums_before(position, behind, acting, constant, slope)
+
+
+def _sums_before(position: Number, behind: Number, acting: Sequence[Acting], constant: Number, slope: Number) -> Number:
+    """Return normal force, shear and bending moment at stations, of all that acts before them."""
+    s, c, k = position, constant[..., None], slope[..., None]
+    force = s * c + s**2 / 2.0 * k
+    bending = (s**2 / 2.0 * c + s**3 / 6.0 * k).imag
+    for one in acting:
+        place = one.place[..., None]
+        counts = (place < s) | ((place == s) & behind)
+        force = force + np.where(counts, one.force[..., None], 0.0)
+        bending = bending + np.where(counts, (s - place) * one.force[..., None].imag - one.moment[..., None], 0.0)
+    return np.array([-force.real, force.imag, bending])
+
+
+def _zeros_of_shear(edges: Number, acting: Sequence[Acting], constant: Number, slope: Number) -> Number:
+    """Return where the shear is zero between the places where something acts, elsewhere an end of the interval.
+
+    It is a parabola there, so that the bending moment is greatest at its zeros, or where something acts.
+    """
+    low, high = edges[..., :-1], edges[..., 1:]
+    shear = _sums_before(low, np.ones(low.shape, dtype=bool), acting, constant, slope)[1]
+    a, c = 0.5 * slope.imag[..., None], shear
+    b = (constant[..., None] + low * slope[..., None]).imag
+    with np.errstate(all="ignore"):
+        root = np.sqrt(b * b - 4.0 * a * c)
+        q = -0.5 * (b + np.copysign(root, b))  # without cancellation
+        found = [low + q / a, low + c / q]
+        return np.concatenate([np.where((at > low) & (at < high), at, low) for at in found], axis=-1)

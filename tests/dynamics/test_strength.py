@@ -1,0 +1,176 @@
+"""Forces along the bars of links, against closed forms and their own equilibrium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.dynamics.strength import BENDING, NORMAL, SHEAR
+
+UNITS = {"length": "m", "mass": "kg", "force": "N"}
+# Equilibrium at the far end is so good, of the largest force or moment.
+ROUNDING = 1e-10
+
+
+def arm(*items: Any, **points: Any) -> ck.Mechanism:
+    """An arm of 2 m on the frame, driven."""
+    return ck.Mechanism(
+        "Arm", ck.link("frame", A=0), ck.link("arm", A=0, B=2, **points), ck.drive("arm"), *items, units=UNITS
+    )
+
+
+def slider_crank(angle: float = 0.0) -> ck.Mechanism:
+    """A slider-crank with uniform bars, all of it turned by an angle."""
+    u = complex(np.exp(1j * angle))
+    return ck.Mechanism(
+        "Slider-crank",
+        ck.link("frame", O=0),
+        ck.link("crank", O=0, A=0.05),
+        ck.link("rod", A=0, B=0.2),
+        ck.link("piston", B=0),
+        ck.slide("piston", on="frame", through="O", angle=angle, name="cylinder"),
+        ck.drive("crank"),
+        ck.mass("crank", 2.0),
+        ck.mass("rod", 0.8),
+        ck.mass("piston", 0.5),
+        ck.force("piston", (-300 * u.real, -300 * u.imag), at="B"),
+        units=UNITS,
+    )
+
+
+def test_a_cantilever_under_a_force_at_its_end() -> None:
+    mechanism = arm(ck.force("arm", (30, -50), at="B"))
+    bar = ck.figures.strength(ck.force_analysis(ck.solve(mechanism, {"arm": [0.0]}), inertia=False)).bars["arm"]
+    np.testing.assert_allclose(bar.normal[(bar.position > 0) & (bar.position < 2)], 30.0)
+    least, greatest = bar.extremes(BENDING)
+    np.testing.assert_allclose(least[:2], (-100.0, 0.0), atol=1e-12)
+    np.testing.assert_allclose(greatest.value, 0.0, atol=1e-12)
+    np.testing.assert_allclose(bar.extremes(SHEAR)[1].value, 50.0)
+
+
+def simply_supported() -> ck.Mechanism:
+    """A level parallelogram: its coupler of 3 m lies on two equal cranks."""
+    return ck.Mechanism(
+        "Table",
+        ck.link("frame", O=(0, 0), C=(3, 0)),
+        ck.link("crank", O=(0, 0), A=(0, 1)),
+        ck.link("top", A=(0, 0), B=(3, 0)),
+        ck.link("rocker", C=(0, 0), B=(0, 1)),
+        ck.drive("crank"),
+        ck.mass("top", 6.0),
+        ck.gravity(0, -10),
+        units=UNITS,
+    )
+
+
+def test_a_simply_supported_bar_under_its_weight() -> None:
+    """M = q l^2 / 8 in its middle."""
+    motion = ck.solve(simply_supported(), {"crank": [0.0]})
+    bar = ck.figures.strength(ck.force_analysis(motion, inertia=False), "top").bars["top"]
+    np.testing.assert_allclose(bar.extremes(BENDING)[1][:2], (20 * 9 / 8, 1.5))
+    np.testing.assert_allclose([end.value for end in bar.extremes(SHEAR)], [-30, 30])
+
+
+def four_bar() -> ck.Mechanism:
+    """A four-bar whose rocker alone has a mass."""
+    return ck.Mechanism(
+        "Four-bar",
+        ck.link("frame", O=(0, 0), C=(0.14, 0)),
+        ck.link("crank", O=(0, 0), A=(0.05, 0)),
+        ck.link("coupler", A=(0, 0), B=(0.15, 0)),
+        ck.link("rocker", C=(0, 0), B=(0.12, 0)),
+        ck.drive("crank"),
+        ck.mass("rocker", 1.5),
+        units=UNITS,
+    )
+
+
+def test_a_rocker_under_an_inertia_load_that_grows_along_it() -> None:
+    """Supported at both ends under a triangle of q = m alpha: M = q l^2 / (9 sqrt 3) at l / sqrt 3.
+
+    The coupler without mass is a member with two forces: neither shear nor moment.
+    """
+    turn = np.deg2rad(np.arange(0.0, 360.0, 20.0))
+    found = ck.figures.strength(ck.force_analysis(ck.solve(four_bar(), turn, speed=100)))
+    rocker, alpha = found.bars["rocker"], found.forces.links["rocker"].angular_acceleration
+    greatest = np.abs(rocker.bending).max(axis=-1)
+    np.testing.assert_allclose(greatest, 1.5 * np.abs(alpha) * 0.12**2 / (9 * np.sqrt(3)), rtol=1e-10)
+    at = np.take_along_axis(rocker.position, np.abs(rocker.bending).argmax(axis=-1)[:, None], axis=-1)
+    np.testing.assert_allclose(at, 0.12 / np.sqrt(3), rtol=1e-9)
+    coupler = found.bars["coupler"]
+    np.testing.assert_allclose(coupler.shear, 0.0, atol=ROUNDING * np.abs(coupler.normal).max())
+    np.testing.assert_allclose(coupler.bending, 0.0, atol=ROUNDING * np.abs(coupler.normal).max())
+
+
+def test_a_rod_under_any_inertia_load_as_by_quadrature() -> None:
+    """The rod of a slider-crank: accelerations of its ends, and the bar's shear and moment integrated numerically."""
+    forces = ck.force_analysis(ck.solve(slider_crank(), {"crank": [1.3]}, speed=100))
+    bar = ck.figures.strength(forces, "rod").bars["rod"]
+    along = np.conj(np.exp(1j * forces.links["rod"].angle[0]))
+    across = [(along * forces.points[name].acceleration[0]).imag for name in "AB"]
+    s, step = np.linspace(0.0, 0.2, 20001, retstep=True)
+    load = -0.8 / 0.2 * (across[0] + (across[1] - across[0]) * s / 0.2)
+    support = np.trapezoid(load * (0.2 - s), dx=step) / 0.2
+    shear = -support + np.concatenate([[0.0], np.cumsum((load[1:] + load[:-1]) / 2 * step)])
+    bending = np.concatenate([[0.0], np.cumsum((shear[1:] + shear[:-1]) / 2 * step)])
+    k = int(np.argmax(np.abs(bending)))
+    found = max(bar.extremes(BENDING), key=lambda end: abs(end.value))
+    np.testing.assert_allclose(found.value, bending[k], rtol=1e-6)
+    np.testing.assert_allclose(found.position, s[k], atol=2 * step)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_forces_return_to_zero_behind_the_last_point(angle: float) -> None:
+    turn = np.deg2rad(np.arange(0.0, 360.0, 7.0))
+    found = ck.figures.strength(ck.force_analysis(ck.solve(slider_crank(angle), turn + angle, speed=150)))
+    assert set(found.bars) == {"crank", "rod"}
+    assert set(found.undefined) == {"piston"}
+    for bar in found.bars.values():
+        for values, size in ((bar.normal, 1.0), (bar.shear, 1.0), (bar.bending, bar.length[0])):
+            np.testing.assert_allclose(values[:, [0, -1]], 0.0, atol=ROUNDING * size * np.abs(bar.normal).max())
+        step = np.diff(bar.position, axis=-1)
+        inside = step > 1e-6
+        middle = (bar.shear[:, 1:] + bar.shear[:, :-1]) / 2
+        # of a parabola the trapezoidal rule errs by V'' h^3 / 12, and V'' is m alpha / l
+        alpha = np.abs(found.forces.links[bar.link].angular_acceleration)[:, None]
+        mass = found.forces.mechanism.masses[bar.link].mass
+        error = mass * alpha / bar.length[0] * step**3 / 12 + ROUNDING * np.abs(bar.bending).max()
+        assert np.all((np.abs(np.diff(bar.bending, axis=-1) - middle * step) <= error)[inside])
+
+
+def test_turning_the_mechanism_changes_nothing() -> None:
+    turn = np.deg2rad(np.arange(0.0, 360.0, 30.0))
+    bars = [
+        ck.figures.strength(ck.force_analysis(ck.solve(slider_crank(angle), turn + angle, speed=150))).bars["rod"]
+        for angle in (0.0, 1.1)
+    ]
+    for what in (NORMAL, SHEAR, BENDING):
+        values = [[end.value for end in bar.extremes(what)] for bar in bars]
+        np.testing.assert_allclose(values[0], values[1], rtol=1e-9, atol=1e-9)
+
+
+def test_a_given_mass_is_a_force_at_its_centre_and_a_point_aside_carries_nothing() -> None:
+    mechanism = arm(ck.mass("arm", 3, at=(0.5, 0.4), inertia=1), ck.gravity(0, -10), C=(1, 1))
+    forces = ck.force_analysis(ck.solve(mechanism, {"arm": [0.0]}), inertia=False)
+    found = ck.figures.strength(forces)
+    assert "A" in found.undefined["arm"]
+    loaded = mechanism.replace(ck.force("arm", (0, -1), at="B"))
+    bar = ck.figures.strength(ck.force_analysis(ck.solve(loaded, {"arm": [0.0]}), inertia=False)).bars["arm"]
+    np.testing.assert_allclose(bar.extremes(BENDING)[0][:2], (-30 * 0.5 - 2.0, 0.0))
+    assert "force and a moment" in bar.assumed
+
+
+def test_what_is_refused() -> None:
+    bare = ck.force_analysis(ck.solve(arm(), {"arm": [0.0]}))
+    with pytest.raises(ck.errors.InvalidInput, match="no masses and no loads"):
+        ck.figures.strength(bare)
+    forces = ck.force_analysis(ck.solve(arm(ck.mass("arm", 1)), {"arm": [0.0]}))
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'arm'"):
+        ck.figures.strength(forces, "arn")
+    with pytest.raises(ck.errors.UnknownName, match="frame is no bar"):
+        ck.figures.strength(forces, "frame")
+    with pytest.raises(ck.errors.UnknownName, match="bending"):
+        ck.figures.strength(forces).bars["arm"].extremes("bending")
