@@ -25,7 +25,7 @@ IN_LINE = 1e-9
 # Every bar has so many stations at equal distances, beside those at its points, its loads and where the shear is zero.
 EVEN_STATIONS = 21
 # The quantities along a bar.
-NORMAL, SHEAR, BENDING = "normal force", "shear", "bending moment"
+NORMAL, SHEAR, BENDING, STATION = "normal force", "shear", "bending moment", "station"
 
 
 class BarExtreme(NamedTuple):
@@ -61,7 +61,7 @@ class BarForces(ShortRepr):
     def _of_designs(self) -> Mapping[str, Number]:
         """Each quantity and the positions, (designs, poses, stations)."""
         shape = (*self.motion.failed.shape, -1)
-        values = {"position": self.position, NORMAL: self.normal, SHEAR: self.shear, BENDING: self.bending}
+        values = {STATION: self.position, NORMAL: self.normal, SHEAR: self.shear, BENDING: self.bending}
         return {name: value.reshape(shape) for name, value in values.items()}
 
     def extremes(self, what: str, design: int = 0) -> tuple[BarExtreme, BarExtreme]:
@@ -72,7 +72,7 @@ class BarForces(ShortRepr):
         known = (NORMAL, SHEAR, BENDING)
         if what not in known:
             raise UnknownName(Problem(str(what), "a bar has no such quantity", suggestion(str(what), known)))
-        places = self._of_designs["position"][design]
+        places = self._of_designs[STATION][design]
         values = np.where(_within(places, float(self.length[design])), self._of_designs[what][design], np.nan)
         if not np.isfinite(values).any():
             return (BarExtreme(np.nan, np.nan, 0),) * 2
