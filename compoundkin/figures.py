@@ -48,6 +48,7 @@ from compoundkin.dynamics.equilibria import equilibria
 from compoundkin.dynamics.flywheel import flywheel
 from compoundkin.dynamics.harmonics import harmonics
 from compoundkin.dynamics.mass_motion import equivalent_inertia
+from compoundkin.dynamics.motor_sizing import sizing
 from compoundkin.dynamics.strength import strength
 
 __all__ = [
@@ -82,6 +83,7 @@ __all__ = [
     "pole_velocity",
     "relative_link",
     "relative_point",
+    "sizing",
     "stationary_curvature",
     "straightness",
     "strength",

@@ -175,6 +175,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "with_frame": {"mechanism": m, "link": "crank"},
         "figures.workspace": {"mechanism": h["arm"], "point": "P", "ranges": None, "orientation": None,
                                   "modes": None, "cells": 8},
+        "figures.sizing": {"forces": h["forces"], "motors": None, "driver": "upper", "gear": 2.0, "efficiency": 0.9,
+                           "design": 0},
         "figures.ForcePort": {"link": "a", "point": "C", "angle": 0.0, "on": "frame"},
         "figures.TorquePort": {"link": "a", "on": "frame"},
         "figures.mechanical_advantage": {"motion": motion, "output": "rocker", "input": "crank"},

@@ -31,6 +31,7 @@ VERBS = {
     "workspace": "The region that a point reaches by two or three drivers.",
     "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
     "forces": "Forces in all pairs, drivers' efforts, shaking force.",
+    "size": "Which motor drives it, behind which gear.",
     "simulate": "How it moves under its masses and loads, in time.",
     "study": "Many designs: what dimensions do to figures, as a study file says.",
     "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
@@ -49,6 +50,7 @@ VERBS = {
 _COMMANDS = {
     "import": ("import_command", "command"),
     "open": ("report", "open_command"),
+    "size": ("forces", "size_command"),
     "singularities": ("circuits", "singularities_command"),
 }
 

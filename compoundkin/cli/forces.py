@@ -26,7 +26,7 @@ from compoundkin.cli.file_options import (
     report_or_table_options,
     solvable_structure,
 )
-from compoundkin.cli.shell import working
+from compoundkin.cli.shell import put, working
 
 SHEET = click.option(
     "--sheet", is_flag=True, help="Write free bodies and equations of each link at one pose, to be printed."
@@ -89,3 +89,37 @@ def command(
         result = forces_report(forces, design, on)
     put_report(result, form, path)
     return exit_code(result)
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin size shaper-cutting-force
+  compoundkin size press.toml --speed 60rpm --motors mine.toml --efficiency 0.9
+  compoundkin size press.toml --speed 60rpm --gear 12 > motors.txt
+"""
+)
+@mechanism_argument
+@drive_options
+@DESIGN
+@load_options
+@click.option("--motors", metavar="FILE", help="A TOML file with your own [[motors]]; generic ones without it.")
+@click.option("--gear", type=float, help="The speed of the shaft over that of the driver; the best one without it.")
+@click.option("--efficiency", type=float, default=1.0, show_default=True, help="The efficiency of the gear.")
+@click.option("--driver", metavar="NAME", help="The driver to size; may be left out where there is one.")
+def size_command(
+    file: str, design: int, motors: str | None, gear: float | None, efficiency: float, driver: str | None,
+    **options: Any,
+) -> int:  # fmt: skip
+    """Print what a driver needs over the motion, and which motors give it, each behind its best gear.
+
+    Torques are in N m, speeds in rpm. Exit code 1: no motor of the list does.
+    """
+    from compoundkin.cli import typed_values
+    from compoundkin.dynamics.motor_sizing import sizing
+
+    structure = solvable_structure(file, None, None, lambda own: typed_values.with_loads(own, options))
+    forces = find_forces(solve_motion(structure, options), False, "")
+    found = sizing(forces, motors, driver=driver, gear=gear, efficiency=efficiency, design=design)
+    put(found.text() + "\n")
+    return 0 if found.chosen else 1

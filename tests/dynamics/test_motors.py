@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import compoundkin as ck
-from compoundkin.errors import InvalidMechanism
+from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.files import dumps, loads
 
 SI = {"length": "m", "mass": "kg", "force": "N"}
@@ -129,3 +129,102 @@ def test_files_there_and_back() -> None:
 def test_impossible_motors_are_refused(wrong: object, told: str) -> None:
     with pytest.raises(InvalidMechanism, match=told):
         rotor(wrong)
+
+
+# --- sizing -------------------------------------------------------------------------------------------------
+
+
+def swung(times: np.ndarray, *more: object) -> ck.results.Forces:
+    """An arm of J = 0.5 kg m^2 that swings as a sine, 0.4 rad at 5 rad/s."""
+    links = ck.link("frame", O=0), ck.link("arm", O=0, P=1), ck.drive("arm", law=lambda t: 0.4 * np.sin(5.0 * t))
+    arm = ck.Mechanism("Arm", *links, ck.mass("arm", 2.0, at="O", inertia=0.5), *more, units=SI)
+    return ck.force_analysis(ck.solve(arm, time=times))
+
+
+PERIOD = np.linspace(0.0, 2.0 * np.pi / 5.0, 401)
+
+
+def test_the_best_gear_of_an_inertia_makes_both_inertias_equal() -> None:
+    """T = J a at the load, and i Jm a + J a / i at the shaft: least where i^2 = J / Jm, twice the one part."""
+    found = ck.figures.sizing(swung(PERIOD))
+    assert found.inertia == pytest.approx(0.5, rel=1e-12)
+    assert found.peak == pytest.approx(0.5 * 0.4 * 25.0, rel=1e-6)
+    assert found.rms == pytest.approx(5.0 / np.sqrt(2.0), rel=1e-6)
+    free = [one for one in found.motors if np.sqrt(0.5 / one.motor.inertia) * 2.0 < one.motor.rated_speed]
+    assert len(free) > 3
+    for one in free:
+        assert one.gear == pytest.approx(np.sqrt(0.5 / one.motor.inertia), rel=1e-5)
+        assert one.reflected == pytest.approx(1.0, rel=1e-5)
+        assert one.rms == pytest.approx(2.0 * np.sqrt(0.5 * one.motor.inertia) * 10.0 / np.sqrt(2.0), rel=1e-5)
+
+
+def test_no_other_gear_has_a_lesser_effective_torque() -> None:
+    """Against a search, with a load that is no inertia and losses in the gear."""
+    found = ck.figures.sizing(swung(PERIOD, ck.damper(pair="O", rate=3.0), ck.torque("arm", -2.0)), efficiency=0.8)
+    for one in found.motors[::3]:
+        tried = np.geomspace(one.gear / 30.0, one.motor.rated_speed / found.speed, 3000)
+        rms = [np.sqrt(np.mean(np.square(found.at_shaft(one.motor, gear)[0][:-1]))) for gear in tried]
+        assert one.rms <= min(rms) * (1.0 + 1e-6)
+
+
+def test_what_motors_give_already_counts_as_needed() -> None:
+    alone = ck.figures.sizing(swung(PERIOD))
+    helped = ck.figures.sizing(swung(PERIOD, ck.motor("arm", torque={"at": [-5.0, 5.0], "values": [3.0, -3.0]})))
+    np.testing.assert_allclose(helped.torques, alone.torques, atol=1e-9)
+
+
+def test_a_dwell_cools_the_motor() -> None:
+    """At rest for three quarters of the time, the effective torque is half of what it is without."""
+    whole = np.linspace(0.0, 4.0 * PERIOD[-1], 4001)
+    law = ck.laws.motion_table(whole, *(np.where(whole < PERIOD[-1], one, 0.0) for one in (
+        0.4 * np.sin(5.0 * whole), 2.0 * np.cos(5.0 * whole), -10.0 * np.sin(5.0 * whole))))  # fmt: skip
+    links = ck.link("frame", O=0), ck.link("arm", O=0, P=1), ck.drive("arm", law=law)
+    arm = ck.Mechanism("Arm", *links, ck.mass("arm", 2.0, at="O", inertia=0.5), units=SI)
+    found = ck.figures.sizing(ck.force_analysis(ck.solve(arm, time=whole)))
+    assert found.rms == pytest.approx(0.5 * ck.figures.sizing(swung(PERIOD)).rms, rel=1e-2)
+    assert found.duty == pytest.approx(0.25, abs=1e-2)
+
+
+def test_a_list_of_ones_own_and_what_is_wrong_with_it(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    path = tmp_path / "mine.toml"
+    good = 'name = "m"\nrated = 10\npeak = 20\nrated_speed = 600\ntop_speed = 1200\ninertia = 0.5\n'
+    path.write_text(f"[[motors]]\n{good}")
+    found = ck.figures.sizing(swung(PERIOD), path)
+    assert found.chosen is not None
+    assert found.chosen.motor.name == "m"
+    assert "The smallest that does: m" in found.text()
+    for wrong, told in (
+        ("motors = 3", "it has no motors"),
+        ("[[motors]]\nname = 'a'", "rated: None is no number"),
+        (f"[[motors]]\n{good}ratd = 2", "ratd: no motor has such a key"),
+        (f"[[motors]]\n{good}curve = {{ speeds = [0, 0], torques = [1, 2] }}", "it is no curve"),
+        ("[[motors", "it is no TOML"),
+    ):
+        path.write_text(wrong)
+        with pytest.raises(InvalidInput, match=told):
+            ck.figures.sizing(swung(PERIOD), path)
+    with pytest.raises(InvalidInput, match="cannot be read"):
+        ck.figures.sizing(swung(PERIOD), tmp_path / "none.toml")
+    with pytest.raises(InvalidInput, match="no efficiency"):
+        ck.figures.sizing(swung(PERIOD), efficiency=1.5)
+
+
+def test_units_of_the_mechanism_do_not_matter() -> None:
+    """A slide in mm and kg: thrusts in N, speeds in m/s."""
+    links = ck.link("frame", O=0), ck.link("ram", P=0), ck.slide("ram", on="frame", at="P", through="O", name="way")
+    drive = ck.drive("ram", law=lambda t: 100.0 * np.sin(5.0 * t))
+    ram = ck.Mechanism("Ram", *links, drive, ck.mass("ram", 2.0), units={"length": "mm", "mass": "kg", "force": "N"})
+    found = ck.figures.sizing(ck.force_analysis(ck.solve(ram, time=PERIOD)))
+    assert found.peak == pytest.approx(2.0 * 0.1 * 25.0, rel=1e-6)
+    assert found.speed == pytest.approx(0.5, rel=1e-9)
+    assert found.inertia == pytest.approx(2.0, rel=1e-12)
+
+
+def test_the_command() -> None:
+    from click.testing import CliRunner
+
+    from compoundkin.cli import cli
+
+    said = CliRunner().invoke(cli, ["size", "shaper-cutting-force"], catch_exceptions=False)
+    assert said.exit_code == 0
+    assert "The smallest that does" in said.output
