@@ -95,7 +95,7 @@ def command(
     epilog="""\b
 Examples:
   compoundkin size shaper-cutting-force
-  compoundkin size press.toml --speed 60rpm --motors mine.toml --efficiency 0.9
+  compoundkin size press.toml --speed 60rpm --motors mine.toml
   compoundkin size press.toml --speed 60rpm --gear 12 > motors.txt
 """
 )

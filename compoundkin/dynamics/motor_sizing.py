@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from importlib import resources
@@ -15,7 +15,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr, aligned_text
+from compoundkin.base.display import ShortRepr, aligned_text, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.dynamics.driver_course import driver_course, driver_named
 from compoundkin.dynamics.forces import Forces
@@ -187,7 +187,7 @@ def listed_motors(source: str | Path | None = None) -> tuple[ListedMotor, ...]:
 def _read(path: Path) -> str:
     try:
         return path.read_text("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise InvalidInput(
             Problem(str(path), f"it cannot be read: {error}", "give a TOML file with [[motors]]")
         ) from None
@@ -262,9 +262,18 @@ def sizing(
         raise InvalidInput(Problem("efficiency", f"{efficiency:g} is no efficiency", "above 0, up to 1"))
     if gear is not None and (not np.isfinite(gear) or gear == 0.0):
         raise InvalidInput(Problem("gear", f"{gear:g} is no gear", "the speed of the shaft over that of the driver"))
+    designs = forces.motion.failed.shape[0]
+    if not 0 <= design < designs:
+        raise InvalidInput(Problem("design", f"there is no design {design}", f"0 to {designs - 1}"))
     name = driver_named(forces.motion, driver)
     needed = _needed(forces, name, efficiency, design)
-    known = motors if isinstance(motors, Sequence) and not isinstance(motors, str) else listed_motors(motors)
+    if isinstance(motors, str | Path) or motors is None:
+        known = listed_motors(motors)
+    elif isinstance(motors, tuple | list) and motors and all(isinstance(one, ListedMotor) for one in motors):
+        known = tuple(motors)
+    else:
+        remedy = "give the path of a TOML file with [[motors]], or leave it out"
+        raise InvalidInput(Problem("motors", f"{short_repr(motors)} is no list of motors", remedy))
     sized = tuple(_sized(needed, one, gear) for one in known)
     return Sizing(
         **{one.name: getattr(needed, one.name) for one in fields(Sizing) if one.name != "motors"}, motors=sized
