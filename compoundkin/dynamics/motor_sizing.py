@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, dot
 from compoundkin.base.display import ShortRepr, aligned_text, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.dynamics.driver_course import driver_course, driver_named
@@ -320,17 +320,14 @@ def _felt(forces: Forces, driver: str, design: int) -> float:
 def _given(forces: Forces, driver: str) -> Number:
     """Return what motors along a driver give already, along its coordinate."""
     motion = forces.motion
-    own = motion.structure.driven[driver]
     total = np.zeros(motion.failed.shape)
-    for load in motion.mechanism.loads.values():
-        motor = as_motor(load)
-        if motor is None:
-            continue
+    for motor in filter(None, map(as_motor, motion.mechanism.loads.values())):
         for at in loaded_blocks(motion):
-            pair, sign = at._meant(motor.pair)
-            if pair.name == own.pair.name:
-                sense = sign * own.pair.driven_by(own.drive.link)
-                total[at.designs, at.poses] += sense * motor.effort(at)
+            own, other = dict(at.unit_effort(driver)), dict(at.unit_effort(motor.pair))
+            if own.keys() == other.keys():
+                link = next(iter(own))
+                alike = dot(own[link].force, other[link].force) + own[link].moment * other[link].moment
+                total[at.designs, at.poses] += np.sign(alike) * motor.effort(at)
     return total
 
 
