@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,11 +20,14 @@ from compoundkin.dynamics.reactions.link_wrench import INERTIA, WEIGHT, LinkWren
 from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.units import Units
 
 # Points of a link within this part of its length of a line are on it: they are so but for rounding.
 IN_LINE = 1e-9
 # Every bar has so many stations at equal distances, beside those at its points, its loads and where the shear is zero.
 EVEN_STATIONS = 21
+# A bar is pinned where the moment at its ends is below this part of the largest, the rounding of forces.
+PINNED = 1e-9
 # The quantities along a bar.
 NORMAL, SHEAR, BENDING, STATION = "normal force", "shear", "bending moment", "station"
 
@@ -80,6 +84,14 @@ class BarForces(ShortRepr):
         least, greatest = (BarExtreme(float(values[at]), float(places[at]), int(at[0])) for at in found)
         return least, greatest
 
+    @property
+    def is_clamped(self) -> bool:
+        """Whether a moment acts at one of its ends."""
+        size = np.abs(self.bending)
+        ends = (self._of_designs[STATION] == 0.0) | (self._of_designs[STATION] == self.length[:, None, None])
+        largest = max(self._largest(BENDING, k) for k in range(len(self.length)))
+        return bool(np.nanmax(np.where(ends.reshape(size.shape), size, 0.0), initial=0.0) > PINNED * largest)
+
     def lines(self, design: int) -> Iterator[Line]:
         """Yield its lines of text: the extremes of each quantity with their places and poses."""
         units = self.motion.mechanism.stated_units
@@ -128,12 +140,17 @@ def _pose_text(motion: Motion, design: int, pose: int) -> str:
 class Strength(ShortRepr):
     """Strength at a glance: the forces along the bars of links, by beam statics and no more.
 
-    `bars` are by the link's name; `undefined` are the links without a bar, with the reason.
+    `bars` are by the link's name; `undefined` are the links without a bar, with the reason. `stresses` are those in the
+    outermost fibre of links with a section, |N| / A + |M| / W, in the shape of the bar's arrays; `buckling` the
+    buckling loads of links with a section and a modulus of elasticity, `pins` the stresses of pins with a diameter.
     """
 
     forces: Forces = field(repr=False)
     bars: Mapping[str, BarForces]
     undefined: Mapping[str, str]
+    stresses: Mapping[str, Number] = field(default_factory=dict)
+    buckling: Mapping[str, BucklingLoad] = field(default_factory=dict)
+    pins: Mapping[str, PinStress] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         more = f"; no bar: {', '.join(self.undefined)}" if self.undefined else ""
@@ -147,12 +164,121 @@ class Strength(ShortRepr):
         yield ("beam statics: rigid links, forces at the poses solved; no deflection, notches, fatigue or impact",)
         for bar in self.bars.values():
             yield from bar.lines(design)
+            yield from self._stress_lines(bar, design)
+        for letter, pin in self.pins.items():
+            yield from pin.lines(letter, self.forces, design)
         for link, reason in self.undefined.items():
             yield (f"{link}: {reason}",)
 
+    def _stress_lines(self, bar: BarForces, design: int) -> Iterator[Line]:
+        units = self.forces.units
+        if bar.link in self.stresses:
+            found = self.stresses[bar.link].reshape(*self.forces.motion.failed.shape, -1)[design]
+            yield "greatest stress", float(np.nanmax(found)), _pressure(units)
+        if bar.link in self.buckling:
+            load, compression = (float(one[design]) for one in self.buckling[bar.link][:2])
+            words = "not pressed" if compression <= 0.0 else f"{load / compression:.4g} times the greatest compression"
+            yield "buckling load (Euler)", load, units.force, "", "", words
+
+
+class BucklingLoad(NamedTuple):
+    """Euler's load of a bar pinned at both ends, and the greatest compression in it, (designs,).
+
+    It is that of buckling in the plane of the mechanism, pi^2 E I / l^2; `safety` is infinite where nothing presses.
+    """
+
+    load: Number
+    compression: Number
+
+    @property
+    def safety(self) -> Number:
+        """The buckling load over the greatest compression."""
+        with np.errstate(divide="ignore"):
+            return np.where(self.compression > 0.0, self.load / np.abs(self.compression), np.inf)
+
+
+class PinStress(NamedTuple):
+    """The greatest force on a link at a pin, shear over the pin's section and pressure in its bearing, (designs,).
+
+    The shear is F / A, its mean over one section or as many as are sheared, the pressure F / (d b).
+    """
+
+    force: Number
+    shear: Number
+    pressure: Number
+    link: Sequence[str]
+    pose: Number
+
+    def lines(self, letter: str, forces: Forces, design: int) -> Iterator[Line]:
+        """Yield its lines of text."""
+        units = forces.units
+        at = f"at {_pose_text(forces.motion, design, int(self.pose[design]))}"
+        where = f"on {self.link[design]}"
+        yield f"pin {letter}: greatest force", float(self.force[design]), units.force, "", "", where, at
+        yield "shear", float(self.shear[design]), _pressure(units)
+        yield "bearing pressure", float(self.pressure[design]), _pressure(units)
+
+
+def _pressure(units: Units) -> str:
+    return f"{units.force}/{units.length}^2"
+
+
+class BarSection(NamedTuple):
+    """The area of a section, its second moment of area in the plane of the mechanism, and its section modulus."""
+
+    area: float
+    second_moment: float
+    modulus: float
+
+
+def _rectangle(width: float, height: float) -> BarSection:
+    return BarSection(width * height, width * height**3 / 12.0, width * height**2 / 6.0)
+
+
+def _circle(diameter: float) -> BarSection:
+    return BarSection(np.pi * diameter**2 / 4.0, np.pi * diameter**4 / 64.0, np.pi * diameter**3 / 32.0)
+
+
+def _tube(diameter: float, wall: float) -> BarSection:
+    if 2.0 * wall > diameter:
+        raise InvalidInput(Problem("wall", f"a wall of {wall:g} is more than half of the diameter {diameter:g}"))
+    whole, hole = _circle(diameter), _circle(diameter - 2.0 * wall)
+    second = whole.second_moment - hole.second_moment
+    return BarSection(whole.area - hole.area, second, 2.0 * second / diameter)
+
+
+# Sections by what is given of them; the height of a rectangle is across the bar, in the plane of the mechanism.
+SECTIONS: tuple[Callable[..., BarSection], ...] = (_rectangle, _circle, _tube, BarSection)
+SECTION_KEYS = {frozenset(inspect.signature(kind).parameters): kind for kind in SECTIONS}
+
+
+def _section(link: str, given: Any) -> BarSection:
+    """Return the section of a link. Raises InvalidInput for what is none."""
+    where = f"sections[{link!r}]"
+    make = SECTION_KEYS.get(frozenset(given)) if isinstance(given, Mapping) else None
+    if make is None:
+        known = "; ".join(", ".join(inspect.signature(kind).parameters) for kind in SECTIONS)
+        raise InvalidInput(Problem(where, f"{given!r} is no section", f"a dictionary with one of: {known}"))
+    for key, value in given.items():
+        _positive(f"{where}.{key}", value)
+    return make(**given)
+
+
+def _positive(where: str, value: Any) -> float:
+    """Return a number above zero. Raises InvalidInput for anything else."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)) or not 0.0 < value < np.inf:
+        raise InvalidInput(Problem(where, f"{value!r} is no number above zero"))
+    return float(value)
+
 
 @checked
-def strength(forces: Forces, *links: str) -> Strength:
+def strength(
+    forces: Forces,
+    *links: str,
+    sections: Mapping[str, Any] | None = None,
+    elasticity: Mapping[str, Any] | None = None,
+    pins: Mapping[str, Any] | None = None,
+) -> Strength:
     """Return normal force, shear and bending moment along the bars of links at every pose, by beam statics.
 
     Without names those are all links but the frame. A link is a bar where all its points, or all points at which
@@ -160,7 +286,13 @@ def strength(forces: Forces, *links: str) -> Strength:
     is a force and a moment at the mass centre. What acts beside the bar acts at the nearest place of it, with its
     moment about that.
 
-    Raises InvalidInput for a mechanism without masses and loads, UnknownName for an unknown link.
+    `sections` are of links, for stresses: {"rod": {"width": 8, "height": 20}}, the height in the plane, or "diameter",
+    with a "wall" for a tube, or "area", "second_moment" and "modulus". With `elasticity`, {"rod": 210000}, follow
+    buckling loads of bars pinned at their two ends. `pins` are diameters and widths in the bearing, {"B": (12, 20)},
+    and, where it is not 1, the number of sections sheared, {"B": (12, 20, 2)}. All in the mechanism's units.
+
+    Raises InvalidInput for a mechanism without masses and loads, for numbers not above zero, and for a modulus of
+    elasticity without a section, UnknownName for an unknown link or pin.
 
     Source: any course of statics; R. C. Hibbeler, Engineering Mechanics: Statics, 14th ed., Pearson 2016, chapter 7.
 
@@ -191,7 +323,56 @@ def strength(forces: Forces, *links: str) -> Strength:
             undefined[name] = points
         else:
             bars[name] = _bar(forces, name, points)
-    return Strength(forces, bars, undefined)
+    chosen = {
+        name: _section(_with_bar(name, bars, undefined, "sections"), one) for name, one in (sections or {}).items()
+    }
+    stresses = {name: np.abs(bars[name].normal) / one.area + np.abs(bars[name].bending) / one.modulus
+                for name, one in chosen.items()}  # fmt: skip
+    buckling = {}
+    for name, modulus in (elasticity or {}).items():
+        if _with_bar(name, bars, undefined, "elasticity") not in chosen:
+            what = "a modulus of elasticity without a section"
+            raise InvalidInput(Problem(f"elasticity[{name!r}]", what, f"give sections={{{name!r}: ...}} too"))
+        stiffness = _positive(f"elasticity[{name!r}]", modulus) * chosen[name].second_moment
+        buckling[name] = _buckling(bars[name], stiffness)
+    held = {letter: _pin_stress(forces, letter, given) for letter, given in (pins or {}).items()}
+    return Strength(forces, bars, undefined, stresses, buckling, held)
+
+
+def _with_bar(link: str, bars: Mapping[str, BarForces], undefined: Mapping[str, str], where: str) -> str:
+    """Return the name of a link that has a bar. Raises UnknownName for another."""
+    if link not in bars:
+        what = undefined.get(link, "there is no such bar")
+        raise UnknownName(Problem(f"{where}[{link!r}]", what, suggestion(link, list(bars))))
+    return link
+
+
+def _buckling(bar: BarForces, stiffness: float) -> BucklingLoad:
+    """Return the buckling load of a bar pinned at its ends. Raises InvalidInput for another bar."""
+    if len(bar.letters) > 2 or bar.is_clamped:
+        what = f"{bar.link!r} is not pinned at two ends alone: Euler's load is not its own"
+        raise InvalidInput(Problem(f"elasticity[{bar.link!r}]", what, "leave it out"))
+    designs = range(len(bar.length))
+    pressed = np.array([max(-bar.extremes(NORMAL, k)[0].value, 0.0) for k in designs])
+    return BucklingLoad(np.pi**2 * stiffness / bar.length**2, pressed)
+
+
+def _pin_stress(forces: Forces, letter: str, given: Any) -> PinStress:
+    """Return the stresses of a pin from its diameter, the width of its bearing and the number of sections."""
+    where = f"pins[{letter!r}]"
+    if not isinstance(given, Sequence) or isinstance(given, str) or len(given) not in (2, 3):
+        raise InvalidInput(Problem(where, f"{given!r} is no pin", "(diameter, width) or (diameter, width, sections)"))
+    words = ("diameter", "width", "sections")
+    diameter, width, *more = (_positive(f"{where}: {word}", one) for word, one in zip(words, given, strict=False))
+    pin, shape = forces.pins[letter], forces.motion.failed.shape
+    found = np.array([np.abs(pin.on(link).force).reshape(shape) for link in pin.links])
+    found = np.where(np.isfinite(found), found, -1.0).transpose(1, 0, 2)
+    best = found.reshape(shape[0], -1).argmax(axis=-1)
+    link, pose = np.divmod(best, shape[1])
+    force = found.reshape(shape[0], -1).max(axis=-1)
+    force = np.where(force < 0.0, np.nan, force)
+    area = _circle(diameter).area * (more[0] if more else 1.0)
+    return PinStress(force, force / area, force / (diameter * width), [pin.links[k] for k in link], pose)
 
 
 def bar_points(forces: Forces, link: str) -> tuple[str, ...] | str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -161,6 +162,53 @@ def test_a_given_mass_is_a_force_at_its_centre_and_a_point_aside_carries_nothing
     bar = ck.figures.strength(ck.force_analysis(ck.solve(loaded, {"arm": [0.0]}), inertia=False)).bars["arm"]
     np.testing.assert_allclose(bar.extremes(BENDING)[0][:2], (-30 * 0.5 - 2.0, 0.0))
     assert "force and a moment" in bar.assumed
+
+
+def test_stresses_of_sections_and_pins_and_the_buckling_load() -> None:
+    """A strut of two forces: Euler's load, N / A, and the pin's F / A and F / (d b) by hand."""
+    turn = np.deg2rad(np.arange(0.0, 360.0, 20.0))
+    forces = ck.force_analysis(ck.solve(four_bar(), turn, speed=100))
+    round_bar, tube = {"diameter": 0.02}, {"diameter": 0.02, "wall": 0.01}
+    rectangle = {"width": 0.01, "height": 0.03}
+    given = {"sections": {"coupler": round_bar, "rocker": rectangle}, "elasticity": {"coupler": 2.1e11}}
+    found = ck.figures.strength(forces, **given, pins={"B": (0.01, 0.02), "A": (0.01, 0.02, 2)})
+    normal = found.bars["coupler"].normal
+    np.testing.assert_allclose(found.buckling["coupler"].load, np.pi**3 * 2.1e11 * 0.02**4 / 64 / 0.15**2)
+    np.testing.assert_allclose(found.buckling["coupler"].compression, -normal.min())
+    np.testing.assert_allclose(found.stresses["coupler"].max(), np.abs(normal).max() / (np.pi * 1e-4), rtol=1e-9)
+    bending = found.bars["rocker"].bending
+    normal = found.bars["rocker"].normal
+    by_hand = np.abs(normal) / 3e-4 + np.abs(bending) * 0.015 / (0.01 * 0.03**3 / 12)
+    np.testing.assert_allclose(found.stresses["rocker"], by_hand)
+    force = np.abs(forces.pairs["B"].force).max()
+    np.testing.assert_allclose(found.pins["B"].shear, force / (np.pi * 0.01**2 / 4))
+    np.testing.assert_allclose(found.pins["B"].pressure, force / (0.01 * 0.02))
+    np.testing.assert_allclose(found.pins["A"].shear, np.abs(forces.pairs["A"].force).max() / (np.pi * 0.01**2 / 2))
+    solid = ck.figures.strength(forces, sections={"coupler": tube}).stresses["coupler"]
+    np.testing.assert_allclose(solid, found.stresses["coupler"])
+    assert {"buckling load", "bearing pressure", "N/m^2"} == set(
+        re.findall("buckling load|bearing pressure|N/m.2", found.text())
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"sections": {"coupler": {"diameter": -1}}}, "diameter: -1 is no number above zero"),
+        ({"sections": {"coupler": {"radius": 1}}}, "is no section"),
+        ({"sections": {"coupler": {"diameter": 1, "wall": 0.6}}}, "more than half"),
+        ({"sections": {"couple": {"diameter": 1}}}, "did you mean 'coupler'"),
+        ({"elasticity": {"coupler": 2e11}}, "without a section"),
+        ({"sections": {"crank": {"diameter": 1}}, "elasticity": {"crank": 2e11}}, "not pinned at two ends"),
+        ({"pins": {"B": (0, 1)}}, "diameter: 0 is no number above zero"),
+        ({"pins": {"B": 3}}, "is no pin"),
+        ({"pins": {"X": (1, 1)}}, "X"),
+    ],
+)
+def test_sections_and_pins_that_are_refused(given: Any, message: str) -> None:
+    forces = ck.force_analysis(ck.solve(four_bar(), {"crank": [1.0]}, speed=100))
+    with pytest.raises((ck.errors.InvalidInput, ck.errors.UnknownName), match=message):
+        ck.figures.strength(forces, **given)
 
 
 def test_what_is_refused() -> None:
