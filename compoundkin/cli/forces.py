@@ -33,6 +33,10 @@ SHEET = click.option(
 )
 ON = click.option("--on", "on", default="", metavar="LINK", help="Print all that acts on a link: its free body.")
 
+STRENGTH = click.option(
+    "--strength", is_flag=True, help="Print forces along the bars of links; with -o PATH.csv all loads on each link."
+)
+
 
 @click.command(
     epilog="""\b
@@ -42,6 +46,7 @@ Examples:
   compoundkin forces linkage.toml --at 35 --statics
   compoundkin forces linkage.toml --at 35 --on rod
   compoundkin forces linkage.toml --at 35 --statics --sheet -o sheet.html
+  compoundkin forces linkage.toml --speed 300rpm --strength
   compoundkin forces scissor-lift --at 1.6 --statics --load T=0,-3000
   compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
   compoundkin forces linkage.toml -o forces.md
@@ -55,10 +60,11 @@ Examples:
 @load_options
 @ON
 @SHEET
+@STRENGTH
 @report_or_table_options
 def command(
-    file: str, design: int, statics: bool, holding: str, on: str, sheet: bool, form: str | None, path: str | None,
-    **options: Any,
+    file: str, design: int, statics: bool, holding: str, on: str, sheet: bool, strength: bool, form: str | None,
+    path: str | None, **options: Any,
 ) -> int:  # fmt: skip
     """Print forces in all pairs, efforts of drivers, the force on the frame.
 
@@ -69,6 +75,11 @@ def command(
     from compoundkin.view.report.forces_section import forces_report
     from compoundkin.view.report.forces_section import sheet as force_sheet
 
+    if strength:
+        others = {"--on": on, "--sheet": sheet, "--output": options["outputs"], "--format": form}
+        if excluded := next((name for name, given in others.items() if given), ""):
+            raise InvalidInput(Problem("--strength", f"it does not go with {excluded}", "leave one of them out"))
+        return _strength(file, path, statics, holding, options)
     if on and sheet:
         raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))
     report = "--sheet" if sheet else f"--on {on}" if on else ""
@@ -123,3 +134,20 @@ def size_command(
     found = sizing(forces, motors, driver=driver, gear=gear, efficiency=efficiency, design=design)
     put(found.text() + "\n")
     return 0 if found.chosen else 1
+
+
+def _strength(file: str, path: str | None, statics: bool, holding: str, options: dict[str, Any]) -> int:
+    """Print forces along the bars of links, or write the loads on them; return the exit code."""
+    from compoundkin.base.suffixes import file_format
+    from compoundkin.cli import typed_values
+    from compoundkin.dynamics.strength import strength
+
+    if path is not None:
+        file_format("table", path)
+    structure = solvable_structure(file, None, None, lambda own: typed_values.with_loads(own, options))
+    found = strength(find_forces(solve_motion(structure, options), statics, holding))
+    if path is None:
+        put(f"{found.text()}\n")
+    else:
+        put_table(found.table(), path)
+    return explain_gaps(found.forces.motion)

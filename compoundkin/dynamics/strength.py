@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import inspect
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -19,6 +20,8 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.link_wrench import INERTIA, WEIGHT, LinkWrench
 from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import Quantity, Table, table_of
+from compoundkin.model.attributes import VALUE
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.units import Units
 
@@ -102,7 +105,7 @@ class BarForces(ShortRepr):
                 yield (*own, *[""] * (5 - len(own)), f"{one.position:.6g} {units.length} from {self.letters[0]}",
                        f"at {_pose_text(self.motion, design, one.pose)}")  # fmt: skip
         if self.assumed:
-            yield (self.assumed,)
+            yield (f"assumed: {self.assumed}" if "uniform" in self.assumed else self.assumed,)
 
     def _largest(self, what: str, design: int) -> float:
         """The largest value of all, by which what is rounding is told."""
@@ -159,6 +162,32 @@ class Strength(ShortRepr):
     def text(self) -> str:
         """Return it as text, a block for each design: units named, moments in N m as well, angles in degrees."""
         return texts_of_designs(self.forces.motion.inputs.designs, self._lines)
+
+    def table(self) -> Table:
+        """Return all loads on each link in the link's own axes as columns, a row for each pose, as for finite elements.
+
+        Each has its `place`, its `force` there and the `moment` about it; their sum with weight and inertia is zero.
+        """
+        motion = self.forces.motion
+        whole = table_of(motion, *(f"{name}.{VALUE}" for name in motion.drives))
+        own = (column for link in (*self.bars, *self.undefined) for column in self._columns(link))
+        return replace(whole, columns=(*whole.columns, *own))
+
+    def _columns(self, link: str) -> Iterator[Quantity]:
+        """Yield the columns of what acts on a link."""
+        motion, units, seen = self.forces.motion, self.forces.units, Counter[str]()
+        pose = motion.poses[link]
+        for one in self.forces.on(link):
+            name = f"{link}.{one.kind} {one.name}"
+            seen[name] += 1
+            name += f" {seen[name]}" if seen[name] > 1 else ""
+            place, force = (one.attack - pose.z.c[0]) / pose.u.c[0], one.determined.force / pose.u.c[0]
+            columns = (("place", units.length, place, 0j), ("force", units.force, force, 0j),
+                       ("moment", units.moment, one.moment, 0.0))  # fmt: skip
+            for word, unit, value, zero in columns:
+                shown = value if word == "moment" else motion.grid.known(value + zero)
+                values = np.broadcast_to(shown, motion.shape).reshape(-1)
+                yield from Quantity(f"{name}.{word}", unit, values).components
 
     def _lines(self, design: int) -> Iterator[Line]:
         yield ("beam statics: rigid links, forces at the poses solved; no deflection, notches, fatigue or impact",)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -202,3 +203,14 @@ def test_units_are_needed_once(run: Run) -> None:
         "simulate", "crank-rocker", "--until", "0.1", "--mass", "crank=2", "--gravity", "0,-9.81", "--units", "mm,kg,N"
     )
     assert fallen.exit_code == 0, fallen.output
+
+
+def test_strength_is_printed_and_its_loads_are_a_table(run: Run, tmp_path: Path) -> None:
+    """The pendulum at rest and level: m g l at its pin."""
+    text = run("forces", "pendulum", "--at", "0", "--statics", "--strength").stdout
+    assert "arm: bar A-B" in text
+    assert re.search(r"least bending moment\s+-9.81\s+N m\s+0 m from A", text)
+    assert run("forces", "pendulum", "--at", "0", "--statics", "--strength", "-o", "loads.csv").exit_code == 0
+    assert "arm.pair A.force.y [N]" in (tmp_path / "loads.csv").read_text()
+    refused = run("forces", "pendulum", "--strength", "--sheet")
+    assert "does not go with --sheet" in refused.stderr

@@ -211,6 +211,24 @@ def test_sections_and_pins_that_are_refused(given: Any, message: str) -> None:
         ck.figures.strength(forces, **given)
 
 
+def test_the_table_of_loads_is_in_equilibrium_in_the_axes_of_each_link() -> None:
+    turn = np.deg2rad(np.arange(0.0, 360.0, 40.0))
+    forces = ck.force_analysis(ck.solve(slider_crank(0.7), turn, speed=100))
+    table = ck.figures.strength(forces).table()
+    names = [name for name in table.names if name.startswith("rod.") and name.endswith(".moment")]
+    assert [name.split(".")[1] for name in names] == ["pair A", "pair B", "inertia rod"]
+    force, moment = 0j, 0.0
+    for name in (name.removesuffix(".moment") for name in names):
+        place, own = (
+            table[f"{name}.{word}.x"].values + 1j * table[f"{name}.{word}.y"].values for word in ("place", "force")
+        )
+        force, moment = force + own, moment + table[f"{name}.moment"].values + (np.conj(place) * own).imag
+    size = np.abs(table["rod.pair A.force.x"].values).max()
+    np.testing.assert_allclose(force, 0.0, atol=ROUNDING * size)
+    np.testing.assert_allclose(moment, 0.0, atol=ROUNDING * size)
+    np.testing.assert_allclose(table["rod.pair B.place.x"].values, 0.2)
+
+
 def test_what_is_refused() -> None:
     bare = ck.force_analysis(ck.solve(arm(), {"arm": [0.0]}))
     with pytest.raises(ck.errors.InvalidInput, match="no masses and no loads"):
