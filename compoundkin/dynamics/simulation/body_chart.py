@@ -18,7 +18,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, first_entry, whole_turns
+from compoundkin.base.arrays import Number, cross, dot, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, moving_masses
@@ -63,6 +63,17 @@ class _Pins(NamedTuple):
     other: Number
 
 
+class _Slides(NamedTuple):
+    """All slides at once: the indices of their links, and their points and directions there."""
+
+    first: Number
+    second: Number
+    own: Number
+    other: Number
+    guide: Number
+    block: Number
+
+
 class _Bodies(NamedTuple):
     """All masses at once: where their links' coordinates begin, and the mass matrix but for its eccentric terms."""
 
@@ -91,6 +102,16 @@ class _HeldCoordinate(NamedTuple):
     scale: float
     law: str | None
     first: float
+
+
+class _SlideRows(NamedTuple):
+    """What is open of slides, what it would be accelerated by, and its derivatives."""
+
+    open: tuple[Number, Number]
+    second: tuple[Number, Number]
+    direction: Number
+    turning: tuple[Number, Number]
+    aligned: Number
 
 
 class Equations(NamedTuple):
@@ -160,10 +181,15 @@ class BodyChart:
         members = np.array([[self.index[link] for link in pair.members] for pair in pins], dtype=int).reshape(-1, 2)
         points = np.array([[end.point for end in self._ends(pair)] for pair in pins], dtype=complex).reshape(-1, 2)
         self.pins = _Pins(members[:, 0], members[:, 1], points[:, 0], points[:, 1])
+        slides = [pair for pair in structure.pairs if pair.is_simple and not pair.free_is_angle]
+        members = np.array([[self.index[link] for link in pair.members] for pair in slides], dtype=int).reshape(-1, 2)
+        sides = np.array([[(end.point, end.along.c[0]) for end in self._ends(pair)] for pair in slides], dtype=complex)
+        sides = sides.reshape(-1, 2, 2)
+        self.slides = _Slides(members[:, 0], members[:, 1], *sides[..., 0].T, *sides[..., 1].T)
         self.pairs = tuple(
             _HeldPair(pair, self._ends(pair), self._columns(pair), np.array(constraint_scales(pair, self.size)))
             for pair in structure.pairs
-            if pair not in pins
+            if pair not in pins and pair not in slides
         )
         steps = [step for body in structure.bodies for step in body.driven if step.is_passive]
         passive = [(step.pair, 1.0, None) for step in steps]
@@ -336,11 +362,44 @@ class BodyChart:
         found[FRAME] = FIXED
         return found
 
+    def _put_slides(self, at: int, found: _SlideRows, matrix: Number, off: Number, second: Number) -> int:
+        """Write the rows of all slides from a row on: distances, then angles; return the row behind them."""
+        slides, k = self.slides, len(self.slides.own)
+        rows, angles = np.arange(at, at + k), np.arange(at + k, at + 2 * k)
+        off[rows], off[angles] = found.open
+        second[rows], second[angles] = found.second
+        e = found.direction
+        matrix[rows, 3 * slides.first], matrix[rows, 3 * slides.first + 1] = e.imag, -e.real
+        matrix[rows, 3 * slides.second], matrix[rows, 3 * slides.second + 1] = -e.imag, e.real
+        matrix[rows, 3 * slides.first + 2], matrix[rows, 3 * slides.second + 2] = found.turning
+        matrix[angles, 3 * slides.first + 2], matrix[angles, 3 * slides.second + 2] = -found.aligned, found.aligned
+        return at + 2 * k
+
+    def _slide_rows(self, z: Number, u: Number, v: Number, w: Number) -> _SlideRows:
+        """Return the rows of all slides: the distance of the block from the guide, the sine of their angle."""
+        slides = self.slides
+        w0, w1 = w[slides.first], w[slides.second]
+        e, f = u[slides.first] * slides.guide, u[slides.second] * slides.block
+        own, other = u[slides.first] * slides.own, u[slides.second] * slides.other
+        gap = z[slides.second] + other - z[slides.first] - own
+        rate = v[slides.second] + 1j * w1 * other - v[slides.first] - 1j * w0 * own
+        inward = w0 * w0 * own - w1 * w1 * other
+        sine, cosine = cross(e, f), dot(e, f)
+        moved = -w0 * w0 * cross(e, gap) + 2.0 * cross(1j * w0 * e, rate) + cross(e, inward)
+        turning = cross(1j * e, gap) - cross(e, 1j * own), cross(e, 1j * other)
+        return _SlideRows(
+            (cross(e, gap) / self.size, sine),
+            (-moved / self.size, np.square(w1 - w0) * sine),
+            e,
+            (turning[0] / self.size, turning[1] / self.size),
+            cosine,
+        )
+
     def equations(self, state: BodyState) -> Equations:
         """Return the equations of all pairs at a state."""
         values, speeds = state.values, state.speeds
         pins, m = self.pins, len(self.pins.own)
-        count = 2 * m + sum(len(one.scales) for one in self.pairs) + len(self.held_coordinates)
+        count = 2 * (m + len(self.slides.own)) + sum(len(one.scales) for one in self.pairs) + len(self.held_coordinates)
         # the frame has columns, too, which are left out at last
         width = len(values) + 3
         matrix, off, second = np.zeros((count, width)), np.zeros(count), np.zeros(count)
@@ -359,6 +418,9 @@ class BodyChart:
         matrix[even, 3 * pins.second + 2] = -other.imag / self.size
         matrix[odd, 3 * pins.second + 2] = other.real / self.size
         at, lengths = 2 * m, np.append(self.scales, self.scales[:3])
+        if len(self.slides.own):
+            guided = self._slide_rows(z, u, np.append(speeds[0::3] + 1j * speeds[1::3], 0j), w)
+            at = self._put_slides(at, guided, matrix, off, second)
         for one in self.pairs:
             poses, rows = tuple(state.world[link] for link in one.pair.members), slice(at, at + len(one.scales))
             found = np.reshape(one.pair.jacobian(one.ends, poses), (-1, len(one.columns)))[: len(one.scales)]

@@ -266,6 +266,8 @@ def _by_another(
     driver = fast[0].driver if fast else chart.free[0]
     text = f"no pair is a coordinate like {driver} for long: those of all links take its place"
     course.events.append(SimulationEvent(course.last, COORDINATE, text, False))
+    # what was stiff by one coordinate need not be so from there on
+    course.implicit, course.short = False, 0
     links, state = by_links(chart, here)
     return links, links.settled(solver.t, np.append(state, solver.y[-1]))
 
