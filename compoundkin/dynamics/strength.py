@@ -31,6 +31,8 @@ IN_LINE = 1e-9
 EVEN_STATIONS = 21
 # A bar is pinned where the moment at its ends is below this part of the largest, the rounding of forces.
 PINNED = 1e-9
+# How a mass that is not assumed to be a uniform bar's acts.
+POINT_MASS = "its mass acts as a force and a moment at its centre"
 # The quantities along a bar.
 NORMAL, SHEAR, BENDING, STATION = "normal force", "shear", "bending moment", "station"
 
@@ -143,9 +145,10 @@ def _pose_text(motion: Motion, design: int, pose: int) -> str:
 class Strength(ShortRepr):
     """Strength at a glance: the forces along the bars of links, by beam statics and no more.
 
-    `bars` are by the link's name; `undefined` are the links without a bar, with the reason. `stresses` are those in the
-    outermost fibre of links with a section, |N| / A + |M| / W, in the shape of the bar's arrays; `buckling` the
-    buckling loads of links with a section and a modulus of elasticity, `pins` the stresses of pins with a diameter.
+    `bars` are by the link's name, the arms of a bell crank by it and their letters, "bell A-P"; `undefined` are the
+    links without a bar, with the reason. `stresses` are those in the outermost fibre of links with a section, |N| / A
+    + |M| / W, in the shape of the bar's arrays; `buckling` the buckling loads of links with a section and a modulus
+    of elasticity, `pins` the stresses of pins with a diameter.
     """
 
     forces: Forces = field(repr=False)
@@ -170,7 +173,8 @@ class Strength(ShortRepr):
         """
         motion = self.forces.motion
         whole = table_of(motion, *(f"{name}.{VALUE}" for name in motion.drives))
-        own = (column for link in (*self.bars, *self.undefined) for column in self._columns(link))
+        links = dict.fromkeys([*(bar.link for bar in self.bars.values()), *self.undefined])
+        own = (column for link in links for column in self._columns(link))
         return replace(whole, columns=(*whole.columns, *own))
 
     def _columns(self, link: str) -> Iterator[Quantity]:
@@ -191,21 +195,21 @@ class Strength(ShortRepr):
 
     def _lines(self, design: int) -> Iterator[Line]:
         yield ("beam statics: rigid links, forces at the poses solved; no deflection, notches, fatigue or impact",)
-        for bar in self.bars.values():
+        for name, bar in self.bars.items():
             yield from bar.lines(design)
-            yield from self._stress_lines(bar, design)
+            yield from self._stress_lines(name, design)
         for letter, pin in self.pins.items():
             yield from pin.lines(letter, self.forces, design)
         for link, reason in self.undefined.items():
             yield (f"{link}: {reason}",)
 
-    def _stress_lines(self, bar: BarForces, design: int) -> Iterator[Line]:
+    def _stress_lines(self, name: str, design: int) -> Iterator[Line]:
         units = self.forces.units
-        if bar.link in self.stresses:
-            found = self.stresses[bar.link].reshape(*self.forces.motion.failed.shape, -1)[design]
+        if name in self.stresses:
+            found = self.stresses[name].reshape(*self.forces.motion.failed.shape, -1)[design]
             yield "greatest stress", float(np.nanmax(found)), _pressure(units)
-        if bar.link in self.buckling:
-            load, compression = (float(one[design]) for one in self.buckling[bar.link][:2])
+        if name in self.buckling:
+            load, compression = (float(one[design]) for one in self.buckling[name][:2])
             words = "not pressed" if compression <= 0.0 else f"{load / compression:.4g} times the greatest compression"
             yield "buckling load (Euler)", load, units.force, "", "", words
 
@@ -311,9 +315,9 @@ def strength(
     """Return normal force, shear and bending moment along the bars of links at every pose, by beam statics.
 
     Without names those are all links but the frame. A link is a bar where all its points, or all points at which
-    something acts, are in line. The mass of a uniform bar, where it is assumed to be one, acts along the bar; any other
-    is a force and a moment at the mass centre. What acts beside the bar acts at the nearest place of it, with its
-    moment about that.
+    something acts, are in line; of another that has one pin on the frame each point has an arm from there. The mass
+    of a uniform bar, where it is assumed to be one, acts along the bar; any other is a force and a moment at the mass
+    centre. What acts beside the bar acts at the nearest place of it, with its moment about that.
 
     `sections` are of links, for stresses: {"rod": {"width": 8, "height": 20}}, the height in the plane, or "diameter",
     with a "wall" for a tube, or "area", "second_moment" and "modulus". With `elasticity`, {"rod": 210000}, follow
@@ -348,7 +352,10 @@ def strength(
     bars, undefined = dict[str, BarForces](), dict[str, str]()
     for name in links or own:
         points = bar_points(forces, name)
-        if isinstance(points, str):
+        if isinstance(points, str) and (middle := _middle(forces, name)):
+            tips = [letter for letter in _loaded(forces, name) if letter != middle]
+            bars |= {f"{name} {tip}-{middle}": _bar(forces, name, (tip, middle), is_arm=True) for tip in tips}
+        elif isinstance(points, str):
             undefined[name] = points
         else:
             bars[name] = _bar(forces, name, points)
@@ -414,11 +421,23 @@ def bar_points(forces: Forces, link: str) -> tuple[str, ...] | str:
         return "a link of one point is no bar"
     if (found := _in_line(places)) is not None:
         return found
-    acting = {one.at for one in forces.on(link) if one.kind not in (WEIGHT, INERTIA)}
-    loaded = {letter: place for letter, place in places.items() if letter in acting}
+    loaded = {letter: places[letter] for letter in _loaded(forces, link)}
     if len(loaded) > 1 and (found := _in_line(loaded)) is not None:
         return found
     return f"no bar is defined: forces act at {', '.join(loaded) or 'no letter'}, which are not in line"
+
+
+def _loaded(forces: Forces, link: str) -> list[str]:
+    """Return the letters of a link at which something acts."""
+    acting = {one.at for one in forces.on(link) if one.kind not in (WEIGHT, INERTIA)}
+    return [letter for letter in forces.mechanism.geometry.points[link] if letter in acting]
+
+
+def _middle(forces: Forces, link: str) -> str:
+    """Return the point from which the arms of a bell crank go: its only pin on the frame, empty where there is none."""
+    loaded = _loaded(forces, link)
+    pivots = [letter for letter in loaded if FRAME in forces.mechanism.real_pins.get(letter, ())]
+    return pivots[0] if len(pivots) == 1 and len(loaded) > 2 else ""
 
 
 def _in_line(places: Mapping[str, Number]) -> tuple[str, ...] | None:
@@ -445,8 +464,11 @@ class Acting(NamedTuple):
     moment: Number
 
 
-def _bar(forces: Forces, link: str, letters: Sequence[str]) -> BarForces:
-    """Return the forces along a bar through some letters of a link."""
+def _bar(forces: Forces, link: str, letters: Sequence[str], is_arm: bool = False) -> BarForces:
+    """Return the forces along a bar through some letters of a link.
+
+    All that does not act on an arm itself is what holds it at its last letter.
+    """
     motion = forces.motion
     shape = motion.failed.shape
     own = forces.mechanism.geometry.points[link]
@@ -460,20 +482,24 @@ def _bar(forces: Forces, link: str, letters: Sequence[str]) -> BarForces:
     spread = mass is not None and mass.is_uniform_bar and len(letters) == len(own)
     taken = [one for one in forces.on(link) if not (spread and one.kind in (WEIGHT, INERTIA))]
     known = {letter: np.abs(np.broadcast_to(extended_to(motion, own[letter]), shape) - first) for letter in letters}
-    acting = [_acting(one, start, direction, length, known) for one in taken]
+    acting = [_acting(one, start, direction, length, known, is_arm) for one in taken]
     constant, slope = _along(forces, link, first, axis) if spread else (np.zeros(shape), np.zeros(shape))
     constant, slope = constant / length / direction, slope / length / direction
     position, values = _section_forces(length, acting, constant, slope)
     values = np.where((motion.failed == 0)[..., None], values, np.nan)
     shown = (*motion.shape, position.shape[-1])
     normal, shear, bending = (value.reshape(shown) for value in values)
-    assumed = "" if mass is None else mass.assumed if spread else "its mass acts as a force and a moment at its centre"
+    assumed = "" if mass is None else mass.assumed if spread else POINT_MASS
+    if is_arm:
+        assumed = f"an arm held at {letters[-1]}; what acts beside the arms, as weight and inertia may, acts there"
     at = position.reshape(shown)
     return BarForces(motion, link, tuple(letters), length[:, 0], at, normal, shear, bending, assumed)
 
 
-def _acting(one: LinkWrench, start: Number, direction: Number, length: Number, known: Mapping[str, Number]) -> Acting:
-    """Return a wrench on the bar at the place nearest to its point of attack."""
+def _acting(
+    one: LinkWrench, start: Number, direction: Number, length: Number, known: Mapping[str, Number], is_arm: bool
+) -> Acting:
+    """Return a wrench on the bar at the place nearest to its point of attack, beside an arm at its end."""
     attack = np.where(np.isfinite(one.attack), one.attack, start)
     if one.at in known:
         place = known[one.at]
@@ -481,6 +507,8 @@ def _acting(one: LinkWrench, start: Number, direction: Number, length: Number, k
         place = np.clip(((attack - start) / direction).real, 0.0, length)
         for other in known.values():
             place = np.where(np.abs(place - other) <= IN_LINE * length, other, place)
+        aside = np.abs(start + direction * place - attack) > IN_LINE * length
+        place = np.where(aside & is_arm, length, place)
     force, moment = one.determined.force, one.determined.about(start + direction * place)
     return Acting(place, np.broadcast_to(force / direction, length.shape), np.broadcast_to(moment, length.shape))
 

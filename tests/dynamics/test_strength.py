@@ -156,8 +156,7 @@ def test_turning_the_mechanism_changes_nothing() -> None:
 def test_a_given_mass_is_a_force_at_its_centre_and_a_point_aside_carries_nothing() -> None:
     mechanism = arm(ck.mass("arm", 3, at=(0.5, 0.4), inertia=1), ck.gravity(0, -10), C=(1, 1))
     forces = ck.force_analysis(ck.solve(mechanism, {"arm": [0.0]}), inertia=False)
-    found = ck.figures.strength(forces)
-    assert "A" in found.undefined["arm"]
+    assert "no bar" in ck.figures.strength(forces).undefined["arm"]
     loaded = mechanism.replace(ck.force("arm", (0, -1), at="B"))
     bar = ck.figures.strength(ck.force_analysis(ck.solve(loaded, {"arm": [0.0]}), inertia=False)).bars["arm"]
     np.testing.assert_allclose(bar.extremes(BENDING)[0][:2], (-30 * 0.5 - 2.0, 0.0))
@@ -227,6 +226,34 @@ def test_the_table_of_loads_is_in_equilibrium_in_the_axes_of_each_link() -> None
     np.testing.assert_allclose(force, 0.0, atol=ROUNDING * size)
     np.testing.assert_allclose(moment, 0.0, atol=ROUNDING * size)
     np.testing.assert_allclose(table["rod.pair B.place.x"].values, 0.2)
+
+
+def test_arms_of_a_bell_crank() -> None:
+    """Arms of 2 and 1 m at right angles: 10 N at the end of one and 20 N at that of the other hold each other."""
+    mechanism = ck.Mechanism(
+        "Bell crank",
+        ck.link("frame", P=0),
+        ck.link("bell", P=0, A=2, B=1j),
+        ck.drive("bell"),
+        ck.force("bell", (0, -10), at="A", name="pull"),
+        ck.force("bell", (-20, 5), at="B", name="rod"),
+        ck.mass("bell", 1.0),
+        ck.gravity(0, -9),
+        units=UNITS,
+    )
+    forces = ck.force_analysis(ck.solve(mechanism, {"bell": [0.0]}), inertia=False)
+    found = ck.figures.strength(forces, sections={"bell A-P": {"diameter": 0.1}})
+    assert list(found.bars) == ["bell A-P", "bell B-P"]
+    first, second = found.bars.values()
+    # of A-P, x from A to P: the force of 10 N down is +10 in its y, and the moment at P 20
+    np.testing.assert_allclose(first.extremes(BENDING)[1][:2], (20.0, 2.0))
+    np.testing.assert_allclose(first.extremes(NORMAL)[1].value, 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.abs(second.bending).max(), 20.0)
+    np.testing.assert_allclose(second.extremes(NORMAL)[1].value, 5.0)
+    for bar in (first, second):
+        np.testing.assert_allclose([bar.normal[0, -1], bar.shear[0, -1], bar.bending[0, -1]], 0.0, atol=1e-12)
+    np.testing.assert_allclose(found.stresses["bell A-P"].max(), 20 * 32 / (np.pi * 1e-3))
+    assert "an arm held at P" in found.text()
 
 
 def test_what_is_refused() -> None:
