@@ -185,7 +185,9 @@ class Strength(ShortRepr):
             name = f"{link}.{one.kind} {one.name}"
             seen[name] += 1
             name += f" {seen[name]}" if seen[name] > 1 else ""
-            place, force = (one.attack - pose.z.c[0]) / pose.u.c[0], one.determined.force / pose.u.c[0]
+            turn = np.where(motion.failed == 0, pose.u.c[0], 1.0)
+            with np.errstate(invalid="ignore"):  # of poses that are not assembled or singular
+                place, force = (one.attack - pose.z.c[0]) / turn, one.determined.force / turn
             columns = (("place", units.length, place, 0j), ("force", units.force, force, 0j),
                        ("moment", units.moment, one.moment, 0.0))  # fmt: skip
             for word, unit, value, zero in columns:
@@ -207,7 +209,7 @@ class Strength(ShortRepr):
         units = self.forces.units
         if name in self.stresses:
             found = self.stresses[name].reshape(*self.forces.motion.failed.shape, -1)[design]
-            yield "greatest stress", float(np.nanmax(found)), _pressure(units)
+            yield "greatest stress", float(np.nanmax(found)) if np.isfinite(found).any() else np.nan, _pressure(units)
         if name in self.buckling:
             load, compression = (float(one[design]) for one in self.buckling[name][:2])
             words = "not pressed" if compression <= 0.0 else f"{load / compression:.4g} times the greatest compression"
@@ -464,6 +466,7 @@ class Acting(NamedTuple):
     moment: Number
 
 
+@np.errstate(invalid="ignore", over="ignore")  # of poses that are not assembled or singular
 def _bar(forces: Forces, link: str, letters: Sequence[str], is_arm: bool = False) -> BarForces:
     """Return the forces along a bar through some letters of a link.
 
@@ -476,8 +479,9 @@ def _bar(forces: Forces, link: str, letters: Sequence[str], is_arm: bool = False
     length = np.abs(last - first)
     axis = (last - first) / length
     pose = motion.poses[link]
-    direction = np.broadcast_to(pose.u.c[0], shape) * axis
-    start = np.broadcast_to(pose.z.c[0] + pose.u.c[0] * first, shape)
+    assembled = motion.failed == 0
+    direction = np.where(assembled, pose.u.c[0], 1.0) * axis
+    start = np.where(assembled, pose.z.c[0] + pose.u.c[0] * first, 0.0)
     mass = forces.mechanism.masses.get(link)
     spread = mass is not None and mass.is_uniform_bar and len(letters) == len(own)
     taken = [one for one in forces.on(link) if not (spread and one.kind in (WEIGHT, INERTIA))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from typing import Any
 
 import numpy as np
@@ -254,6 +255,33 @@ def test_arms_of_a_bell_crank() -> None:
         np.testing.assert_allclose([bar.normal[0, -1], bar.shear[0, -1], bar.bending[0, -1]], 0.0, atol=1e-12)
     np.testing.assert_allclose(found.stresses["bell A-P"].max(), 20 * 32 / (np.pi * 1e-3))
     assert "an arm held at P" in found.text()
+
+
+def test_designs_are_those_alone_and_poses_that_are_not_assembled_are_left_out() -> None:
+    """Three rods, the shortest of which cannot turn: each has what it has alone."""
+    turn = np.deg2rad(np.arange(0.0, 360.0, 30.0))
+
+    def found(length: Any) -> Any:
+        coupler = ck.link("coupler", A=(0, 0), B=(length, 0))
+        mechanism = four_bar().replace(coupler, ck.mass("coupler", 0.7))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
+            forces = ck.force_analysis(ck.solve(mechanism, turn, speed=10))
+        return ck.figures.strength(forces, sections={"coupler": {"diameter": 0.01}}, pins={"B": (0.01, 0.01)})
+
+    lengths = [0.15, 0.16, 0.03]
+    several = found(np.array(lengths)[:, None])
+    assert not several.forces.assembled.all()
+    for k, length in enumerate(lengths):
+        alone = found(length)
+        for what in (NORMAL, SHEAR, BENDING):
+            for one, other in zip(
+                several.bars["coupler"].extremes(what, k), alone.bars["coupler"].extremes(what), strict=True
+            ):
+                np.testing.assert_allclose(one.value, other.value, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(several.pins["B"].pressure[k], alone.pins["B"].pressure[0])
+    assert several.text().startswith("design 0")
+    assert len(several.table()) == 36
 
 
 def test_what_is_refused() -> None:
