@@ -146,9 +146,10 @@ class Strength(ShortRepr):
     """Strength at a glance: the forces along the bars of links, by beam statics and no more.
 
     `bars` are by the link's name, the arms of a bell crank by it and their letters, "bell A-P"; `undefined` are the
-    links without a bar, with the reason. `stresses` are those in the outermost fibre of links with a section, |N| / A
-    + |M| / W, in the shape of the bar's arrays; `buckling` the buckling loads of links with a section and a modulus
-    of elasticity, `pins` the stresses of pins with a diameter.
+    links without a bar, with the reason. `stresses` are those in the outermost fibre of links with a section, of the
+    normal force over the area and the bending moment over the section modulus, in the shape of the bar's arrays;
+    `buckling` the buckling loads of links with a section and a modulus of elasticity, `pins` the stresses of pins
+    with a diameter.
     """
 
     forces: Forces = field(repr=False)
