@@ -16,7 +16,6 @@ from compoundkin.kinematics.block import Block, blocks, rectangle
 from compoundkin.kinematics.driver_values import fit, mapped
 from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.definition import matching_pairs, pair_by_name
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.pairs import Pair
@@ -93,13 +92,10 @@ class LoadedBlock:
 
     def _meant(self, name: str) -> tuple[Pair, int]:
         """Return the pair of a name, as the motion has it where it does, and the sign of the coordinate."""
-        meant = pair_by_name(self.motion.mechanism, name)
+        meant = self.motion.solving_order.pair_meant(name)
         if meant is None:
             raise UnknownName(Problem(name, "there is no such pair, pin or driver"))
-        pair, sign = meant
-        for own in matching_pairs(self.motion.solving_order.pairs, pair):
-            return own, sign * (1 if own.members == pair.members else -1)
-        return pair, sign
+        return meant
 
     def _ends(self, pair: Pair) -> Ends:
         """Return the sides of a pair; two links of a multiple pin may have one that no group uses."""

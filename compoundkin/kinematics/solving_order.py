@@ -17,6 +17,7 @@ from compoundkin.base.series import Series, constant
 from compoundkin.kinematics.block import CLIPPED, SIZES, Block, LimitRule, size_in
 from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.groups.pair_sides import Reason, Words, reason_text, spot
+from compoundkin.model.definition import matching_pairs, pair_by_name
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import DimensionFit, Ends, as_turn_counting, constraint_scales
@@ -56,6 +57,18 @@ class SolvingOrder(ShortRepr):
         self.ends.update(own or {})
         if ends is None and np.ndim(geometry.sizes):
             self.ends[SIZES] = (End(geometry.sizes),)
+        self._meant: dict[str, tuple[Pair, int] | None] = {}
+
+    def pair_meant(self, name: str) -> tuple[Pair, int] | None:
+        """Return the pair of a name, as it is solved, and the sign of the coordinate; None for an unknown name."""
+        if name not in self._meant:
+            found = pair_by_name(self.structure.mechanism, name)
+            for own in matching_pairs(self.pairs, found[0]) if found is not None else ():
+                assert found is not None
+                found = own, found[1] * (1 if own.members == found[0].members else -1)
+                break
+            self._meant[name] = found
+        return self._meant[name]
 
     @cached_property
     def dimension_arrays(self) -> tuple[tuple[str, Number], ...]:

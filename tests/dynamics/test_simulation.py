@@ -541,7 +541,8 @@ def test_a_motor_that_is_switched_by_its_speed() -> None:
     assert [event.name for event in left.events] == ["slides", "slips"]
     # 100 t - 100 t^2 = 20
     assert left.events[0].time == pytest.approx((1.0 - np.sqrt(0.2)) / 2.0, rel=1e-9)
-    assert left.events[1].time == pytest.approx(0.5, rel=1e-9)
+    # the part of the motor that is needed, 2 t, may exceed 1 by 1e-9, by rounding
+    assert 0.0 < left.events[1].time - 0.5 < 0.5 * 1e-9 + 1e-11
     assert left.motion.drives["rotor"].rate[-1] == pytest.approx(20.0 - 100.0 * 0.25, rel=1e-8)
 
 

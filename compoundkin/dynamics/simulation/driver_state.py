@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
@@ -20,6 +20,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.laws import Law
+from compoundkin.model.loads.attachments import PairLoad
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.mobility_count import DrivenPair
@@ -210,18 +211,28 @@ class TrueRates(dict[str, Pose]):
         return found
 
 
+class KnownCoordinate(NamedTuple):
+    """A pair's coordinate with its rate, and its rates at unit rate of each coordinate of a state."""
+
+    value: float
+    rate: float
+    slopes: Number
+
+
 @dataclass(frozen=True, eq=False)
 class LoadedState(LoadedBlock):
     """A single pose as loads see it, and their forces along each of `count` coordinates.
 
     The rates of each pose of `columns` are those at unit rate of every coordinate, and last the true ones; the block
-    has the true ones alone. `turns` adds to an angle of a pair its full turns.
+    has the true ones alone. `turns` adds to an angle of a pair its full turns; `driven` are coordinates of pairs that
+    are known with their rates, the drivers' own.
     """
 
     columns: dict[str, Pose] | None = None
     seconds: float = 0.0
     count: int = 0
     turns: Callable[[str, float], float] | None = None
+    driven: Mapping[str, KnownCoordinate] = field(default_factory=dict)
 
     @property
     def time(self) -> Number | None:
@@ -240,26 +251,41 @@ class LoadedState(LoadedBlock):
     def along(self, loads: Iterable[Load]) -> Number:
         """Return the forces of loads along each coordinate."""
         total = np.zeros(self.count)
+        turns_freely = self.motion.structure.passive
         for load in loads:
+            if isinstance(load, PairLoad) and not turns_freely:
+                total += np.ravel(load.effort(self)) * self.rates_of(load.pair)[0]
+                continue
             for link, wrench in load.wrenches(self):
                 total += np.ravel(self.freed(link, wrench).power(self._unit(link)))
         return total
+
+    def coordinate(self, name: str) -> Series:
+        """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
+        pair, sign = self._meant(name)
+        known = self.driven.get(pair.name)
+        return super().coordinate(name) if known is None else Series((sign * known.value, sign * known.rate))
 
     def rates_of(self, name: str) -> tuple[Number, float]:
         """Return the rates of a coordinate by the drivers, and its acceleration at zero accelerations of them."""
         assert self.columns is not None
         pair, sign = self._meant(name)
+        if pair.name in self.driven:
+            return sign * self.driven[pair.name].slopes, 0.0
         moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members)).c
-        slopes = np.broadcast_to(moved[1], (self.count + 1, 1))[:-1, 0] if len(moved) > 1 else np.zeros(self.count)
         bias = 2.0 * float(np.ravel(moved[2])[-1]) if len(moved) > 2 else 0.0
-        return sign * slopes, sign * bias
+        return sign * self._slopes(moved), sign * bias
 
     def counted_angle(self, pair: Pair) -> tuple[float, Number]:
         """Return the angle of a pair with its turns, and its rates by the drivers, in the sense of the pair itself."""
         assert self.columns is not None
         moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members)).c
-        slopes = np.broadcast_to(moved[1], (self.count + 1, 1))[:-1, 0] if len(moved) > 1 else np.zeros(self.count)
-        return float(np.ravel(self._counted(pair))[0]), slopes
+        return float(np.ravel(self._counted(pair))[0]), self._slopes(moved)
+
+    def _slopes(self, moved: Sequence[Number]) -> Number:
+        """Return the rates of a coordinate at unit rate of each of the state's."""
+        row = np.ravel(moved[1]) if len(moved) > 1 else np.zeros(1)
+        return row[:-1] if row.size > 1 else np.broadcast_to(row, self.count)
 
     def _unit(self, link: str) -> Pose:
         """Return the pose of a link with its rates at unit rate of each coordinate."""

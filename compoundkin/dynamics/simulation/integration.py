@@ -496,6 +496,10 @@ def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
 def _behind_break(chart: Chart, solver: Any, course: SimulatedCourse) -> Any:
     """Return the integrator from the other side of a time at which a load jumps or has a corner."""
     one = next(one for one in course.breaks if one.before >= solver.t)
+    if one.behind >= course.until:
+        # the end of the simulation, from before the jump
+        course.steps[-1] = replace(course.steps[-1], last=course.until)
+        return None
     if one.jumps:
         course.events.append(SimulationEvent(one.behind, JUMP, "the loads jump", False))
     return _begun(chart, one.behind, solver.y, course)

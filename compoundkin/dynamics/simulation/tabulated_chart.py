@@ -26,7 +26,7 @@ from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import Rates, loaded_state
+from compoundkin.dynamics.simulation.driver_state import KnownCoordinate, Rates, loaded_state
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -95,7 +95,14 @@ class TabulatedChart(DriverChart):
         columns = _Columns(piece, basis, speed)
         block = Block((2, 1), self.ends, columns, {}, 1)
         at = loaded_state(self.start, block, time, 1, lambda pair, angle: self.turns_of(pair, angle, values))
-        return [float(at.along(loads)[0]) for loads in self.others]
+        at = replace(at, driven=self._driven(float(values[0]), speed))
+        return [float(at.along(loads)[0]) if loads else 0.0 for loads in self.others]
+
+    def _driven(self, value: float, speed: float) -> dict[str, KnownCoordinate]:
+        """Return the coordinate of the driver's pair."""
+        own = self.start.structure.driven[self.free[0]]
+        sign = own.pair.driven_by(own.drive.link)
+        return {own.pair.name: KnownCoordinate(sign * value, sign * speed, np.array([float(sign)]))}
 
     @property
     def memory(self) -> tuple[Any, ...]:
