@@ -12,8 +12,9 @@ Machines and Mechanisms, chapter on static forces; a pin's friction moment is co
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
@@ -165,6 +166,98 @@ def _patterns(normal_forces: int) -> Number:
     return np.concatenate([np.ones((1, normal_forces)), drawn])
 
 
+# A step that leaves more than this part of the residual is replaced by the image, whose residual is smaller for sure.
+SHRINKS = 0.5
+
+
+@dataclass(frozen=True)
+class PoseInfluence:
+    """The influence of frictions at a single pose, in plain numbers, with the signs of the motion.
+
+    `own` are the normal forces without friction, `by` those of a unit of each friction, `owners` the index of the
+    friction to which each normal force belongs.
+    """
+
+    own: Sequence[complex]
+    by: Sequence[Sequence[complex]]
+    owners: Sequence[int]
+    signs: Sequence[float]
+
+    @cached_property
+    def weights(self) -> list[float] | None:
+        """Weights of the sums in whose norm their image contracts, so that there is one solution; None without any.
+
+        They are those of an M-matrix, as in `FrictionInfluence.contracts`.
+        """
+        n = len(self.signs)
+        gains = [[0.0] * n for _ in range(n)]
+        for l, (row, sign) in enumerate(zip(self.by, self.signs, strict=True)):
+            for own, one in zip(self.owners, row, strict=True) if sign else ():
+                gains[own][l] += abs(one)
+        # the plain norm suffices for most mechanisms
+        if all(sum(row) < 1.0 for row in gains):
+            return [1.0] * n
+        try:
+            found = np.linalg.solve(np.eye(n) - gains, np.ones(n)).tolist()
+        except np.linalg.LinAlgError:
+            return None
+        return found if all(one > 0.0 for one in found) else None
+
+    def sizes(self) -> list[float] | None:
+        """Return the sizes of the frictions with their signs; None where the image does not contract."""
+        weights = self.weights
+        if weights is None:
+            return None
+        sums = best = self._sums([abs(one) for one in self.own])
+        newton: list[float] | None = None
+        least = np.inf
+        for _ in range(NEWTON_STEPS):
+            normal_forces, terms = self._under(sums)
+            image = self._sums([abs(one) for one in normal_forces])
+            gaps = [abs(a - b) for a, b in zip(sums, image, strict=True)]
+            gap = max(one / weight for one, weight in zip(gaps, weights, strict=True))
+            shrinks = newton is None or gap <= SHRINKS * least
+            if max(gaps) <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * terms:
+                return [-sign * one for sign, one in zip(self.signs, sums, strict=True)]
+            if not shrinks:
+                sums, newton = best, None
+                continue
+            best, least = image, gap
+            sums = newton = self._newton(sums, image, normal_forces)
+        return None
+
+    def _sums(self, values: Sequence[float]) -> list[float]:
+        """Return the sums over the normal forces of each friction."""
+        total = [0.0] * len(self.signs)
+        for own, value in zip(self.owners, values, strict=True):
+            total[own] += value
+        return total
+
+    def _under(self, sums: Sequence[float]) -> tuple[list[complex], float]:
+        """Return the normal forces under frictions of these sums, and the largest of the terms that cancel in them."""
+        total, terms = list(self.own), [abs(one) for one in self.own]
+        for row, sign, one in zip(self.by, self.signs, sums, strict=True):
+            size = -sign * one
+            if size:
+                for k, unit in enumerate(row):
+                    total[k] += size * unit
+                    terms[k] += abs(size * unit)
+        return total, max(terms)
+
+    def _newton(self, sums: list[float], image: list[float], normal_forces: list[complex]) -> list[float]:
+        """Return the sums of the next Newton step."""
+        n = len(sums)
+        toward = [one / abs(one) if one else 0.0 for one in normal_forces]
+        matrix = [[0.0] * n for _ in range(n)]
+        for l, (row, sign) in enumerate(zip(self.by, self.signs, strict=True)):
+            for own, way, unit in zip(self.owners, toward, row, strict=True) if sign else ():
+                matrix[own][l] += sign * (way.real * unit.real + way.imag * unit.imag)
+            matrix[l][l] += 1.0
+        off = [a - b for a, b in zip(sums, image, strict=True)]
+        step = [off[0] / matrix[0][0]] if n == 1 else np.linalg.solve(matrix, off).tolist()
+        return [one - change for one, change in zip(sums, step, strict=True)]
+
+
 # Separating forces of gears are computed again at most so often; each change is a friction's part of the one before.
 GEAR_ITERATIONS = 60
 
@@ -207,12 +300,7 @@ class BlockWithFriction:
     def _parted(self, sizes: Number) -> FrictionInfluence:
         """Return the influence of frictions, with the separating forces that frictions of these sizes cause."""
         known = np.nan_to_num(sizes)
-        pairs = _of_pairs(self.at, self.with_friction(known))
-        normal_forces = [
-            in_one_row(one, self.at)
-            for contact in self.contacts
-            for one in contact.normal_forces(self.at, pairs[contact.name])
-        ]
+        normal_forces = normal_forces_of(self.at, self.contacts, self.with_friction(known))
         by_frictions = self.influence.normal_forces(known) - self.influence.own
         return replace(self.influence, own=np.array(normal_forces, dtype=complex) - by_frictions)
 
@@ -259,14 +347,17 @@ def _influence(
     at: LoadedBlock, contacts: tuple[LoadedContact, ...], dry: Reactions, alone: tuple[Reactions, ...]
 ) -> FrictionInfluence:
     """Return the normal forces without friction, and those of a unit of each friction."""
-    own, by, starts = list[Number](), [list[Number]() for _ in contacts], list[int]()
-    frictionless, *each = (_of_pairs(at, reactions) for reactions in (dry, *alone))
-    for contact in contacts:
-        starts.append(len(own))
-        own += [in_one_row(one, at) for one in contact.normal_forces(at, frictionless[contact.name])]
-        for column, wrenches in zip(by, each, strict=True):
-            column += [in_one_row(one, at) for one in contact.normal_forces(at, wrenches[contact.name])]
-    return FrictionInfluence(np.array(own, dtype=complex), np.array(by, dtype=complex), np.array(starts))
+    own = [normal_forces_of(at, (contact,), dry) for contact in contacts]
+    by = [normal_forces_of(at, contacts, reactions) for reactions in alone]
+    starts = np.cumsum([0, *(len(rows) for rows in own[:-1])])
+    rows = [row for found in own for row in found]
+    return FrictionInfluence(np.array(rows, dtype=complex), np.array(by, dtype=complex), starts)
+
+
+def normal_forces_of(at: LoadedBlock, contacts: tuple[LoadedContact, ...], reactions: Reactions) -> list[Number]:
+    """Return the normal forces of all contacts under some reactions, each in one row; those of pins are complex."""
+    wrenches = _of_pairs(at, reactions)
+    return [in_one_row(one, at) for contact in contacts for one in contact.normal_forces(at, wrenches[contact.name])]
 
 
 def _of_pairs(at: LoadedBlock, reactions: Reactions) -> Mapping[str, Wrench]:

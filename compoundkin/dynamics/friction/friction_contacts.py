@@ -104,7 +104,7 @@ def senses(contacts: tuple[LoadedContact, ...], at: LoadedBlock) -> Number:
 
     A pair that reverses at a pose has the sense before the reversal.
     """
-    fastest = _fastest(at)
+    fastest = speed_of_fastest(at)
     found = np.array([_sense(contact.sliding(at), AT_REST * fastest, at) for contact in contacts])
     if at.block.order > 1 and not found.all():
         earlier = _earlier(at, fastest)
@@ -134,7 +134,7 @@ def in_one_row(value: Number, at: LoadedBlock) -> Number:
     return np.broadcast_to(value, at.block.shape).reshape(-1)
 
 
-def _fastest(at: LoadedBlock) -> Number:
+def speed_of_fastest(at: LoadedBlock) -> Number:
     """Return the speed of the fastest link: of its origin, or angular velocity times the mechanism's size."""
     fastest: Number = 0.0
     for pose in at.block.world.values():

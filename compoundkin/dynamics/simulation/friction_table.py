@@ -1,24 +1,58 @@
 """One free driver with Coulomb friction: accelerations at which the driver has no effort, and where it sticks.
 
-Normal forces are affine in the acceleration at a given pose and speed, so that two of them determine all; friction
+Normal forces are affine in the acceleration, in the squared speed and in the frictions at a given pose; friction
 follows from the normal forces by Coulomb's law, and the acceleration is the one at which no effort is left to the
-driver.
+driver. What normal forces are by each of these is tabulated over the coordinate like the equation of motion.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.friction.coulomb_friction import ONE, FrictionInfluence, block_with_friction, solve_coulomb
-from compoundkin.dynamics.friction.friction_contacts import LoadedContact, friction_contacts_of, senses
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Series
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.friction.coulomb_friction import (
+    ONE,
+    FrictionInfluence,
+    PoseInfluence,
+    block_with_friction,
+    normal_forces_of,
+    solve_coulomb,
+)
+from compoundkin.dynamics.friction.friction_contacts import (
+    AT_REST,
+    LoadedContact,
+    friction_contacts_of,
+    in_one_row,
+    senses,
+    speed_of_fastest,
+)
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.dynamics.reactions.reverse_pass import reverse_pass
 from compoundkin.dynamics.simulation.driver_state import DriverState, Rates, accelerated_motion
-from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
+from compoundkin.dynamics.simulation.tabulated_chart import (
+    DRIVE_SCALES,
+    POINTS,
+    DriveTable,
+    TablePiece,
+    TabulatedChart,
+    accurate_pieces,
+    drive_terms,
+    piece_at,
+)
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.contract import Load
 
 # Iterations for the acceleration: secant steps, each from two efforts that are nearly affine in it.
 STEPS = 30
@@ -26,89 +60,175 @@ STEPS = 30
 STEP_TOLERANCE = 1e-13
 # The release of a driver is searched at so many times, and found to this part of the time.
 RELEASE_SAMPLES, RELEASED = 200, 1e-12
+# Reversals of sliding are looked for at so many places of each piece, and found by so many halvings.
+PLACES, HALVINGS = 64, 50
+# A course begins so far ahead in its stretch, as a part of the table: it has just left the reversal behind it.
+AHEAD = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
 class NormalForceState:
-    """Normal forces at the accelerations 0 and 1, senses of sliding, and the driver's effort.
+    """A state of the driver: its normal forces and its effort by the acceleration and by the frictions.
 
-    The effort is `own` without friction at both accelerations, and changes by `by` for each unit of friction.
+    Normal forces are `own` at no acceleration, `second` more for a unit of it, and `by` for a unit of each friction;
+    `senses` are those of sliding. The effort is inertia times acceleration less `push`, less `along` for a unit of each
+    friction.
     """
 
-    influence: FrictionInfluence
-    senses: Number
     own: Number
+    second: Number
     by: Number
+    starts: Number
+    senses: Number
+    inertia: float
+    push: float
+    along: Number
+
+    @cached_property
+    def owners(self) -> list[int]:
+        """The friction of each normal force."""
+        found: list[int] = np.repeat(np.arange(len(self.starts)), np.diff(self.starts, append=len(self.own))).tolist()
+        return found
+
+    def _influence(self, own: Number, by: list[list[complex]]) -> PoseInfluence:
+        return PoseInfluence(own.tolist(), by, self.owners, self.senses.tolist())
+
+    @cached_property
+    def _known(self) -> list[list[complex]]:
+        known: list[list[complex]] = self.by.tolist()
+        return known
+
+    def acceleration(self) -> float | None:
+        """Return the acceleration at which the driver has no effort; None where it is not unique."""
+        first = self.push / self.inertia
+        if self._influence(self.own, self._known).weights is not None:
+            # normal forces under frictions that accelerate as well
+            free = self.by + np.multiply.outer(self.along / self.inertia, self.second)
+            sizes = self._influence(self.own + first * self.second, free.tolist()).sizes()
+            if sizes is not None:
+                return first + float(self.along @ sizes) / self.inertia
+        return self._by_secants(first)
+
+    def _by_secants(self, first: float) -> float | None:
+        a, last, step = first, 0.0, 0.0
+        for k in range(STEPS):
+            effort = self.effort(a)
+            if effort is None:
+                return None
+            # without friction the effort grows by the inertia
+            slope = (effort - last) / step if k else self.inertia
+            last, step = effort, -effort / slope if effort else 0.0
+            a += step
+            if abs(step) <= STEP_TOLERANCE * abs(a):
+                break
+        return a
 
     def effort(self, a: float) -> float | None:
         """Return the driver's effort at an acceleration, None where it is not unique."""
-        own = self.influence.own
-        pressed = replace(self.influence.of(np.array([0])), own=own[:, :1] + (own[:, 1:] - own[:, :1]) * a)
-        found = solve_coulomb(pressed, self.senses[:, None])
-        if found.state[0] != ONE:
-            return None
-        return float(self.own[0] + (self.own[1] - self.own[0]) * a + found.sizes[:, 0] @ self.by)
+        own = self.own + a * self.second
+        sizes = self._influence(own, self._known).sizes()
+        if sizes is None:
+            found = solve_coulomb(FrictionInfluence(own[:, None], self.by[..., None], self.starts), self.senses[:, None])
+            if found.state[0] != ONE:
+                return None
+            sizes = found.sizes[:, 0].tolist()
+        return self.inertia * a - self.push - float(self.along @ sizes)
+
+
+class SlidingStretch(NamedTuple):
+    """A range of the driver in which all pairs slide in the same senses as it grows; None where they are unknown."""
+
+    low: float
+    high: float
+    senses: Number | None
 
 
 class FrictionTable(TabulatedChart):
-    """The chart of one free driver whose pairs have friction. It moves in one `direction` until it comes to rest."""
+    """The chart of one free driver whose pairs have friction. It moves in one `direction` until it comes to rest.
+
+    Senses of sliding are those of one stretch at a time, so that a step of the integration is smooth; it `ahead`, the
+    value at which the stretch ends, is an event.
+    """
 
     direction: float = 1.0
     # friction asks for the forces of all loads
     adds_stops = False
+    pressed: NormalForceTable | None = None
+    stretch: SlidingStretch | None = None
+    ahead: float | None = None
 
     @cached_property
     def contacts(self) -> tuple[LoadedContact, ...]:
         """The pairs with friction."""
         return friction_contacts_of(self.start)
 
+    @cached_property
+    def touched(self) -> tuple[str, ...]:
+        """The links on which loads that depend on time or speed act."""
+        value = [float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items() if name in self.free]
+        at = self.state(0.0, np.array(value), np.zeros(1)).loaded
+        links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
+        return tuple(dict.fromkeys(link for link in links if link != FRAME))
+
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state. The work is that of loads without a potential, and of friction."""
-        state = self.state(time, values, speeds)
-        gained = state.terms.matrix[0, 0] * state.accelerations[0] + state.terms.bias[0] - state.forces[0][0]
-        return Rates(state.accelerations, float(gained * speeds[0]))
+        value, speed = float(values[0]), float(speeds[0])
+        found = self._in_table(time, value, speed, self.direction)
+        if found is None:
+            state = self.state(time, values, speeds)
+            gained = state.terms.matrix[0, 0] * state.accelerations[0] + state.terms.bias[0] - state.forces[0][0]
+            return Rates(state.accelerations, float(gained * speed))
+        a = self._free(found.normal, time)
+        return Rates(np.array([a]), (found.normal.inertia * a - found.stored) * speed)
 
     def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the acceleration at a state of the solution; zero where friction holds it."""
-        if speeds[0] == 0.0:
-            way = self.direction_from_rest(self.state(time, values, speeds))
-            if way == 0.0:
-                return np.zeros(1)
-        else:
-            way = float(np.sign(speeds[0]))
+        way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
+        if way == 0.0:
+            return np.zeros(1)
         before, self.direction = self.direction, way
         try:
-            return self.state(time, values, speeds).accelerations
+            return self.rates(time, values, speeds).accelerations
         finally:
             self.direction = before
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the acceleration at a state, at which the driver has no effort."""
-        pressed = self._pressed(state, state.speeds, np.array([[0.0, 1.0]]), self.direction)
-        a, last, step = float(state.dry[0]), 0.0, 0.0
-        for k in range(STEPS):
-            effort = pressed.effort(a)
-            if effort is None:
-                what = f"friction has no or several solutions at {state.time:g} s: the mechanism wedges or jumps"
-                raise InvalidInput(Problem("frictions", what, "less friction, or another start"))
-            # without friction the effort grows by the inertia
-            slope = (effort - last) / step if k else state.terms.matrix[0, 0]
-            last, step = effort, -effort / slope if effort else 0.0
-            a += step
-            if abs(step) <= STEP_TOLERANCE * abs(a):
-                break
-        return np.array([a])
+        found = self._in_table(state.time, float(state.values[0]), float(state.speeds[0]), self.direction)
+        if found is not None:
+            return np.array([self._free(found.normal, state.time)])
+        second = np.array([[0.0, 1.0]])
+        return np.array([self._free(self._solved(state, state.speeds, second, self.direction), state.time)])
+
+    def _free(self, normal: NormalForceState, time: float) -> float:
+        """Return the acceleration without effort. Raises InvalidInput where it is not unique."""
+        found = normal.acceleration()
+        if found is None:
+            what = f"friction has no or several solutions at {time:g} s: the mechanism wedges or jumps"
+            raise InvalidInput(Problem("frictions", what, "less friction, or another start"))
+        return found
 
     def begin(self, time: float, values: Number, speeds: Number) -> bool:
         """Set the direction of motion; return whether it moves, which friction may prevent."""
-        way = float(np.sign(speeds[0])) or self.direction_from_rest(self.state(time, values, speeds))
+        way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
         self.direction = way or self.direction
+        self._enter(time, values, speeds)
         return way != 0.0
 
-    def direction_from_rest(self, state: DriverState) -> float:
+    def accept(self, time: float, values: Number, speeds: Number) -> None:
+        """Update the configuration at an accepted state."""
+        super().accept(time, values, speeds)
+        if self.ahead is None:
+            self._enter(time, values, speeds)
+
+    def until_reversal(self, value: float) -> float:
+        """Return how far ahead it is until a pair slides in the other sense; at a distance where none is known."""
+        return 1.0 if self.ahead is None else self.direction * (self.ahead - value)
+
+    def direction_from_rest(self, time: float, values: Number) -> float:
         """Return the direction in which the driver starts from rest, zero where friction holds it."""
         # the effort that would sustain motion in each direction; None where it is wedged
-        efforts = [self._pressed(state, np.zeros(1), np.zeros((1, 2)), way).effort(0.0) for way in (-1.0, 1.0)]
+        efforts = [self._at_rest(time, values, way).effort(0.0) for way in (-1.0, 1.0)]
         if efforts[1] is not None and efforts[1] < 0.0:
             return 1.0
         return -1.0 if efforts[0] is not None and efforts[0] > 0.0 else 0.0
@@ -119,7 +239,7 @@ class FrictionTable(TabulatedChart):
             return until
 
         def moves(at: float) -> bool:
-            return self.direction_from_rest(self.state(at, values, np.zeros(1))) != 0.0
+            return self.direction_from_rest(at, values) != 0.0
 
         times = np.linspace(time, until, RELEASE_SAMPLES + 1)[1:]
         late = next((float(at) for at in times if moves(float(at))), None)
@@ -131,15 +251,93 @@ class FrictionTable(TabulatedChart):
             early, late = (early, middle) if moves(middle) else (middle, late)
         return late
 
-    def _pressed(self, state: DriverState, speeds: Number, second: Number, way: float) -> NormalForceState:
-        """Return the normal forces at two accelerations, and the driver's effort."""
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        """The configuration, with the tables and the stretch of sliding."""
+        return (*super().memory, self.pressed, self.stretch)
+
+    def recall(self, memory: tuple[Any, ...]) -> None:
+        """Restore a configuration."""
+        super().recall(memory[:-2])
+        self.pressed, self.stretch = memory[-2:]
+
+    def _tabulate(self, value: float, poses: Mapping[str, Pose]) -> None:
+        super()._tabulate(value, poses)
+        self.pressed = None if self.table is None else normal_force_table(self)
+
+    def _enter(self, time: float, values: Number, speeds: Number) -> None:
+        """Take the stretch of sliding that lies in the direction of motion."""
+        self.stretch = self.ahead = None
+        if self.table is None or self.pressed is None:
+            return
+        value, step = float(values[0]), self.direction * AHEAD * (self.table.high - self.table.low)
+        if not self.wraps and not self.table.low < value + step < self.table.high:
+            super().accept(time, values + step, speeds)
+        inside = self.tabulated(value + step)
+        found = self.pressed.stretch(inside)
+        if found.senses is not None:
+            self.stretch = found
+            self.ahead = value + step + (found.high if self.direction > 0.0 else found.low) - inside
+
+    def _in_table(self, time: float, value: float, speed: float, way: float) -> TabulatedState | None:
+        """Return a state of the table, None where it is not accurate."""
+        inside = self.tabulated(value)
+        pressed = self.pressed
+        piece = None if pressed is None else piece_at(pressed.pieces, pressed.starts, inside)
+        stretch = self.stretch
+        if piece is None:
+            return None
+        assert pressed is not None
+        sliding = (stretch or pressed.stretch(inside)).senses
+        if sliding is None:
+            return None
+        basis = piece.basis(inside)
+        rows = piece.terms @ basis
+        others = pressed.layout.none
+        if self.has_others:
+            more = self._others(piece, basis, time, value, speed)
+            if more is None:
+                return None
+            others = more
+        return pressed.layout.state(rows, speed, way * sliding, others)
+
+    def _others(
+        self, piece: TablePiece, basis: Number, time: float, value: float, speed: float
+    ) -> Number | None:
+        """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
+        at = self.loaded_at(piece, basis, time, np.array([value]), speed)
+        found = np.zeros(2 + 3 * len(self.touched))
+        for k, loads in enumerate(self.others):
+            for link, wrench in (one for load in loads for one in load.wrenches(at)):
+                if link == FRAME:
+                    continue
+                if link not in self.touched:
+                    return None
+                assert at.columns is not None
+                found[k] += np.ravel(at.freed(link, wrench).power(at.columns[link]))[0]
+                force, moment = complex(np.ravel(wrench.force)[0]), float(np.ravel(wrench.moment)[0])
+                first = 2 + 3 * self.touched.index(link)
+                found[first : first + 3] += force.real, force.imag, moment
+        return found
+
+    def _at_rest(self, time: float, values: Number, way: float) -> NormalForceState:
+        found = self._in_table(time, float(values[0]), 0.0, way)
+        if found is not None:
+            return found.normal
+        return self._solved(self.state(time, values, np.zeros(1)), np.zeros(1), np.array([[0.0, 1.0]]), way)
+
+    def _solved(self, state: DriverState, speeds: Number, second: Number, way: float) -> NormalForceState:
+        """Return the normal forces and the driver's effort of a solved state, from two accelerations."""
         at = self._loaded(state, speeds, second)
         block = block_with_friction(at, self.contacts, at.known(True))
         none = np.zeros((len(self.contacts), 2))
-        own = block.effort(self.free[0], none)
+        effort = block.effort(self.free[0], none)
         each = np.eye(len(self.contacts))
-        by = np.array([(block.effort(self.free[0], none + one[:, None]) - own)[0] for one in each])
-        return NormalForceState(block.influence, way * self._senses(state), own, by)
+        along = -np.array([(block.effort(self.free[0], none + one[:, None]) - effort)[0] for one in each])
+        own, by = block.influence.own, block.influence.by[..., 0]
+        way_senses = way * self._senses(state)
+        return NormalForceState(own[:, 0], own[:, 1] - own[:, 0], by, block.influence.starts, way_senses,
+                                float(effort[1] - effort[0]), -float(effort[0]), along)  # fmt: skip
 
     def _senses(self, state: DriverState) -> Number:
         """Return the sense in which each pair slides as the driver's coordinate grows."""
@@ -148,3 +346,218 @@ class FrictionTable(TabulatedChart):
     def _loaded(self, state: DriverState, speeds: Number, second: Number) -> LoadedBlock:
         motion = accelerated_motion(state, self.start, speeds, second)
         return next(iter(loaded_blocks(motion)))
+
+
+class TabulatedState(NamedTuple):
+    """The normal forces of a state by the table, and what loads with a potential and the bias push."""
+
+    normal: NormalForceState
+    stored: float
+
+
+@dataclass(frozen=True, eq=False)
+class ForceLayout:
+    """The rows of a table of normal forces: those of the equation of motion, frictions along the driver, normal forces.
+
+    Normal forces have rows without anything but loads, for a unit acceleration, for a unit squared speed, for a unit of
+    each friction, and for a unit force along x, along y and a unit moment on each of the `touched` links. `vectors` are
+    the indices of those that are vectors, whose y components follow the others.
+    """
+
+    contacts: tuple[LoadedContact, ...]
+    loads: Sequence[Sequence[Load]]
+    touched: tuple[str, ...]
+    starts: Number
+    count: int
+    vectors: Number
+
+    @cached_property
+    def none(self) -> Number:
+        """The forces of no load that depends on time or speed."""
+        return np.zeros(2 + 3 * len(self.touched))
+
+    @cached_property
+    def scales(self) -> tuple[int, ...]:
+        """The scales of rows by number: frictions along the driver have one each, normal forces one for each cause."""
+        n, wide = len(self.contacts), self.count + len(self.vectors)
+        first = max(DRIVE_SCALES) + 1
+        causes = [0, 1, 1, *[2] * n, *(3 + k for _ in self.touched for k in (0, 0, 1))]
+        return (*DRIVE_SCALES, *range(first, first + n), *(first + n + k for k in causes for _ in range(wide)))
+
+    def state(self, rows: Number, speed: float, sliding: Number, others: Number) -> TabulatedState:
+        """Return the state of a driver, by the rows at its value."""
+        n, count = len(self.contacts), self.count
+        inertia, bias, stored, other, more, rest = (*rows[:4].tolist(), *others[:2].tolist())
+        kept = stored + more - bias * speed * speed
+        causes = rows[4 + n :].reshape(-1, count + len(self.vectors))
+        normal = causes[:, :count]
+        if len(self.vectors):
+            normal = normal.astype(complex)
+            normal[:, self.vectors] += 1j * causes[:, count:]
+        own = normal[0] + speed * speed * normal[2]
+        if len(others) > 2:
+            own = own + others[2:] @ normal[3 + n :]
+        push = kept + other + rest
+        found = NormalForceState(own, normal[1], normal[3 : 3 + n], self.starts, sliding, inertia, push, rows[4 : 4 + n])
+        return TabulatedState(found, kept)
+
+    def terms(self, motion: Motion) -> Number:
+        """Return all rows at the poses of a motion at unit speed."""
+        parts = [drive_terms(motion, self.loads)]
+        blocks = [np.array(list(self._of(at))) for at in loaded_blocks(motion)]
+        return np.concatenate([*parts, np.concatenate(blocks, axis=1)])
+
+    def _of(self, at: LoadedBlock) -> Iterator[Number]:
+        """Yield the rows of a block beyond those of the equation of motion."""
+        units = [contact.unit(at) for contact in self.contacts]
+        for contact, unit in zip(self.contacts, units, strict=True):
+            _, poses = contact.sides(at)
+            yield in_one_row(unit.power(poses[1]) - unit.power(poses[0]), at)
+        order = at.motion.solving_order
+        for loads in self._causes(at, units):
+            forces = normal_forces_of(at, self.contacts, reverse_pass(order, at.block, loads))
+            yield from (one.real for one in forces)
+            yield from (forces[k].imag for k in self.vectors)
+
+    def _causes(self, at: LoadedBlock, units: Sequence[Wrench]) -> Iterator[dict[str, Wrench]]:
+        """Yield the loads of each cause of normal forces."""
+        mechanism, ones = at.motion.mechanism, np.ones(at.block.shape)
+        wrenches = [one for loads in self.loads for load in loads for one in load.wrenches(at)]
+        if mechanism.gravity != 0:
+            wrenches += [(mass.link, at.weight(mass)) for mass in mechanism.masses.values()]
+        yield _summed(wrenches)
+        for block in (replace(at.block, world=_accelerated(at.block.world)), at.block):
+            moved = replace(at, block=block)
+            yield _summed([(mass.link, moved.inertia(mass)) for mass in mechanism.masses.values()])
+        yield from (contact.on_links(unit) for contact, unit in zip(self.contacts, units, strict=True))
+        for link in self.touched:
+            yield from ({link: Wrench(force * ones, moment * ones)} for force, moment in UNITS)
+
+
+# A unit force along x, one along y, and a unit moment about the origin.
+UNITS = ((1.0 + 0j, 0.0), (1j, 0.0), (0j, 1.0))
+
+
+def _summed(wrenches: Sequence[tuple[str, Wrench]]) -> dict[str, Wrench]:
+    found: dict[str, Wrench] = {}
+    for link, wrench in wrenches:
+        found[link] = found.get(link, Wrench()) + wrench
+    return found
+
+
+def _accelerated(world: Mapping[str, Pose]) -> dict[str, Pose]:
+    """Return poses at rest that accelerate as they moved: what a unit acceleration of the driver adds."""
+
+    def pushed(series: Series) -> Series:
+        return Series((series.c[0], 0.0 * series.c[1], 0.5 * series.c[1]) if len(series.c) > 1 else series.c)
+
+    return {link: pose if pose is FIXED else pose.mapped(pushed) for link, pose in world.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class NormalForceTable:
+    """A table of normal forces: its pieces in order, and the stretches between reversals of sliding."""
+
+    layout: ForceLayout
+    pieces: Sequence[TablePiece]
+    starts: Sequence[float]
+    edges: Sequence[float]
+    senses: Sequence[Number | None]
+
+    def stretch(self, value: float) -> SlidingStretch:
+        """Return the stretch at a value."""
+        k = min(max(bisect_right(self.edges, value) - 1, 0), len(self.senses) - 1)
+        return SlidingStretch(self.edges[k], self.edges[k + 1], self.senses[k])
+
+
+def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
+    """Return the table of normal forces of a chart with a table, None where they are nowhere accurate."""
+    table = chart.table
+    assert table is not None
+    layout = _layout(chart, table.motion)
+    ends = table.low, table.high
+    pieces = accurate_pieces(table.motion, ends, layout.terms, layout.scales, chart.candidates)
+    if not pieces:
+        return None
+    edges, found = _stretches(layout, pieces, table)
+    return NormalForceTable(layout, pieces, [piece.low for piece in pieces], edges, found)
+
+
+def _layout(chart: FrictionTable, motion: Motion) -> ForceLayout:
+    """Return the layout of the rows, whose number the first block shows."""
+    contacts, at = chart.contacts, next(iter(loaded_blocks(motion)))
+    nothing = reverse_pass(motion.solving_order, at.block, {})
+    each = [normal_forces_of(at, (contact,), nothing) for contact in contacts]
+    rows = [row for own in each for row in own]
+    starts = np.cumsum([0, *(len(own) for own in each[:-1])])
+    vectors = np.array([k for k, row in enumerate(rows) if np.iscomplexobj(row)], dtype=int)
+    return ForceLayout(contacts, chart.timeless, chart.touched, starts, len(rows), vectors)
+
+
+def _stretches(
+    layout: ForceLayout, pieces: Sequence[TablePiece], table: DriveTable
+) -> tuple[list[float], list[Number | None]]:
+    """Return the edges of the stretches between reversals of sliding, and the senses in each; None in gaps."""
+    first, least = len(DRIVE_SCALES), _slowest(layout, table.motion)
+    own = slice(first, first + len(layout.contacts))
+    runs = [_SlidingRates(piece, piece.terms[own], least) for piece in pieces]
+    edges = {table.low, table.high}
+    for left, right in pairwise(runs):
+        if left.piece.high < right.piece.low or np.any(left.rests != right.rests):
+            edges |= {left.piece.high, right.piece.low}
+    for run in runs:
+        edges |= set(run.reversals())
+    edges |= {pieces[0].low, pieces[-1].high}
+    whole = sorted(edges)
+    starts, found = [piece.low for piece in pieces], list[Number | None]()
+    for low, high in pairwise(whole):
+        middle = 0.5 * (low + high)
+        run = runs[bisect_right(starts, middle) - 1] if middle > starts[0] else None
+        found.append(run.senses(middle) if run is not None and middle <= run.piece.high else None)
+    return whole, found
+
+
+def _slowest(layout: ForceLayout, motion: Motion) -> Number:
+    """Return the power of each friction, for a unit normal force at unit rate of the driver, below which it rests."""
+    at = next(iter(loaded_blocks(motion)))
+    fastest = max(float(np.nanmax(speed_of_fastest(one))) for one in loaded_blocks(motion))
+    arms = [at.motion.size if one.friction.radius is None or not one.pair.needs_radius
+            else float(np.ravel(at.fitted(one.friction.radius))[0]) for one in layout.contacts]  # fmt: skip
+    coefficients = [float(np.ravel(at.fitted(one.friction.coefficient))[0]) for one in layout.contacts]
+    found: Number = AT_REST * fastest * np.array(coefficients) * np.array(arms) / at.motion.size
+    return found
+
+
+# Places in a piece, none of them at an edge, where reversals may be.
+_PLACES = (np.arange(PLACES) + 0.5) * (2.0 / PLACES) - 1.0
+_BASES = np.polynomial.chebyshev.chebvander(_PLACES, POINTS - 1).T
+
+
+class _SlidingRates:
+    """The powers of unit frictions in a piece, by whose signs pairs slide; those that rest in it are zero."""
+
+    def __init__(self, piece: TablePiece, rows: Number, least: Number) -> None:
+        self.piece, self.rows = piece, rows
+        self.known = rows @ _BASES
+        self.rests = np.max(np.abs(self.known), axis=1) <= least
+
+    def senses(self, value: float) -> Number:
+        """Return the senses of sliding at a value."""
+        return np.where(self.rests, 0.0, np.sign(self.rows @ self.piece.basis(value)))
+
+    def reversals(self) -> Iterator[float]:
+        """Yield the values at which a pair that does not rest slides in the other sense."""
+        middle, reach = 0.5 * (self.piece.low + self.piece.high), 0.5 * (self.piece.high - self.piece.low)
+        places = middle + reach * np.array([-1.0, *_PLACES, 1.0])
+        ends = [self.rows @ self.piece.basis(end) for end in (self.piece.low, self.piece.high)]
+        known = np.column_stack([ends[0], self.known, ends[1]])
+        for row, values in zip(self.rows[~self.rests], known[~self.rests], strict=True):
+            for k in np.flatnonzero(values[:-1] * values[1:] <= 0.0).tolist():
+                yield self._zero(row, float(places[k]), float(places[k + 1]))
+
+    def _zero(self, row: Number, low: float, high: float) -> float:
+        rises = float(row @ self.piece.basis(high)) > 0.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if (float(row @ self.piece.basis(middle)) > 0.0) is rises else (middle, high)
+        return high

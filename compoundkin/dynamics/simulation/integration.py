@@ -22,6 +22,7 @@ from compoundkin.dynamics.simulation.phases import OpenContact, landed, without_
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
+    REVERSES,
     ContactWatch,
     LoadBreak,
     SimulationEvent,
@@ -184,6 +185,9 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
         if watch.name == REST and not watch.asked:
             course.cut(one.time)
             return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
+        if watch.name == REVERSES and not watch.asked:
+            course.cut(one.time)
+            return _Interruption(one.time, one.state)
         here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]), step.chart.order)
         is_end = watch.name == END and not watch.asked
         text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text

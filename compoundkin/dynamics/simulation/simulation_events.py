@@ -14,6 +14,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
+from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.phases import LANDED, OpenContact, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
 from compoundkin.kinematics.solving_order import AT_END
@@ -34,6 +35,8 @@ SLOW = 1e-6
 END = "end"
 # The name of the event at which a driver comes to rest, where friction changes its direction.
 REST = "rest"
+# The name of the event at which a pair slides the other way; it is not told.
+REVERSES = "reverses"
 # The names of the events at which a contact at a stop is hit, is closed for some time, and is left.
 STOP, RESTS, LEAVES = "stop", "rests", "leaves"
 # The names of the events of latches, the last one at the end.
@@ -87,6 +90,22 @@ class Watch:
             remedy = 'give a function of the state that passes through zero: lambda state: state["B.y"] - 20'
             raise InvalidInput(Problem(f"events.{self.name}", f"its function fails: {error}", remedy)) from error
         return found
+
+
+class RestWatch(Watch):
+    """The rest of a single driver."""
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return its speed."""
+        return float(state[1])
+
+
+class SlidingWatch(Watch):
+    """Reversals of sliding in pairs with friction, where the senses of friction change."""
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return how far ahead the next one is."""
+        return chart.until_reversal(float(state[0])) if isinstance(chart, FrictionTable) else 1.0
 
 
 class StopPassage(NamedTuple):
@@ -392,12 +411,18 @@ def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ..
         if name not in events:
             raise InvalidInput(Problem("stop", f"there is no event {name!r}", f"known: {', '.join(events) or 'none'}"))
     own = [Watch(name, function, "as asked for", name in stop, asked=True) for name, function in events.items()]
-    rest = [Watch(REST, _speed, "it comes to rest", False)] if mechanism.frictions else []
-    return (*rest, *_of_pairs(mechanism), *own)
+    return (*(FRICTIONS if mechanism.frictions else ()), *_of_pairs(mechanism), *own)
 
 
 def _speed(state: SimulatedState) -> float:
     return float(state.state.speeds[0])
+
+
+# What is watched with friction.
+FRICTIONS = (
+    RestWatch(REST, _speed, "it comes to rest", False),
+    SlidingWatch(REVERSES, _speed, "a pair slides the other way", False),
+)
 
 
 def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:

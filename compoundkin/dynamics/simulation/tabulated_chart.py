@@ -13,7 +13,7 @@ import warnings
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
 
@@ -26,7 +26,7 @@ from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import KnownCoordinate, Rates, loaded_state
+from compoundkin.dynamics.simulation.driver_state import KnownCoordinate, LoadedState, Rates, loaded_state
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -92,11 +92,15 @@ class TabulatedChart(DriverChart):
 
     def _exact(self, piece: TablePiece, basis: Number, time: float, values: Number, speed: float) -> list[float]:
         """Return the forces of loads that depend on time or speed."""
+        at = self.loaded_at(piece, basis, time, values, speed)
+        return [float(at.along(loads)[0]) if loads else 0.0 for loads in self.others]
+
+    def loaded_at(self, piece: TablePiece, basis: Number, time: float, values: Number, speed: float) -> LoadedState:
+        """Return a state of a piece as loads see it. Rates of its columns are those at unit rate, and the true ones."""
         columns = _Columns(piece, basis, speed)
         block = Block((2, 1), self.ends, columns, {}, 1)
         at = loaded_state(self.start, block, time, 1, lambda pair, angle: self.turns_of(pair, angle, values))
-        at = replace(at, driven=self._driven(float(values[0]), speed))
-        return [float(at.along(loads)[0]) if loads else 0.0 for loads in self.others]
+        return replace(at, driven=self._driven(float(values[0]), speed))
 
     def _driven(self, value: float, speed: float) -> dict[str, KnownCoordinate]:
         """Return the coordinate of the driver's pair."""
@@ -128,8 +132,7 @@ class TabulatedChart(DriverChart):
         table = self.table
         if table is None or k not in table.motion.change_points:
             return super().sign(k, values)
-        value = table.low + (float(values[0]) - table.low) % TURN if self.wraps else float(values[0])
-        return table.sign(k, value)
+        return table.sign(k, self.tabulated(float(values[0])))
 
     def is_regular(self, values: Number) -> bool:
         """Return whether no pair moves much faster than the driver."""
@@ -140,9 +143,12 @@ class TabulatedChart(DriverChart):
         table = self.table
         if table is None:
             return None, value
-        if self.wraps:
-            value = table.low + (value - table.low) % TURN
+        value = self.tabulated(value)
         return table.piece(value), value
+
+    def tabulated(self, value: float) -> float:
+        """Return a value in the turn that the table has, where it is the same in all."""
+        return value if self.table is None or not self.wraps else self.table.low + (value - self.table.low) % TURN
 
     def _tabulate(self, value: float, poses: Mapping[str, Pose]) -> None:
         """Make the table around a pose."""
@@ -229,14 +235,19 @@ class DriveTable:
 
     def piece(self, value: float) -> TablePiece | None:
         """Return the piece at a value."""
-        k = bisect_right(self.starts, value) - 1
-        found = self.pieces[k] if k >= 0 else None
-        return found if found is not None and value <= found.high else None
+        return piece_at(self.pieces, self.starts, value)
 
     def sign(self, k: int, value: float) -> float:
         """Return the sign of a dyad's mode at a value."""
         place = _places(np.array([[value]]), (self.low, self.high))
         return float(np.ravel(self.motion.followed.sign(k, np.array([[0]]), place))[0])
+
+
+def piece_at(pieces: Sequence[TablePiece], starts: Sequence[float], value: float) -> TablePiece | None:
+    """Return the piece at a value, None in a gap. Pieces are in order, and begin at the starts."""
+    k = bisect_right(starts, value) - 1
+    found = pieces[k] if k >= 0 else None
+    return found if found is not None and value <= found.high else None
 
 
 def drive_table(
@@ -249,49 +260,58 @@ def drive_table(
             warnings.simplefilter("ignore")
             values = np.linspace(low, high, POSES)
             motion = solve(mechanism, {driver: values}, speed=1.0, acceleration=0.0, order=2, modes=first)
-            found = _pieces(motion, low, high, loads, pairs)
+            found = accurate_pieces(motion, (low, high), partial(drive_terms, loads=loads), DRIVE_SCALES, pairs)
     except CompoundkinError:
         return None
-    return DriveTable(low, high, found, [piece.low for piece in found], motion)
+    whole = with_bridges(found, high - low)
+    return DriveTable(low, high, whole, [piece.low for piece in whole], motion)
 
 
-def _pieces(
-    motion: Motion, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
+# The scales of the rows of a table by number: the bias is a derivative of the inertia; both forces have one scale.
+DRIVE_SCALES = (0, 0, 1, 1)
+
+
+def accurate_pieces(
+    motion: Motion,
+    ends: tuple[float, float],
+    terms: Callable[[Motion], Number],
+    scales: Sequence[int],
+    pairs: Sequence[Pair],
 ) -> list[TablePiece]:
-    """Return the accurate pieces, in order."""
-    edges, found = np.linspace(low, high, PIECES + 1), []
+    """Return the pieces of a table in which its terms hold, in order. Rows of one scale have the same number."""
+    edges, found = np.linspace(*ends, PIECES + 1), []
     todo = list(pairwise(edges.tolist()))
     for _ in range(HALVED + 1):
-        made = _solved(motion, todo, (low, high), loads, pairs)
-        found += [piece for piece in made if _is_accurate(piece)]
-        broken = [piece for piece in made if not _is_accurate(piece)]
+        made = _solved(motion, todo, ends, terms, pairs)
+        held = [_is_accurate(piece, scales) for piece in made]
+        found += [piece for piece, holds in zip(made, held, strict=True) if holds]
+        broken = [piece for piece, holds in zip(made, held, strict=True) if not holds]
         todo = [part for one in broken for part in pairwise([one.low, (one.low + one.high) / 2, one.high])]
         if not todo:
             break
     else:
         if motion.change_points:
-            found += [piece for piece in broken if _is_accurate(piece, HOLDS_NEAR)]
-    return with_bridges(sorted(found, key=lambda piece: piece.low), high - low)
+            found += [piece for piece in broken if _is_accurate(piece, scales, HOLDS_NEAR)]
+    return sorted(found, key=lambda piece: piece.low)
 
 
-def _is_accurate(piece: TablePiece, part: float = HOLDS) -> bool:
-    scales = np.max(np.abs(piece.terms), axis=1)
-    # the bias is a derivative of the inertia; both forces have one scale
-    scales = np.array([scales[:2].max()] * 2 + [scales[2:].max()] * 2)
-    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * scales[:, None]))
+def _is_accurate(piece: TablePiece, scales: Sequence[int], part: float = HOLDS) -> bool:
+    rows, largest = np.array(scales), np.zeros(max(scales) + 1)
+    np.maximum.at(largest, rows, np.max(np.abs(piece.terms), axis=1))
+    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * largest[rows, None]))
 
 
 def _solved(
     motion: Motion,
     parts: Sequence[tuple[float, float]],
     ends: tuple[float, float],
-    loads: Sequence[Sequence[Load]],
+    terms: Callable[[Motion], Number],
     pairs: Sequence[Pair],
 ) -> list[TablePiece]:
     """Return pieces, solved together."""
     values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
     at = between(motion, 0, _places(values, ends))
-    rows = _terms(at, loads)
+    rows = terms(at)
     # beyond a travel limit groups still close
     rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
     ratios = _ratios(at, pairs)
@@ -306,7 +326,7 @@ def _places(values: Number, ends: tuple[float, float]) -> Number:
     return places
 
 
-def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
+def drive_terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
     """Return inertia, bias, stored forces and others at all poses of a motion at unit speed."""
     mechanism = motion.mechanism
     factor, fall = mechanism.stated_units.inertia, complex(first_entry(mechanism.free_fall))
@@ -351,7 +371,7 @@ class TablePiece:
 
     low: float
     high: float
-    terms: Number  # (4, POINTS)
+    terms: Number  # (rows, POINTS)
     ratio: float  # the greatest scaled speed of a pair
     nodes: Mapping[str, Pose]
     place: slice
