@@ -170,18 +170,27 @@ def _patterns(normal_forces: int) -> Number:
 SHRINKS = 0.5
 
 
-@dataclass(frozen=True)
-class PoseInfluence:
-    """The influence of frictions at a single pose, in plain numbers, with the signs of the motion.
+class PoseFrictions(NamedTuple):
+    """The sizes of frictions with their signs at a single pose, and the normal forces under them."""
 
-    `own` are the normal forces without friction, `by` those of a unit of each friction, `owners` the index of the
-    friction to which each normal force belongs.
+    sizes: list[float]
+    normal_forces: list[complex]
+
+
+@dataclass(frozen=True, eq=False)
+class PoseInfluence:
+    """The influence of frictions at a single pose, with the signs of the motion.
+
+    `own` (normal forces) are those without friction, `by` (frictions, normal forces) what a unit of each friction adds;
+    `owners` are the frictions to which the normal forces belong. Normal forces of which a sign is `held`, not zero,
+    count by this sign instead of their magnitude, so that all is smooth where they change sign.
     """
 
-    own: Sequence[complex]
-    by: Sequence[Sequence[complex]]
+    own: Number
+    by: Number
     owners: Sequence[int]
-    signs: Sequence[float]
+    signs: Number
+    held: Sequence[float]
 
     @cached_property
     def weights(self) -> list[float] | None:
@@ -190,72 +199,78 @@ class PoseInfluence:
         They are those of an M-matrix, as in `FrictionInfluence.contracts`.
         """
         n = len(self.signs)
-        gains = [[0.0] * n for _ in range(n)]
-        for l, (row, sign) in enumerate(zip(self.by, self.signs, strict=True)):
-            for own, one in zip(self.owners, row, strict=True) if sign else ():
-                gains[own][l] += abs(one)
+        gains = np.zeros((n, n))
+        np.add.at(gains, np.array(self.owners), (np.abs(self.by) * np.abs(self.signs)[:, None]).T)
         # the plain norm suffices for most mechanisms
-        if all(sum(row) < 1.0 for row in gains):
+        if np.all(gains.sum(axis=1) < 1.0):
             return [1.0] * n
         try:
-            found = np.linalg.solve(np.eye(n) - gains, np.ones(n)).tolist()
+            found = np.linalg.solve(np.eye(n) - gains, np.ones(n))
         except np.linalg.LinAlgError:
             return None
-        return found if all(one > 0.0 for one in found) else None
+        return found.tolist() if np.all(found > 0.0) else None
 
-    def sizes(self) -> list[float] | None:
-        """Return the sizes of the frictions with their signs; None where the image does not contract."""
-        weights = self.weights
-        if weights is None:
-            return None
-        sums = best = self._sums([abs(one) for one in self.own])
-        newton: list[float] | None = None
-        least = np.inf
+    def solution(self, weights: Sequence[float]) -> PoseFrictions | None:
+        """Return the frictions and normal forces where the image contracts by these weights.
+
+        Newton's steps, or the image where that is better. None where rounding is too large.
+        """
+        own, rows = self.own.tolist(), (-self.signs[:, None] * self.by).tolist()
+        newton, least, floor = False, np.inf, max(map(abs, own))
+        sums = best = self._sums(own)
         for _ in range(NEWTON_STEPS):
-            normal_forces, terms = self._under(sums)
-            image = self._sums([abs(one) for one in normal_forces])
-            gaps = [abs(a - b) for a, b in zip(sums, image, strict=True)]
-            gap = max(one / weight for one, weight in zip(gaps, weights, strict=True))
-            shrinks = newton is None or gap <= SHRINKS * least
-            if max(gaps) <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * terms:
-                return [-sign * one for sign, one in zip(self.signs, sums, strict=True)]
-            if not shrinks:
-                sums, newton = best, None
-                continue
-            best, least = image, gap
-            sums = newton = self._newton(sums, image, normal_forces)
+            normal_forces = own
+            for row, one in zip(rows, sums, strict=True):
+                normal_forces = [a + one * b for a, b in zip(normal_forces, row, strict=True)]
+            image = self._sums(normal_forces)
+            off = [a - b for a, b in zip(sums, image, strict=True)]
+            gap = max(abs(one) / weight for one, weight in zip(off, weights, strict=True))
+            shrinks = not newton or gap <= SHRINKS * least
+            if max(map(abs, off)) <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * max(floor, *map(abs, sums)):
+                sizes = [-sign * one for sign, one in zip(self.signs.tolist(), sums, strict=True)]
+                return PoseFrictions(sizes, normal_forces)
+            newton = shrinks
+            if shrinks:
+                best, least = image, gap
+                sums = self._newton(rows, sums, off, normal_forces)
+            else:
+                sums = best
         return None
 
-    def _sums(self, values: Sequence[float]) -> list[float]:
-        """Return the sums over the normal forces of each friction."""
+    def _sums(self, normal_forces: Sequence[complex]) -> list[float]:
+        """Return the sums of the magnitudes of normal forces for each friction."""
         total = [0.0] * len(self.signs)
-        for own, value in zip(self.owners, values, strict=True):
-            total[own] += value
+        for own, sign, one in zip(self.owners, self.held, normal_forces, strict=True):
+            total[own] += sign * one.real if sign else abs(one)
         return total
 
-    def _under(self, sums: Sequence[float]) -> tuple[list[complex], float]:
-        """Return the normal forces under frictions of these sums, and the largest of the terms that cancel in them."""
-        total, terms = list(self.own), [abs(one) for one in self.own]
-        for row, sign, one in zip(self.by, self.signs, sums, strict=True):
-            size = -sign * one
-            if size:
-                for k, unit in enumerate(row):
-                    total[k] += size * unit
-                    terms[k] += abs(size * unit)
-        return total, max(terms)
+    def _newton(
+        self, rows: list[list[complex]], sums: list[float], off: list[float], normal_forces: list[complex]
+    ) -> list[float]:
+        """Return the sums of the next Newton step. `rows` are what a unit of each sum adds to the normal forces."""
+        back = [sign or (one.conjugate() / abs(one) if one else 0.0)
+                for sign, one in zip(self.held, normal_forces, strict=True)]  # fmt: skip
+        matrix = [[0.0] * len(sums) for _ in sums]
+        for k, row in enumerate(rows):
+            for own, way, unit in zip(self.owners, back, row, strict=True):
+                matrix[own][k] -= (way * unit).real
+            matrix[k][k] += 1.0
+        return [one - change for one, change in zip(sums, _eliminated(matrix, list(off)), strict=True)]
 
-    def _newton(self, sums: list[float], image: list[float], normal_forces: list[complex]) -> list[float]:
-        """Return the sums of the next Newton step."""
-        n = len(sums)
-        toward = [one / abs(one) if one else 0.0 for one in normal_forces]
-        matrix = [[0.0] * n for _ in range(n)]
-        for l, (row, sign) in enumerate(zip(self.by, self.signs, strict=True)):
-            for own, way, unit in zip(self.owners, toward, row, strict=True) if sign else ():
-                matrix[own][l] += sign * (way.real * unit.real + way.imag * unit.imag)
-            matrix[l][l] += 1.0
-        off = [a - b for a, b in zip(sums, image, strict=True)]
-        step = [off[0] / matrix[0][0]] if n == 1 else np.linalg.solve(matrix, off).tolist()
-        return [one - change for one, change in zip(sums, step, strict=True)]
+
+def _eliminated(matrix: list[list[float]], right: list[float]) -> list[float]:
+    """Return the solution of a small system by elimination. An M-matrix and what it bounds need no pivots."""
+    n = len(right)
+    for i, pivot in enumerate(matrix):
+        for j in range(i + 1, n):
+            factor = matrix[j][i] / pivot[i]
+            if factor:
+                matrix[j] = [a - factor * b for a, b in zip(matrix[j], pivot, strict=True)]
+                right[j] -= factor * right[i]
+    for i in range(n - 1, -1, -1):
+        row = matrix[i]
+        right[i] = (right[i] - sum(row[j] * right[j] for j in range(i + 1, n))) / row[i]
+    return right
 
 
 # Separating forces of gears are computed again at most so often; each change is a friction's part of the one before.

@@ -62,8 +62,19 @@ STEP_TOLERANCE = 1e-13
 RELEASE_SAMPLES, RELEASED = 200, 1e-12
 # Reversals of sliding are looked for at so many places of each piece, and found by so many halvings.
 PLACES, HALVINGS = 64, 50
+# A normal force below this part of its largest may change sign within a step, and a reversal so near be met.
+NEARLY = 0.01
+# Frictions are mild where their influences stay below this sum, which is checked at so many places of a piece.
+MILD, CHECKED = 0.8, 16
 # A course begins so far ahead in its stretch, as a part of the table: it has just left the reversal behind it.
 AHEAD = 1e-10
+
+
+class FreeMotion(NamedTuple):
+    """The acceleration at which the driver has no effort, and the normal forces then, where they are known."""
+
+    acceleration: float
+    normal_forces: Sequence[complex] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,44 +83,37 @@ class NormalForceState:
 
     Normal forces are `own` at no acceleration, `second` more for a unit of it, and `by` for a unit of each friction;
     `senses` are those of sliding. The effort is inertia times acceleration less `push`, less `along` for a unit of each
-    friction.
+    friction. `is_mild` says that there is one solution, by the plain norm of the influences.
     """
 
     own: Number
     second: Number
     by: Number
-    starts: Number
+    owners: Sequence[int]
     senses: Number
     inertia: float
     push: float
     along: Number
+    is_mild: bool = False
 
-    @cached_property
-    def owners(self) -> list[int]:
-        """The friction of each normal force."""
-        found: list[int] = np.repeat(np.arange(len(self.starts)), np.diff(self.starts, append=len(self.own))).tolist()
-        return found
+    def free(self, held: Sequence[float] | None = None) -> FreeMotion | None:
+        """Return the motion at which the driver has no effort; None where it is not unique.
 
-    def _influence(self, own: Number, by: list[list[complex]]) -> PoseInfluence:
-        return PoseInfluence(own.tolist(), by, self.owners, self.senses.tolist())
-
-    @cached_property
-    def _known(self) -> list[list[complex]]:
-        known: list[list[complex]] = self.by.tolist()
-        return known
-
-    def acceleration(self) -> float | None:
-        """Return the acceleration at which the driver has no effort; None where it is not unique."""
-        first = self.push / self.inertia
-        if self._influence(self.own, self._known).weights is not None:
+        Normal forces of which a sign is `held` count by it.
+        """
+        first, signs = self.push / self.inertia, [0.0] * len(self.own) if held is None else held
+        ones = [1.0] * len(self.senses)
+        if self.is_mild or PoseInfluence(self.own, self.by, self.owners, self.senses, signs).weights is not None:
             # normal forces under frictions that accelerate as well
-            free = self.by + np.multiply.outer(self.along / self.inertia, self.second)
-            sizes = self._influence(self.own + first * self.second, free.tolist()).sizes()
-            if sizes is not None:
-                return first + float(self.along @ sizes) / self.inertia
+            grown = self.by + (self.along / self.inertia)[:, None] * self.second
+            joint = PoseInfluence(self.own + first * self.second, grown, self.owners, self.senses, signs)
+            weights = ones if self.is_mild else joint.weights
+            found = None if weights is None else joint.solution(weights)
+            if found is not None:
+                return FreeMotion(first + float(self.along @ found.sizes) / self.inertia, found.normal_forces)
         return self._by_secants(first)
 
-    def _by_secants(self, first: float) -> float | None:
+    def _by_secants(self, first: float) -> FreeMotion | None:
         a, last, step = first, 0.0, 0.0
         for k in range(STEPS):
             effort = self.effort(a)
@@ -121,17 +125,19 @@ class NormalForceState:
             a += step
             if abs(step) <= STEP_TOLERANCE * abs(a):
                 break
-        return a
+        return FreeMotion(a)
 
     def effort(self, a: float) -> float | None:
         """Return the driver's effort at an acceleration, None where it is not unique."""
-        own = self.own + a * self.second
-        sizes = self._influence(own, self._known).sizes()
+        here = PoseInfluence(self.own + a * self.second, self.by, self.owners, self.senses, [0.0] * len(self.own))
+        found = None if here.weights is None else here.solution(here.weights)
+        sizes = None if found is None else found.sizes
         if sizes is None:
-            found = solve_coulomb(FrictionInfluence(own[:, None], self.by[..., None], self.starts), self.senses[:, None])
-            if found.state[0] != ONE:
+            starts = np.searchsorted(self.owners, np.arange(len(self.senses)))
+            several = solve_coulomb(FrictionInfluence(here.own[:, None], self.by[..., None], starts), self.senses[:, None])
+            if several.state[0] != ONE:
                 return None
-            sizes = found.sizes[:, 0].tolist()
+            sizes = several.sizes[:, 0].tolist()
         return self.inertia * a - self.push - float(self.along @ sizes)
 
 
@@ -146,8 +152,9 @@ class SlidingStretch(NamedTuple):
 class FrictionTable(TabulatedChart):
     """The chart of one free driver whose pairs have friction. It moves in one `direction` until it comes to rest.
 
-    Senses of sliding are those of one stretch at a time, so that a step of the integration is smooth; it `ahead`, the
-    value at which the stretch ends, is an event.
+    A step of the integration is smooth: senses of sliding are those of one stretch, which ends at a value `ahead`, and
+    normal forces count by the signs, `sides`, that they had when the stretch began. Where either changes is an event; when
+    a state beyond has been met, it `has_left`.
     """
 
     direction: float = 1.0
@@ -156,6 +163,14 @@ class FrictionTable(TabulatedChart):
     pressed: NormalForceTable | None = None
     stretch: SlidingStretch | None = None
     ahead: float | None = None
+    sides: Sequence[float] | None = None
+    has_left: bool = False
+
+    @cached_property
+    def largest(self) -> list[float]:
+        """The largest normal forces up to now."""
+        assert self.pressed is not None
+        return [0.0] * self.pressed.layout.count
 
     @cached_property
     def contacts(self) -> tuple[LoadedContact, ...]:
@@ -178,8 +193,27 @@ class FrictionTable(TabulatedChart):
             state = self.state(time, values, speeds)
             gained = state.terms.matrix[0, 0] * state.accelerations[0] + state.terms.bias[0] - state.forces[0][0]
             return Rates(state.accelerations, float(gained * speed))
-        a = self._free(found.normal, time)
+        free = self._free(found.normal, time, self.sides)
+        a = free.acceleration
+        self.has_left = self.has_left or self._margin(value, free, True) < NEARLY
         return Rates(np.array([a]), (found.normal.inertia * a - found.stored) * speed)
+
+    def _margin(self, value: float, free: FreeMotion | None, is_new: bool = False) -> float:
+        """Return how far it is until a pair slides in the other sense or is pressed the other way; 1 if unknown.
+
+        The distance is against the reach of the driver, normal forces against the largest ones up to now.
+        """
+        if self.ahead is None:
+            return 1.0
+        far = self.direction * (self.ahead - value) / self.reach
+        if self.sides is None or free is None or free.normal_forces is None:
+            return far if far < 0.0 else 1.0
+        for k, (side, one) in enumerate(zip(self.sides, free.normal_forces, strict=True)):
+            if side:
+                if is_new and abs(one.real) > self.largest[k]:
+                    self.largest[k] = abs(one.real)
+                far = min(far, side * one.real / (self.largest[k] or 1.0))
+        return far
 
     def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the acceleration at a state of the solution; zero where friction holds it."""
@@ -196,13 +230,13 @@ class FrictionTable(TabulatedChart):
         """Return the acceleration at a state, at which the driver has no effort."""
         found = self._in_table(state.time, float(state.values[0]), float(state.speeds[0]), self.direction)
         if found is not None:
-            return np.array([self._free(found.normal, state.time)])
+            return np.array([self._free(found.normal, state.time, self.sides).acceleration])
         second = np.array([[0.0, 1.0]])
-        return np.array([self._free(self._solved(state, state.speeds, second, self.direction), state.time)])
+        return np.array([self._free(self._solved(state, state.speeds, second, self.direction), state.time).acceleration])
 
-    def _free(self, normal: NormalForceState, time: float) -> float:
-        """Return the acceleration without effort. Raises InvalidInput where it is not unique."""
-        found = normal.acceleration()
+    def _free(self, normal: NormalForceState, time: float, signs: Sequence[float] | None = None) -> FreeMotion:
+        """Return the motion without effort. Raises InvalidInput where it is not unique."""
+        found = normal.free(signs)
         if found is None:
             what = f"friction has no or several solutions at {time:g} s: the mechanism wedges or jumps"
             raise InvalidInput(Problem("frictions", what, "less friction, or another start"))
@@ -218,12 +252,13 @@ class FrictionTable(TabulatedChart):
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Update the configuration at an accepted state."""
         super().accept(time, values, speeds)
-        if self.ahead is None:
+        if self.ahead is None or self.has_left:
             self._enter(time, values, speeds)
 
-    def until_reversal(self, value: float) -> float:
-        """Return how far ahead it is until a pair slides in the other sense; at a distance where none is known."""
-        return 1.0 if self.ahead is None else self.direction * (self.ahead - value)
+    def smooth_margin(self, time: float, value: float, speed: float) -> float:
+        """Return how far it is until friction changes, negative beyond."""
+        found = None if self.sides is None else self._in_table(time, value, speed, self.direction)
+        return self._margin(value, None if found is None else found.normal.free(self.sides))
 
     def direction_from_rest(self, time: float, values: Number) -> float:
         """Return the direction in which the driver starts from rest, zero where friction holds it."""
@@ -254,12 +289,12 @@ class FrictionTable(TabulatedChart):
     @property
     def memory(self) -> tuple[Any, ...]:
         """The configuration, with the tables and the stretch of sliding."""
-        return (*super().memory, self.pressed, self.stretch)
+        return (*super().memory, self.pressed, self.stretch, self.sides)
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Restore a configuration."""
-        super().recall(memory[:-2])
-        self.pressed, self.stretch = memory[-2:]
+        super().recall(memory[:-3])
+        self.pressed, self.stretch, self.sides = memory[-3:]
 
     def _tabulate(self, value: float, poses: Mapping[str, Pose]) -> None:
         super()._tabulate(value, poses)
@@ -267,7 +302,8 @@ class FrictionTable(TabulatedChart):
 
     def _enter(self, time: float, values: Number, speeds: Number) -> None:
         """Take the stretch of sliding that lies in the direction of motion."""
-        self.stretch = self.ahead = None
+        self.stretch = self.ahead = self.sides = None
+        self.has_left = False
         if self.table is None or self.pressed is None:
             return
         value, step = float(values[0]), self.direction * AHEAD * (self.table.high - self.table.low)
@@ -278,6 +314,24 @@ class FrictionTable(TabulatedChart):
         if found.senses is not None:
             self.stretch = found
             self.ahead = value + step + (found.high if self.direction > 0.0 else found.low) - inside
+            self.sides = self._sides(time, value, float(speeds[0]), abs(step))
+
+    def _sides(self, time: float, value: float, speed: float, far: float) -> list[float] | None:
+        """Return the signs of the normal forces so far ahead, zeros for vectors; None where they are not known."""
+        here = self._in_table(time, value, speed, self.direction)
+        free = None if here is None else here.normal.free()
+        if free is None:
+            return None
+        a = free.acceleration
+        step = 2.0 * far / (abs(speed) + np.sqrt(speed * speed + 2.0 * abs(a) * far) + np.finfo(float).tiny)
+        there = self._in_table(time + step, value + self.direction * far, speed + a * step, self.direction)
+        free = None if there is None else there.normal.free()
+        if there is None or free is None or free.normal_forces is None:
+            return None
+        assert self.pressed is not None
+        vectors, slides = set(self.pressed.layout.vectors.tolist()), there.normal.senses.tolist()
+        return [0.0 if k in vectors or not slides[owner] else float(np.sign(one.real))
+                for k, (owner, one) in enumerate(zip(there.normal.owners, free.normal_forces, strict=True))]  # fmt: skip
 
     def _in_table(self, time: float, value: float, speed: float, way: float) -> TabulatedState | None:
         """Return a state of the table, None where it is not accurate."""
@@ -299,7 +353,7 @@ class FrictionTable(TabulatedChart):
             if more is None:
                 return None
             others = more
-        return pressed.layout.state(rows, speed, way * sliding, others)
+        return pressed.layout.state(rows, speed, way * sliding, others, pressed.mild[id(piece)])
 
     def _others(
         self, piece: TablePiece, basis: Number, time: float, value: float, speed: float
@@ -336,7 +390,8 @@ class FrictionTable(TabulatedChart):
         along = -np.array([(block.effort(self.free[0], none + one[:, None]) - effort)[0] for one in each])
         own, by = block.influence.own, block.influence.by[..., 0]
         way_senses = way * self._senses(state)
-        return NormalForceState(own[:, 0], own[:, 1] - own[:, 0], by, block.influence.starts, way_senses,
+        owners = np.repeat(np.arange(len(by)), np.diff(block.influence.starts, append=len(own))).tolist()
+        return NormalForceState(own[:, 0], own[:, 1] - own[:, 0], by, owners, way_senses,
                                 float(effort[1] - effort[0]), -float(effort[0]), along)  # fmt: skip
 
     def _senses(self, state: DriverState) -> Number:
@@ -367,7 +422,7 @@ class ForceLayout:
     contacts: tuple[LoadedContact, ...]
     loads: Sequence[Sequence[Load]]
     touched: tuple[str, ...]
-    starts: Number
+    owners: Sequence[int]
     count: int
     vectors: Number
 
@@ -384,7 +439,7 @@ class ForceLayout:
         causes = [0, 1, 1, *[2] * n, *(3 + k for _ in self.touched for k in (0, 0, 1))]
         return (*DRIVE_SCALES, *range(first, first + n), *(first + n + k for k in causes for _ in range(wide)))
 
-    def state(self, rows: Number, speed: float, sliding: Number, others: Number) -> TabulatedState:
+    def state(self, rows: Number, speed: float, sliding: Number, others: Number, is_mild: bool) -> TabulatedState:
         """Return the state of a driver, by the rows at its value."""
         n, count = len(self.contacts), self.count
         inertia, bias, stored, other, more, rest = (*rows[:4].tolist(), *others[:2].tolist())
@@ -398,8 +453,20 @@ class ForceLayout:
         if len(others) > 2:
             own = own + others[2:] @ normal[3 + n :]
         push = kept + other + rest
-        found = NormalForceState(own, normal[1], normal[3 : 3 + n], self.starts, sliding, inertia, push, rows[4 : 4 + n])
+        by, along = normal[3 : 3 + n], rows[4 : 4 + n]
+        found = NormalForceState(own, normal[1], by, self.owners, sliding, inertia, push, along, is_mild)
         return TabulatedState(found, kept)
+
+    def is_mild(self, piece: TablePiece) -> bool:
+        """Return whether frictions contract by the plain norm throughout a piece, at any acceleration and without."""
+        return all(self._gain(piece, value) < MILD for value in np.linspace(piece.low, piece.high, CHECKED).tolist())
+
+    def _gain(self, piece: TablePiece, value: float) -> float:
+        """Return the greatest sum of what units of all frictions add to the normal forces of one."""
+        one = self.state(piece.terms @ piece.basis(value), 0.0, np.ones(len(self.contacts)), self.none, False).normal
+        grown = one.by + (one.along / one.inertia)[:, None] * one.second
+        totals = [np.abs(by).sum(axis=0) for by in (one.by, grown)]
+        return max(float(np.bincount(self.owners, total).max()) for total in totals)
 
     def terms(self, motion: Motion) -> Number:
         """Return all rows at the poses of a motion at unit speed."""
@@ -463,6 +530,7 @@ class NormalForceTable:
     starts: Sequence[float]
     edges: Sequence[float]
     senses: Sequence[Number | None]
+    mild: Mapping[int, bool]
 
     def stretch(self, value: float) -> SlidingStretch:
         """Return the stretch at a value."""
@@ -480,7 +548,8 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     if not pieces:
         return None
     edges, found = _stretches(layout, pieces, table)
-    return NormalForceTable(layout, pieces, [piece.low for piece in pieces], edges, found)
+    mild = {id(piece): layout.is_mild(piece) for piece in pieces}
+    return NormalForceTable(layout, pieces, [piece.low for piece in pieces], edges, found, mild)
 
 
 def _layout(chart: FrictionTable, motion: Motion) -> ForceLayout:
@@ -489,9 +558,9 @@ def _layout(chart: FrictionTable, motion: Motion) -> ForceLayout:
     nothing = reverse_pass(motion.solving_order, at.block, {})
     each = [normal_forces_of(at, (contact,), nothing) for contact in contacts]
     rows = [row for own in each for row in own]
-    starts = np.cumsum([0, *(len(own) for own in each[:-1])])
+    owners = [k for k, own in enumerate(each) for _ in own]
     vectors = np.array([k for k, row in enumerate(rows) if np.iscomplexobj(row)], dtype=int)
-    return ForceLayout(contacts, chart.timeless, chart.touched, starts, len(rows), vectors)
+    return ForceLayout(contacts, chart.timeless, chart.touched, owners, len(rows), vectors)
 
 
 def _stretches(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -75,6 +75,15 @@ class Watch:
     falls: bool = False
     asked: bool = False
 
+    # so many places of a step are looked at
+    samples: ClassVar[int] = EVENT_SAMPLES
+    # and whether it may dip below zero between them
+    has_dips: ClassVar[bool] = False
+
+    def is_idle(self, chart: Chart) -> bool:
+        """Return whether there is no zero in the last step of a chart for sure."""
+        return False
+
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the function at a state. Raises InvalidInput where it returns no number."""
         n = len(chart.free)
@@ -101,11 +110,18 @@ class RestWatch(Watch):
 
 
 class SlidingWatch(Watch):
-    """Reversals of sliding in pairs with friction, where the senses of friction change."""
+    """Changes of friction: a pair slides in the other sense, or is pressed the other way."""
+
+    samples = 8
+    has_dips = True
+
+    def is_idle(self, chart: Chart) -> bool:
+        """Return whether no such state was met in the last step."""
+        return not (isinstance(chart, FrictionTable) and chart.has_left)
 
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return how far ahead the next one is."""
-        return chart.until_reversal(float(state[0])) if isinstance(chart, FrictionTable) else 1.0
+        return chart.smooth_margin(time, *state[:2].tolist()) if isinstance(chart, FrictionTable) else 1.0
 
 
 class StopPassage(NamedTuple):
@@ -421,7 +437,7 @@ def _speed(state: SimulatedState) -> float:
 # What is watched with friction.
 FRICTIONS = (
     RestWatch(REST, _speed, "it comes to rest", False),
-    SlidingWatch(REVERSES, _speed, "a pair slides the other way", False),
+    SlidingWatch(REVERSES, _speed, "friction acts the other way", False),
 )
 
 
@@ -456,7 +472,8 @@ def first_passed(
     watched: tuple[Watch, ...], chart: Chart, times: tuple[float, float], between: Callable[[float], Number]
 ) -> list[Passed]:
     """Return the zeros in a step, in the order of time."""
-    found = [Passed(one, time, between(time)) for one in watched for time in _zeros(one, chart, times, between)]
+    asked = [one for one in watched if not one.is_idle(chart)]
+    found = [Passed(one, time, between(time)) for one in asked for time in _zeros(one, chart, times, between)]
     return sorted(found, key=lambda one: one.time)
 
 
@@ -468,7 +485,7 @@ def _zeros(
     def value(time: float) -> float:
         return watch.value(chart, time, between(time))
 
-    samples = np.linspace(*times, EVENT_SAMPLES + 1)
+    samples = np.linspace(*times, watch.samples + 1)
     known = [value(float(time)) for time in samples]
     if watch.falls and known[0] <= 0.0:
         early = times[0] + (times[1] - times[0]) * EARLY
@@ -476,9 +493,21 @@ def _zeros(
         known = [known[0], *(value(float(time)) for time in early), *known[1:]]
         if max(known) <= 0.0 > min(known):
             yield times[0]
+    if watch.has_dips:
+        for time in list(_dips(samples, known)):
+            at = int(np.searchsorted(samples, time))
+            samples, known = np.insert(samples, at, time), [*known[:at], value(time), *known[at:]]
     for low, high, first, last in zip(samples[:-1], samples[1:], known[:-1], known[1:], strict=True):
         if first > 0.0 >= last or (not watch.falls and first < 0.0 <= last):
             yield _zero(value, float(low), float(high))
+
+
+def _dips(samples: Number, known: Sequence[float]) -> Iterator[float]:
+    """Yield the vertices of the parabolas through three values whose middle one is the least."""
+    for k in range(1, len(known) - 1):
+        fall, rise = known[k - 1] - known[k], known[k + 1] - known[k]
+        if known[k] > 0.0 and fall > 0.0 and rise > 0.0:
+            yield float(samples[k] + 0.5 * (samples[k + 1] - samples[k]) * (fall - rise) / (fall + rise))
 
 
 def _zero(function: Callable[[float], float], low: float, high: float) -> float:
