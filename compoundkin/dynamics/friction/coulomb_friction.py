@@ -171,106 +171,120 @@ SHRINKS = 0.5
 
 
 class PoseFrictions(NamedTuple):
-    """The sizes of frictions with their signs at a single pose, and the normal forces under them."""
+    """The sizes of frictions with their signs at a single pose, and the components of the normal forces under them."""
 
-    sizes: list[float]
-    normal_forces: list[complex]
+    sizes: Number
+    components: Number
+
+
+class ForceComponents:
+    """The components of normal forces in a row: all in order, vectors by x, then the y of the vectors.
+
+    `owners` are the frictions to which the normal forces belong, `vectors` the indices of those that are vectors.
+    """
+
+    def __init__(self, owners: Sequence[int], vectors: Sequence[int]) -> None:
+        self.owners, self.vectors = np.array(owners, dtype=int), np.array(vectors, dtype=int)
+        self.count = len(owners)
+        whole = np.concatenate([self.owners, self.owners[self.vectors]])
+        self.frictions = int(whole.max()) + 1
+        self.of_frictions = (whole == np.arange(self.frictions)[:, None]).astype(float)
+        # which squares make up the squared magnitude that belongs to a component
+        self.together = np.eye(len(whole))
+        ys = self.count + np.arange(len(self.vectors))
+        self.together[self.vectors, ys] = self.together[ys, self.vectors] = 1.0
+        self.unit, self.evenly = np.eye(self.frictions), np.ones(self.frictions)
+
+    def split(self, values: Number) -> Number:
+        """Return the components of complex normal forces (..., normal forces)."""
+        return np.concatenate([values.real, values[..., self.vectors].imag], axis=-1)
+
+    def joined(self, components: Number) -> Number:
+        """Return complex normal forces by their components (..., components)."""
+        found = components[..., : self.count].astype(complex)
+        found[..., self.vectors] += 1j * components[..., self.count :]
+        return found
+
+    def gains(self, by: Number) -> Number:
+        """Return the greatest normal force in each pair by a unit of each friction (frictions, components)."""
+        sizes = np.sqrt((by * by).dot(self.together))[:, : self.count]
+        found: Number = self.of_frictions[:, : self.count].dot(sizes.T)
+        return found
+
+
+# What a vanishing normal force is divided by.
+TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
 class PoseInfluence:
     """The influence of frictions at a single pose, with the signs of the motion.
 
-    `own` (normal forces) are those without friction, `by` (frictions, normal forces) what a unit of each friction adds;
-    `owners` are the frictions to which the normal forces belong. Normal forces of which a sign is `held`, not zero,
-    count by this sign instead of their magnitude, so that all is smooth where they change sign.
+    `own` (components) are the normal forces without friction, `by` (frictions, components) what a unit of each friction
+    adds. Normal forces of which a sign is `held` (components), not zero, count by this sign instead of their magnitude,
+    so that all is smooth where they change sign; None holds none.
     """
 
+    layout: ForceComponents
     own: Number
     by: Number
-    owners: Sequence[int]
     signs: Number
-    held: Sequence[float]
+    held: Number | None = None
 
     @cached_property
-    def weights(self) -> list[float] | None:
+    def weights(self) -> Number | None:
         """Weights of the sums in whose norm their image contracts, so that there is one solution; None without any.
 
         They are those of an M-matrix, as in `FrictionInfluence.contracts`.
         """
-        n = len(self.signs)
-        gains = np.zeros((n, n))
-        np.add.at(gains, np.array(self.owners), (np.abs(self.by) * np.abs(self.signs)[:, None]).T)
+        gains = self.layout.gains(self.by) * np.abs(self.signs)
         # the plain norm suffices for most mechanisms
         if np.all(gains.sum(axis=1) < 1.0):
-            return [1.0] * n
-        try:
-            found = np.linalg.solve(np.eye(n) - gains, np.ones(n))
-        except np.linalg.LinAlgError:
-            return None
-        return found.tolist() if np.all(found > 0.0) else None
+            return np.ones(len(self.signs))
+        found, singular = _solved_once(self.layout.unit - gains, np.ones(len(self.signs)))
+        return found if not singular and np.all(found > 0.0) else None
 
-    def solution(self, weights: Sequence[float]) -> PoseFrictions | None:
+    def solution(self, weights: Number) -> PoseFrictions | None:
         """Return the frictions and normal forces where the image contracts by these weights.
 
         Newton's steps, or the image where that is better. None where rounding is too large.
         """
-        own, rows = self.own.tolist(), (-self.signs[:, None] * self.by).tolist()
-        newton, least, floor = False, np.inf, max(map(abs, own))
-        sums = best = self._sums(own)
+        layout, own = self.layout, self.own
+        rows = -self.signs[:, None] * self.by
+        toward = self._toward(own)
+        newton, least, scale = False, np.inf, float(np.abs(own).max())
+        sums = best = layout.of_frictions.dot(toward * own)
         for _ in range(NEWTON_STEPS):
-            normal_forces = own
-            for row, one in zip(rows, sums, strict=True):
-                normal_forces = [a + one * b for a, b in zip(normal_forces, row, strict=True)]
-            image = self._sums(normal_forces)
-            off = [a - b for a, b in zip(sums, image, strict=True)]
-            gap = max(abs(one) / weight for one, weight in zip(off, weights, strict=True))
+            components = own + sums.dot(rows)
+            toward = self._toward(components)
+            image = layout.of_frictions.dot(toward * components)
+            off = sums - image
+            gap = float(np.abs(off / weights).max())
             shrinks = not newton or gap <= SHRINKS * least
-            if max(map(abs, off)) <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * max(floor, *map(abs, sums)):
-                sizes = [-sign * one for sign, one in zip(self.signs.tolist(), sums, strict=True)]
-                return PoseFrictions(sizes, normal_forces)
+            if np.abs(off).max() <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * max(scale, float(np.abs(sums).max())):
+                return PoseFrictions(-self.signs * sums, components)
             newton = shrinks
             if shrinks:
                 best, least = image, gap
-                sums = self._newton(rows, sums, off, normal_forces)
+                matrix = layout.unit - (layout.of_frictions * toward).dot(rows.T)
+                sums = sums - _solved_once(matrix, off)[0]
             else:
                 sums = best
         return None
 
-    def _sums(self, normal_forces: Sequence[complex]) -> list[float]:
-        """Return the sums of the magnitudes of normal forces for each friction."""
-        total = [0.0] * len(self.signs)
-        for own, sign, one in zip(self.owners, self.held, normal_forces, strict=True):
-            total[own] += sign * one.real if sign else abs(one)
-        return total
-
-    def _newton(
-        self, rows: list[list[complex]], sums: list[float], off: list[float], normal_forces: list[complex]
-    ) -> list[float]:
-        """Return the sums of the next Newton step. `rows` are what a unit of each sum adds to the normal forces."""
-        back = [sign or (one.conjugate() / abs(one) if one else 0.0)
-                for sign, one in zip(self.held, normal_forces, strict=True)]  # fmt: skip
-        matrix = [[0.0] * len(sums) for _ in sums]
-        for k, row in enumerate(rows):
-            for own, way, unit in zip(self.owners, back, row, strict=True):
-                matrix[own][k] -= (way * unit).real
-            matrix[k][k] += 1.0
-        return [one - change for one, change in zip(sums, _eliminated(matrix, list(off)), strict=True)]
+    def _toward(self, components: Number) -> Number:
+        """Return the directions of normal forces, in their components."""
+        sizes = np.sqrt(self.layout.together.dot(components * components))
+        found: Number = components / np.maximum(sizes, TINY)
+        return found if self.held is None else np.where(self.held, self.held, found)
 
 
-def _eliminated(matrix: list[list[float]], right: list[float]) -> list[float]:
-    """Return the solution of a small system by elimination. An M-matrix and what it bounds need no pivots."""
-    n = len(right)
-    for i, pivot in enumerate(matrix):
-        for j in range(i + 1, n):
-            factor = matrix[j][i] / pivot[i]
-            if factor:
-                matrix[j] = [a - factor * b for a, b in zip(matrix[j], pivot, strict=True)]
-                right[j] -= factor * right[i]
-    for i in range(n - 1, -1, -1):
-        row = matrix[i]
-        right[i] = (right[i] - sum(row[j] * right[j] for j in range(i + 1, n))) / row[i]
-    return right
+def _solved_once(matrix: Number, right: Number) -> tuple[Number, bool]:
+    """Return the solution of one small system, and whether it is singular, by LAPACK without detours."""
+    from scipy.linalg.lapack import dgesv
+
+    _, _, found, info = dgesv(matrix, right)
+    return found, info != 0
 
 
 # Separating forces of gears are computed again at most so often; each change is a friction's part of the one before.

@@ -23,6 +23,8 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
     ONE,
+    TINY,
+    ForceComponents,
     FrictionInfluence,
     PoseInfluence,
     block_with_friction,
@@ -71,46 +73,49 @@ AHEAD = 1e-10
 
 
 class FreeMotion(NamedTuple):
-    """The acceleration at which the driver has no effort, and the normal forces then, where they are known."""
+    """The acceleration at which the driver has no effort, and the normal forces then, if they are known."""
 
     acceleration: float
-    normal_forces: Sequence[complex] | None = None
+    components: Number | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class NormalForceState:
     """A state of the driver: its normal forces and its effort by the acceleration and by the frictions.
 
-    Normal forces are `own` at no acceleration, `second` more for a unit of it, and `by` for a unit of each friction;
-    `senses` are those of sliding. The effort is inertia times acceleration less `push`, less `along` for a unit of each
-    friction. `is_mild` says that there is one solution, by the plain norm of the influences.
+    Normal forces, in components, are `own` at no acceleration, `second` more for a unit of it, and `by` for a unit of
+    each friction; `senses` are those of sliding. The effort is inertia times acceleration less `push`, less `along` for
+    a unit of each friction. `is_mild` says that there is one solution, by the plain norm of the influences.
     """
 
+    layout: ForceComponents
     own: Number
     second: Number
     by: Number
-    owners: Sequence[int]
     senses: Number
     inertia: float
     push: float
     along: Number
     is_mild: bool = False
 
-    def free(self, held: Sequence[float] | None = None) -> FreeMotion | None:
+    @cached_property
+    def grown(self) -> Number:
+        """The influences of frictions that accelerate the driver as well."""
+        found: Number = self.by + (self.along / self.inertia)[:, None] * self.second
+        return found
+
+    def free(self, held: Number | None = None) -> FreeMotion | None:
         """Return the motion at which the driver has no effort; None where it is not unique.
 
         Normal forces of which a sign is `held` count by it.
         """
-        first, signs = self.push / self.inertia, [0.0] * len(self.own) if held is None else held
-        ones = [1.0] * len(self.senses)
-        if self.is_mild or PoseInfluence(self.own, self.by, self.owners, self.senses, signs).weights is not None:
-            # normal forces under frictions that accelerate as well
-            grown = self.by + (self.along / self.inertia)[:, None] * self.second
-            joint = PoseInfluence(self.own + first * self.second, grown, self.owners, self.senses, signs)
-            weights = ones if self.is_mild else joint.weights
+        first = self.push / self.inertia
+        if self.is_mild or PoseInfluence(self.layout, self.own, self.by, self.senses).weights is not None:
+            joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
+            weights = self.layout.evenly if self.is_mild else joint.weights
             found = None if weights is None else joint.solution(weights)
             if found is not None:
-                return FreeMotion(first + float(self.along @ found.sizes) / self.inertia, found.normal_forces)
+                return FreeMotion(first + float(self.along.dot(found.sizes)) / self.inertia, found.components)
         return self._by_secants(first)
 
     def _by_secants(self, first: float) -> FreeMotion | None:
@@ -129,16 +134,17 @@ class NormalForceState:
 
     def effort(self, a: float) -> float | None:
         """Return the driver's effort at an acceleration, None where it is not unique."""
-        here = PoseInfluence(self.own + a * self.second, self.by, self.owners, self.senses, [0.0] * len(self.own))
+        here = PoseInfluence(self.layout, self.own + a * self.second, self.by, self.senses)
         found = None if here.weights is None else here.solution(here.weights)
-        sizes = None if found is None else found.sizes
-        if sizes is None:
-            starts = np.searchsorted(self.owners, np.arange(len(self.senses)))
-            several = solve_coulomb(FrictionInfluence(here.own[:, None], self.by[..., None], starts), self.senses[:, None])
-            if several.state[0] != ONE:
-                return None
-            sizes = several.sizes[:, 0].tolist()
-        return self.inertia * a - self.push - float(self.along @ sizes)
+        sizes = self._searched(here) if found is None else found.sizes
+        return None if sizes is None else self.inertia * a - self.push - float(self.along.dot(sizes))
+
+    def _searched(self, here: PoseInfluence) -> Number | None:
+        """Return the frictions where their influences do not contract, None where they are not unique."""
+        own, by = self.layout.joined(here.own), self.layout.joined(self.by)
+        starts = np.searchsorted(self.layout.owners, np.arange(len(self.senses)))
+        found = solve_coulomb(FrictionInfluence(own[:, None], by[..., None], starts), self.senses[:, None])
+        return found.sizes[:, 0] if found.state[0] == ONE else None
 
 
 class SlidingStretch(NamedTuple):
@@ -163,14 +169,14 @@ class FrictionTable(TabulatedChart):
     pressed: NormalForceTable | None = None
     stretch: SlidingStretch | None = None
     ahead: float | None = None
-    sides: Sequence[float] | None = None
+    sides: Number | None = None
     has_left: bool = False
 
     @cached_property
-    def largest(self) -> list[float]:
-        """The largest normal forces up to now."""
+    def largest(self) -> Number:
+        """The largest normal forces up to now, in components."""
         assert self.pressed is not None
-        return [0.0] * self.pressed.layout.count
+        return np.full(len(self.pressed.layout.components.together), TINY)
 
     @cached_property
     def contacts(self) -> tuple[LoadedContact, ...]:
@@ -206,14 +212,13 @@ class FrictionTable(TabulatedChart):
         if self.ahead is None:
             return 1.0
         far = self.direction * (self.ahead - value) / self.reach
-        if self.sides is None or free is None or free.normal_forces is None:
+        if self.sides is None or free is None or free.components is None:
             return far if far < 0.0 else 1.0
-        for k, (side, one) in enumerate(zip(self.sides, free.normal_forces, strict=True)):
-            if side:
-                if is_new and abs(one.real) > self.largest[k]:
-                    self.largest[k] = abs(one.real)
-                far = min(far, side * one.real / (self.largest[k] or 1.0))
-        return far
+        if is_new:
+            self.largest = np.maximum(self.largest, np.abs(free.components))
+        # those that count by magnitude are far from a change
+        counted = np.where(self.sides, self.sides * free.components / self.largest, 1.0)
+        return min(far, float(counted.min()))
 
     def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the acceleration at a state of the solution; zero where friction holds it."""
@@ -234,9 +239,9 @@ class FrictionTable(TabulatedChart):
         second = np.array([[0.0, 1.0]])
         return np.array([self._free(self._solved(state, state.speeds, second, self.direction), state.time).acceleration])
 
-    def _free(self, normal: NormalForceState, time: float, signs: Sequence[float] | None = None) -> FreeMotion:
+    def _free(self, normal: NormalForceState, time: float, held: Number | None = None) -> FreeMotion:
         """Return the motion without effort. Raises InvalidInput where it is not unique."""
-        found = normal.free(signs)
+        found = normal.free(held)
         if found is None:
             what = f"friction has no or several solutions at {time:g} s: the mechanism wedges or jumps"
             raise InvalidInput(Problem("frictions", what, "less friction, or another start"))
@@ -316,7 +321,7 @@ class FrictionTable(TabulatedChart):
             self.ahead = value + step + (found.high if self.direction > 0.0 else found.low) - inside
             self.sides = self._sides(time, value, float(speeds[0]), abs(step))
 
-    def _sides(self, time: float, value: float, speed: float, far: float) -> list[float] | None:
+    def _sides(self, time: float, value: float, speed: float, far: float) -> Number | None:
         """Return the signs of the normal forces so far ahead, zeros for vectors; None where they are not known."""
         here = self._in_table(time, value, speed, self.direction)
         free = None if here is None else here.normal.free()
@@ -326,12 +331,13 @@ class FrictionTable(TabulatedChart):
         step = 2.0 * far / (abs(speed) + np.sqrt(speed * speed + 2.0 * abs(a) * far) + np.finfo(float).tiny)
         there = self._in_table(time + step, value + self.direction * far, speed + a * step, self.direction)
         free = None if there is None else there.normal.free()
-        if there is None or free is None or free.normal_forces is None:
+        if there is None or free is None or free.components is None:
             return None
-        assert self.pressed is not None
-        vectors, slides = set(self.pressed.layout.vectors.tolist()), there.normal.senses.tolist()
-        return [0.0 if k in vectors or not slides[owner] else float(np.sign(one.real))
-                for k, (owner, one) in enumerate(zip(there.normal.owners, free.normal_forces, strict=True))]  # fmt: skip
+        layout, slides = there.normal.layout, there.normal.senses
+        found = np.zeros(len(free.components))
+        scalars = np.setdiff1d(np.arange(layout.count), layout.vectors)
+        found[scalars] = np.sign(free.components[scalars]) * np.abs(slides[layout.owners[scalars]])
+        return found
 
     def _in_table(self, time: float, value: float, speed: float, way: float) -> TabulatedState | None:
         """Return a state of the table, None where it is not accurate."""
@@ -346,7 +352,7 @@ class FrictionTable(TabulatedChart):
         if sliding is None:
             return None
         basis = piece.basis(inside)
-        rows = piece.terms @ basis
+        rows = piece.terms.dot(basis)
         others = pressed.layout.none
         if self.has_others:
             more = self._others(piece, basis, time, value, speed)
@@ -390,9 +396,11 @@ class FrictionTable(TabulatedChart):
         along = -np.array([(block.effort(self.free[0], none + one[:, None]) - effort)[0] for one in each])
         own, by = block.influence.own, block.influence.by[..., 0]
         way_senses = way * self._senses(state)
-        owners = np.repeat(np.arange(len(by)), np.diff(block.influence.starts, append=len(own))).tolist()
-        return NormalForceState(own[:, 0], own[:, 1] - own[:, 0], by, owners, way_senses,
-                                float(effort[1] - effort[0]), -float(effort[0]), along)  # fmt: skip
+        owners = np.repeat(np.arange(len(by)), np.diff(block.influence.starts, append=len(own)))
+        vectors = np.flatnonzero(np.any(own.imag != 0.0, axis=1) | np.any(by.imag != 0.0, axis=0))
+        layout = ForceComponents(owners.tolist(), vectors.tolist())
+        return NormalForceState(layout, layout.split(own[:, 0]), layout.split(own[:, 1] - own[:, 0]), layout.split(by),
+                                way_senses, float(effort[1] - effort[0]), -float(effort[0]), along)  # fmt: skip
 
     def _senses(self, state: DriverState) -> Number:
         """Return the sense in which each pair slides as the driver's coordinate grows."""
@@ -414,17 +422,14 @@ class TabulatedState(NamedTuple):
 class ForceLayout:
     """The rows of a table of normal forces: those of the equation of motion, frictions along the driver, normal forces.
 
-    Normal forces have rows without anything but loads, for a unit acceleration, for a unit squared speed, for a unit of
-    each friction, and for a unit force along x, along y and a unit moment on each of the `touched` links. `vectors` are
-    the indices of those that are vectors, whose y components follow the others.
+    Normal forces have rows under loads alone, for a unit acceleration, for a unit squared speed, for a unit of each
+    friction, and for a unit force along x, along y and a unit moment on each of the `touched` links.
     """
 
     contacts: tuple[LoadedContact, ...]
     loads: Sequence[Sequence[Load]]
     touched: tuple[str, ...]
-    owners: Sequence[int]
-    count: int
-    vectors: Number
+    components: ForceComponents
 
     @cached_property
     def none(self) -> Number:
@@ -434,27 +439,23 @@ class ForceLayout:
     @cached_property
     def scales(self) -> tuple[int, ...]:
         """The scales of rows by number: frictions along the driver have one each, normal forces one for each cause."""
-        n, wide = len(self.contacts), self.count + len(self.vectors)
+        n, wide = len(self.contacts), len(self.components.together)
         first = max(DRIVE_SCALES) + 1
         causes = [0, 1, 1, *[2] * n, *(3 + k for _ in self.touched for k in (0, 0, 1))]
         return (*DRIVE_SCALES, *range(first, first + n), *(first + n + k for k in causes for _ in range(wide)))
 
     def state(self, rows: Number, speed: float, sliding: Number, others: Number, is_mild: bool) -> TabulatedState:
         """Return the state of a driver, by the rows at its value."""
-        n, count = len(self.contacts), self.count
-        inertia, bias, stored, other, more, rest = (*rows[:4].tolist(), *others[:2].tolist())
-        kept = stored + more - bias * speed * speed
-        causes = rows[4 + n :].reshape(-1, count + len(self.vectors))
-        normal = causes[:, :count]
-        if len(self.vectors):
-            normal = normal.astype(complex)
-            normal[:, self.vectors] += 1j * causes[:, count:]
-        own = normal[0] + speed * speed * normal[2]
+        n = len(self.contacts)
+        inertia, bias, stored, other = rows[:4].tolist()
+        causes = rows[4 + n :].reshape(-1, len(self.components.together))
+        own = causes[0] + speed * speed * causes[2]
         if len(others) > 2:
-            own = own + others[2:] @ normal[3 + n :]
-        push = kept + other + rest
-        by, along = normal[3 : 3 + n], rows[4 : 4 + n]
-        found = NormalForceState(own, normal[1], by, self.owners, sliding, inertia, push, along, is_mild)
+            stored, other = stored + float(others[0]), other + float(others[1])
+            own = own + others[2:].dot(causes[3 + n :])
+        kept = stored - bias * speed * speed
+        found = NormalForceState(self.components, own, causes[1], causes[3 : 3 + n], sliding, inertia, kept + other,
+                                 rows[4 : 4 + n], is_mild)  # fmt: skip
         return TabulatedState(found, kept)
 
     def is_mild(self, piece: TablePiece) -> bool:
@@ -464,9 +465,7 @@ class ForceLayout:
     def _gain(self, piece: TablePiece, value: float) -> float:
         """Return the greatest sum of what units of all frictions add to the normal forces of one."""
         one = self.state(piece.terms @ piece.basis(value), 0.0, np.ones(len(self.contacts)), self.none, False).normal
-        grown = one.by + (one.along / one.inertia)[:, None] * one.second
-        totals = [np.abs(by).sum(axis=0) for by in (one.by, grown)]
-        return max(float(np.bincount(self.owners, total).max()) for total in totals)
+        return max(float(self.components.gains(by).sum(axis=1).max()) for by in (one.by, one.grown))
 
     def terms(self, motion: Motion) -> Number:
         """Return all rows at the poses of a motion at unit speed."""
@@ -483,8 +482,7 @@ class ForceLayout:
         order = at.motion.solving_order
         for loads in self._causes(at, units):
             forces = normal_forces_of(at, self.contacts, reverse_pass(order, at.block, loads))
-            yield from (one.real for one in forces)
-            yield from (forces[k].imag for k in self.vectors)
+            yield from self.components.split(np.transpose(forces)).T
 
     def _causes(self, at: LoadedBlock, units: Sequence[Wrench]) -> Iterator[dict[str, Wrench]]:
         """Yield the loads of each cause of normal forces."""
@@ -559,8 +557,8 @@ def _layout(chart: FrictionTable, motion: Motion) -> ForceLayout:
     each = [normal_forces_of(at, (contact,), nothing) for contact in contacts]
     rows = [row for own in each for row in own]
     owners = [k for k, own in enumerate(each) for _ in own]
-    vectors = np.array([k for k, row in enumerate(rows) if np.iscomplexobj(row)], dtype=int)
-    return ForceLayout(contacts, chart.timeless, chart.touched, owners, len(rows), vectors)
+    vectors = [k for k, row in enumerate(rows) if np.iscomplexobj(row)]
+    return ForceLayout(contacts, chart.timeless, chart.touched, ForceComponents(owners, vectors))
 
 
 def _stretches(
