@@ -14,9 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -193,7 +193,7 @@ class ForceComponents:
         self.together = np.eye(len(whole))
         ys = self.count + np.arange(len(self.vectors))
         self.together[self.vectors, ys] = self.together[ys, self.vectors] = 1.0
-        self.unit, self.evenly = np.eye(self.frictions), np.ones(self.frictions)
+        self.unit = np.eye(self.frictions)
 
     def split(self, values: Number) -> Number:
         """Return the components of complex normal forces (..., normal forces)."""
@@ -216,7 +216,8 @@ class ForceComponents:
 TINY = 1e-300
 
 
-@dataclass(frozen=True, eq=False)
+# not frozen: one is made at every state of a simulation, and frozen fields take five times as long
+@dataclass(eq=False)
 class PoseInfluence:
     """The influence of frictions at a single pose, with the signs of the motion.
 
@@ -244,24 +245,25 @@ class PoseInfluence:
         found, singular = _solved_once(self.layout.unit - gains, np.ones(len(self.signs)))
         return found if not singular and np.all(found > 0.0) else None
 
-    def solution(self, weights: Number) -> PoseFrictions | None:
-        """Return the frictions and normal forces where the image contracts by these weights.
+    def solution(self, weights: Number | None) -> PoseFrictions | None:
+        """Return the frictions and normal forces where the image contracts by these weights, all equal if None.
 
         Newton's steps, or the image where that is better. None where rounding is too large.
         """
         layout, own = self.layout, self.own
         rows = -self.signs[:, None] * self.by
         toward = self._toward(own)
-        newton, least, scale = False, np.inf, float(np.abs(own).max())
+        newton, least, scale = False, np.inf, _largest(own)
         sums = best = layout.of_frictions.dot(toward * own)
         for _ in range(NEWTON_STEPS):
             components = own + sums.dot(rows)
             toward = self._toward(components)
             image = layout.of_frictions.dot(toward * components)
             off = sums - image
-            gap = float(np.abs(off / weights).max())
+            largest = _largest(off)
+            gap = largest if weights is None else _largest(off / weights)
             shrinks = not newton or gap <= SHRINKS * least
-            if np.abs(off).max() <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * max(scale, float(np.abs(sums).max())):
+            if largest <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * max(scale, _largest(sums)):
                 return PoseFrictions(-self.signs * sums, components)
             newton = shrinks
             if shrinks:
@@ -279,12 +281,23 @@ class PoseInfluence:
         return found if self.held is None else np.where(self.held, self.held, found)
 
 
+def _largest(values: Number) -> float:
+    """Return the largest magnitude of a few numbers."""
+    # of so few faster than an array's
+    return float(max(map(abs, values.tolist())))
+
+
 def _solved_once(matrix: Number, right: Number) -> tuple[Number, bool]:
     """Return the solution of one small system, and whether it is singular, by LAPACK without detours."""
-    from scipy.linalg.lapack import dgesv
-
-    _, _, found, info = dgesv(matrix, right)
+    _, _, found, info = _lapack().dgesv(matrix, right)
     return found, info != 0
+
+
+@cache
+def _lapack() -> Any:
+    from scipy.linalg import lapack
+
+    return lapack
 
 
 # Separating forces of gears are computed again at most so often; each change is a friction's part of the one before.

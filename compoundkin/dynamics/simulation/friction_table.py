@@ -79,7 +79,8 @@ class FreeMotion(NamedTuple):
     components: Number | None = None
 
 
-@dataclass(frozen=True, eq=False)
+# not frozen: one is made at every state
+@dataclass(eq=False)
 class NormalForceState:
     """A state of the driver: its normal forces and its effort by the acceleration and by the frictions.
 
@@ -112,8 +113,8 @@ class NormalForceState:
         first = self.push / self.inertia
         if self.is_mild or PoseInfluence(self.layout, self.own, self.by, self.senses).weights is not None:
             joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
-            weights = self.layout.evenly if self.is_mild else joint.weights
-            found = None if weights is None else joint.solution(weights)
+            weights = None if self.is_mild else joint.weights
+            found = joint.solution(weights) if self.is_mild or weights is not None else None
             if found is not None:
                 return FreeMotion(first + float(self.along.dot(found.sizes)) / self.inertia, found.components)
         return self._by_secants(first)
@@ -158,9 +159,9 @@ class SlidingStretch(NamedTuple):
 class FrictionTable(TabulatedChart):
     """The chart of one free driver whose pairs have friction. It moves in one `direction` until it comes to rest.
 
-    A step of the integration is smooth: senses of sliding are those of one stretch, which ends at a value `ahead`, and
-    normal forces count by the signs, `sides`, that they had when the stretch began. Where either changes is an event; when
-    a state beyond has been met, it `has_left`.
+    A step of the integration is smooth: senses of sliding are those of one `stretch`, which ends at a value `ahead`,
+    and normal forces count by the signs, `sides`, that they had when it was entered. Where either changes is an event.
+    It `has_left` once a state beyond, or nearly so, has been met.
     """
 
     direction: float = 1.0
@@ -173,10 +174,10 @@ class FrictionTable(TabulatedChart):
     has_left: bool = False
 
     @cached_property
-    def largest(self) -> Number:
-        """The largest normal forces up to now, in components."""
+    def largest(self) -> list[float]:
+        """The largest components of normal forces up to now."""
         assert self.pressed is not None
-        return np.full(len(self.pressed.layout.components.together), TINY)
+        return [TINY] * len(self.pressed.layout.components.together)
 
     @cached_property
     def contacts(self) -> tuple[LoadedContact, ...]:
@@ -195,30 +196,33 @@ class FrictionTable(TabulatedChart):
         """Return the rates of a state. The work is that of loads without a potential, and of friction."""
         value, speed = float(values[0]), float(speeds[0])
         found = self._in_table(time, value, speed, self.direction)
+        if self._ahead(value) < 0.0:
+            self.has_left = True
         if found is None:
             state = self.state(time, values, speeds)
             gained = state.terms.matrix[0, 0] * state.accelerations[0] + state.terms.bias[0] - state.forces[0][0]
             return Rates(state.accelerations, float(gained * speed))
         free = self._free(found.normal, time, self.sides)
         a = free.acceleration
-        self.has_left = self.has_left or self._margin(value, free, True) < NEARLY
+        if self._pressed_least(free, True) < NEARLY:
+            self.has_left = True
         return Rates(np.array([a]), (found.normal.inertia * a - found.stored) * speed)
 
-    def _margin(self, value: float, free: FreeMotion | None, is_new: bool = False) -> float:
-        """Return how far it is until a pair slides in the other sense or is pressed the other way; 1 if unknown.
+    def _ahead(self, value: float) -> float:
+        """Return how far it is until a pair slides in the other sense, against the reach of the driver."""
+        return 1.0 if self.ahead is None else self.direction * (self.ahead - value) / self.reach
 
-        The distance is against the reach of the driver, normal forces against the largest ones up to now.
-        """
-        if self.ahead is None:
-            return 1.0
-        far = self.direction * (self.ahead - value) / self.reach
+    def _pressed_least(self, free: FreeMotion | None, is_new: bool = False) -> float:
+        """Return the least normal force that counts by a sign, against the largest it was up to now; 1 without any."""
+        least = 1.0
         if self.sides is None or free is None or free.components is None:
-            return far if far < 0.0 else 1.0
-        if is_new:
-            self.largest = np.maximum(self.largest, np.abs(free.components))
-        # those that count by magnitude are far from a change
-        counted = np.where(self.sides, self.sides * free.components / self.largest, 1.0)
-        return min(far, float(counted.min()))
+            return least
+        for k, (side, one) in enumerate(zip(self.sides.tolist(), free.components.tolist(), strict=True)):
+            if side:
+                if is_new and abs(one) > self.largest[k]:
+                    self.largest[k] = abs(one)
+                least = min(least, side * one / self.largest[k])
+        return least
 
     def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the acceleration at a state of the solution; zero where friction holds it."""
@@ -237,7 +241,9 @@ class FrictionTable(TabulatedChart):
         if found is not None:
             return np.array([self._free(found.normal, state.time, self.sides).acceleration])
         second = np.array([[0.0, 1.0]])
-        return np.array([self._free(self._solved(state, state.speeds, second, self.direction), state.time).acceleration])
+        return np.array(
+            [self._free(self._solved(state, state.speeds, second, self.direction), state.time).acceleration]
+        )
 
     def _free(self, normal: NormalForceState, time: float, held: Number | None = None) -> FreeMotion:
         """Return the motion without effort. Raises InvalidInput where it is not unique."""
@@ -262,8 +268,9 @@ class FrictionTable(TabulatedChart):
 
     def smooth_margin(self, time: float, value: float, speed: float) -> float:
         """Return how far it is until friction changes, negative beyond."""
+        far = self._ahead(value)
         found = None if self.sides is None else self._in_table(time, value, speed, self.direction)
-        return self._margin(value, None if found is None else found.normal.free(self.sides))
+        return far if found is None else min(far, self._pressed_least(found.normal.free(self.sides)))
 
     def direction_from_rest(self, time: float, values: Number) -> float:
         """Return the direction in which the driver starts from rest, zero where friction holds it."""
@@ -361,9 +368,7 @@ class FrictionTable(TabulatedChart):
             others = more
         return pressed.layout.state(rows, speed, way * sliding, others, pressed.mild[id(piece)])
 
-    def _others(
-        self, piece: TablePiece, basis: Number, time: float, value: float, speed: float
-    ) -> Number | None:
+    def _others(self, piece: TablePiece, basis: Number, time: float, value: float, speed: float) -> Number | None:
         """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
         at = self.loaded_at(piece, basis, time, np.array([value]), speed)
         found = np.zeros(2 + 3 * len(self.touched))
@@ -568,19 +573,18 @@ def _stretches(
     first, least = len(DRIVE_SCALES), _slowest(layout, table.motion)
     own = slice(first, first + len(layout.contacts))
     runs = [_SlidingRates(piece, piece.terms[own], least) for piece in pieces]
-    edges = {table.low, table.high}
+    edges = {table.low, pieces[0].low, pieces[-1].high, table.high}
     for left, right in pairwise(runs):
         if left.piece.high < right.piece.low or np.any(left.rests != right.rests):
             edges |= {left.piece.high, right.piece.low}
     for run in runs:
         edges |= set(run.reversals())
-    edges |= {pieces[0].low, pieces[-1].high}
     whole = sorted(edges)
     starts, found = [piece.low for piece in pieces], list[Number | None]()
     for low, high in pairwise(whole):
         middle = 0.5 * (low + high)
-        run = runs[bisect_right(starts, middle) - 1] if middle > starts[0] else None
-        found.append(run.senses(middle) if run is not None and middle <= run.piece.high else None)
+        here = runs[max(bisect_right(starts, middle) - 1, 0)]
+        found.append(here.senses(middle) if here.piece.low <= middle <= here.piece.high else None)
     return whole, found
 
 
