@@ -7,6 +7,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.forward_dynamics import simulation_start
+from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.errors import FewDigits, InvalidInput, UnknownName
 from tests.dynamics.cases import SI
@@ -408,6 +410,52 @@ def test_slider_crank_loses_energy_and_has_no_effort() -> None:
     assert np.all(np.diff(found.energy.work) <= 1e-12)
     assert found.energy.work[-1] < -0.1
     assert found.energy.worst < 1e-6
+
+
+RUBBED = ck.friction("guide", 0.1), *(ck.friction(pin, 0.1, radius=0.01) for pin in "OAB")
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        ck.torque("crank", 1.0),
+        ck.torque("crank", lambda t: np.sin(5.0 * t)),
+        ck.effort("guide", lambda w: -2.0 * w),
+        ck.damper("rod", (0.1, 0.02), to="crank", at="A", rate=3.0),
+        ck.force("rod", (lambda t: 3.0 * t, 1.0), at=(0.1, 0)),
+        ck.motor("crank", stall=2.0, no_load=30.0),
+        ck.spring(pair="O", stiffness=0.5),
+    ],
+    ids=lambda load: load.name,
+)
+def test_friction_by_tables_is_that_of_solved_poses(load: object) -> None:
+    """The acceleration by tables over the crank, and by the forces of a pose that is solved by itself."""
+    begun = simulation_start(slider_crank().replace(*RUBBED, load), {"crank": (1.0, 20.0)}, {}, None)
+    chart = FrictionTable(begun.motion, ("crank",), {})
+    rng = np.random.default_rng(1)
+    for value, speed in zip(rng.uniform(-2.0, 4.0, 20), rng.uniform(-30.0, 30.0, 20), strict=True):
+        values, speeds = np.array([value]), np.array([speed])
+        chart.direction = float(np.sign(speed))
+        known = chart.rates(0.3, values, speeds).accelerations
+        tables, chart.pressed = chart.pressed, None
+        solved = chart.state(0.3, values, speeds).accelerations
+        chart.pressed = tables
+        np.testing.assert_allclose(known, solved, rtol=1e-11)
+
+
+def test_simulations_with_friction_solve_no_pose(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All states are in the tables, and the work is what the frictions of the motion take."""
+
+    def refused(*_: object) -> None:
+        raise AssertionError("a pose was solved")
+
+    monkeypatch.setattr(FrictionTable, "_solved", refused)
+    rubbed = slider_crank().replace(*RUBBED)
+    found = ck.simulate(rubbed, start={"crank": (1.0, 20.0)}, until=0.2, times=np.linspace(0.0, 0.2, 801))
+    power = found.forces.friction.power
+    steps = np.diff(found.times)[0] / 3.0 * (power[:-2:2] + 4.0 * power[1::2] + power[2::2])
+    np.testing.assert_allclose(found.energy.work[2::2], np.cumsum(steps), rtol=1e-5)
+    assert found.energy.worst < 1e-10
 
 
 def test_friction_of_several_drivers_is_refused() -> None:
