@@ -177,7 +177,7 @@ class PoseFrictions(NamedTuple):
     components: Number
 
 
-class ForceComponents:
+class NormalForceComponents:
     """The components of normal forces in a row: all in order, vectors by x, then the y of the vectors.
 
     `owners` are the frictions to which the normal forces belong, `vectors` the indices of those that are vectors.
@@ -226,7 +226,7 @@ class PoseInfluence:
     so that all is smooth where they change sign; None holds none.
     """
 
-    layout: ForceComponents
+    layout: NormalForceComponents
     own: Number
     by: Number
     signs: Number

@@ -24,7 +24,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
     ONE,
     TINY,
-    ForceComponents,
+    NormalForceComponents,
     FrictionInfluence,
     PoseInfluence,
     block_with_friction,
@@ -89,7 +89,7 @@ class NormalForceState:
     a unit of each friction. `is_mild` says that there is one solution, by the plain norm of the influences.
     """
 
-    layout: ForceComponents
+    layout: NormalForceComponents
     own: Number
     second: Number
     by: Number
@@ -403,7 +403,7 @@ class FrictionTable(TabulatedChart):
         way_senses = way * self._senses(state)
         owners = np.repeat(np.arange(len(by)), np.diff(block.influence.starts, append=len(own)))
         vectors = np.flatnonzero(np.any(own.imag != 0.0, axis=1) | np.any(by.imag != 0.0, axis=0))
-        layout = ForceComponents(owners.tolist(), vectors.tolist())
+        layout = NormalForceComponents(owners.tolist(), vectors.tolist())
         return NormalForceState(layout, layout.split(own[:, 0]), layout.split(own[:, 1] - own[:, 0]), layout.split(by),
                                 way_senses, float(effort[1] - effort[0]), -float(effort[0]), along)  # fmt: skip
 
@@ -434,7 +434,7 @@ class ForceLayout:
     contacts: tuple[LoadedContact, ...]
     loads: Sequence[Sequence[Load]]
     touched: tuple[str, ...]
-    components: ForceComponents
+    components: NormalForceComponents
 
     @cached_property
     def none(self) -> Number:
@@ -563,7 +563,7 @@ def _layout(chart: FrictionTable, motion: Motion) -> ForceLayout:
     rows = [row for own in each for row in own]
     owners = [k for k, own in enumerate(each) for _ in own]
     vectors = [k for k, row in enumerate(rows) if np.iscomplexobj(row)]
-    return ForceLayout(contacts, chart.timeless, chart.touched, ForceComponents(owners, vectors))
+    return ForceLayout(contacts, chart.timeless, chart.touched, NormalForceComponents(owners, vectors))
 
 
 def _stretches(
