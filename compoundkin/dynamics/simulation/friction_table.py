@@ -24,8 +24,8 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
     ONE,
     TINY,
-    NormalForceComponents,
     FrictionInfluence,
+    NormalForceComponents,
     PoseInfluence,
     block_with_friction,
     normal_forces_of,
