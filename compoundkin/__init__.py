@@ -75,7 +75,8 @@ if TYPE_CHECKING:
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
     from compoundkin.view.plot import plot
-    from compoundkin.view.report import page, report, sheet
+    from compoundkin.view.report import page, report
+    from compoundkin.view.report.forces_section import sheet
     from compoundkin.view.sketch import draw
 
 __version__ = VERSION

@@ -53,7 +53,7 @@ def command(file: str, path: str | None, outputs: tuple[str, ...], **options: An
     Its drivers do not drive: their coordinates are computed. Those with a law follow it. The energy error is reported.
     """
     from compoundkin.cli.typed_values import with_loads
-    from compoundkin.view.report.motion_report import simulation_report
+    from compoundkin.view.report.simulation_report import simulation_report
 
     kind = output_kind(path)
     structure = solvable_structure(file, None, None, lambda own: with_loads(own, options))
@@ -136,7 +136,7 @@ def write_simulation(found: Simulation, kind: Kind, path: str, outputs: Sequence
         with counting("drawing", "frames") as progress:
             animate(found.motion).save(path, progress)
     else:
-        from compoundkin.view.report.motion_report import whole_simulation_report
+        from compoundkin.view.report.simulation_report import whole_simulation_report
 
         with working("drawing"):
             whole_simulation_report(found, outputs).page().save(path)

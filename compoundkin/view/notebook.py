@@ -10,6 +10,7 @@ from typing import Any
 from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
+from compoundkin.analysis.comparison import MechanismComparison
 from compoundkin.analysis.interference import Interference
 from compoundkin.analysis.singularities import Singularities
 from compoundkin.base.arrays import degrees
@@ -22,6 +23,9 @@ from compoundkin.kinematics.configuration import Configuration, Configurations
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.studies.optimisation.optimum import Optimum
+from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_sections, plain_table
 from compoundkin.view.page.markup import safe
 from compoundkin.view.page.viewer import framed_player
@@ -33,14 +37,14 @@ from compoundkin.view.report.configurations_section import (
 )
 from compoundkin.view.report.forces_section import assumptions, drives_blocks, forces_report, reactions_blocks
 from compoundkin.view.report.interference_section import blocks_of_designs
-from compoundkin.view.report.motion_report import simulation_report
 from compoundkin.view.report.outputs_section import cam_blocks
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
+from compoundkin.view.report.simulation_report import simulation_report
 from compoundkin.view.report.structure_sections import analysis_blocks, links_section
 from compoundkin.view.report.verification_sections import findings_table
-from compoundkin.view.report.whole_report import Studied, report
+from compoundkin.view.report.whole_report import report
 from compoundkin.view.report.wording import counted, listed, sentence
 from compoundkin.view.sketch import draw
 
@@ -208,7 +212,7 @@ def _(what: Centres | MobilityAnalysis | Interference | CamAnalysis | Singularit
 
 
 @_parts.register
-def _(what: Studied) -> Iterator[str]:
+def _(what: StudyResult | ToleranceAnalysis | Optimum | MechanismComparison) -> Iterator[str]:
     yield from plain_sections(report(what).sections)
 
 

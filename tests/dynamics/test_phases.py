@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.files import dumps, loads
-from compoundkin.view.report.motion_report import simulation_report
+from compoundkin.view.report.simulation_report import simulation_report
 from tests.dynamics.cases import SI
 
 G = 9.81

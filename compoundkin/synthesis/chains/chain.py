@@ -5,6 +5,7 @@ Links are numbered from 0; no link is the frame before one is chosen (an inversi
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +24,7 @@ from compoundkin.synthesis.chains.coloured_graphs import (
     orbits,
     read_graph6,
 )
+from compoundkin.synthesis.chains.joints import biconnected
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -175,9 +177,8 @@ class Chain:
         >>> Chain.of(7, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 5), (5, 6), (6, 0)]).joints_of_parts
         (0,)
         """
-        import networkx
-
-        return tuple(sorted(networkx.articulation_points(self.graph())))
+        blocks = Counter(link for block in biconnected(self.links, self.pairs) for link in block)
+        return tuple(sorted(link for link, count in blocks.items() if count > 1))
 
     @cached_property
     def variety(self) -> int:

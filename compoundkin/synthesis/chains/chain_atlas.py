@@ -191,17 +191,25 @@ def read_lists(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]
     >>> [chain.links for chain in read_lists(["# a comment", "3 0 Bw"])[3, 0]]
     [3]
     """
-    found: dict[tuple[int, int], list[Chain]] = {}
+    return {key: tuple(map(Chain.from_code, codes)) for key, codes in _codes(lines).items()}
+
+
+def _codes(lines: Iterable[str]) -> dict[tuple[int, int], list[str]]:
+    found: dict[tuple[int, int], list[str]] = {}
     for line in lines:
         if line.strip() and not line.startswith(COMMENT):
             links, mobility, code = line.split()
-            found.setdefault((int(links), int(mobility)), []).append(Chain.from_code(code))
-    return {key: tuple(listed) for key, listed in found.items()}
+            found.setdefault((int(links), int(mobility)), []).append(code)
+    return found
+
+
+def _lines() -> list[str]:
+    return FILE.read_text(encoding="ascii").splitlines()
 
 
 @cache
 def _listed() -> dict[tuple[int, int], tuple[Chain, ...]]:
-    return read_lists(FILE.read_text(encoding="ascii").splitlines())
+    return read_lists(_lines())
 
 
 @cache
@@ -212,4 +220,4 @@ def _generated(links: int, mobility: int, patient: bool) -> tuple[Chain, ...]:
 @cache
 def _numbers() -> dict[tuple[int, str], int]:
     # the lists hold canonical forms, so that their own numbering gives the code
-    return {(m, chain.graph6): k for (_, m), listed in _listed().items() for k, chain in enumerate(listed, 1)}
+    return {(m, code): k for (_, m), codes in _codes(_lines()).items() for k, code in enumerate(codes, 1)}

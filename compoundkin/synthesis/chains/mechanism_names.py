@@ -7,7 +7,7 @@ J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -346,7 +346,7 @@ def structure_name(structure: Structure) -> ChainName:
 
 def structure_joints(structure: Structure) -> Joints:
     """Return a structure's links and joints, rollers merged with their followers."""
-    joints = joints_of(structure.graph)
+    joints = _joints(structure.mechanism.links, _edges(structure))
     for spin in structure.passive:
         joints = joints.merged(spin.link, spin.on)
     return joints
@@ -409,10 +409,29 @@ def joints_of(graph: nx.MultiGraph) -> Joints:
     Of the edges' other attributes `code` is read ("R" where it is missing), and the `pair` where there is
     one, or else `held`: how much the pair holds (2 where it is missing).
     """
-    number = {link: k for k, link in enumerate(graph)}
+    return _joints(graph, graph.edges(data=True))
+
+
+def _edges(structure: Structure) -> Iterator[tuple[str, str, Mapping[str, Any]]]:
+    """Yield the edges of the kinematic graph in its order, which is by their first links."""
+    beside: dict[str, dict[str, list[Pair]]] = {name: {} for name in structure.mechanism.links}
+    for pair in structure.pairs:
+        first, second = pair.members[:2]
+        between = beside[first].setdefault(second, [])
+        between.append(pair)
+        beside[second][first] = between
+    done: set[str] = set()
+    for first, others in beside.items():
+        for second, between in others.items():
+            yield from ((first, second, {"pair": pair, "code": pair.code}) for pair in between if second not in done)
+        done.add(first)
+
+
+def _joints(links: Collection[Any], edges: Iterable[tuple[Any, Any, Mapping[str, Any]]]) -> Joints:
+    number = {link: k for k, link in enumerate(links)}
     pins: dict[object, list[int]] = {}
     joints: list[Joint] = []
-    for first, second, data in graph.edges(data=True):
+    for first, second, data in edges:
         ends = [number[first], number[second]]
         pin = _pin(data)
         if pin is None:
@@ -420,7 +439,7 @@ def joints_of(graph: nx.MultiGraph) -> Joints:
         else:
             pins.setdefault(pin, []).extend(ends)
     pinned = [Joint(tuple(sorted(set(ends)))) for ends in pins.values()]
-    return Joints(tuple(str(link) for link in graph), (*pinned, *joints))
+    return Joints(tuple(str(link) for link in links), (*pinned, *joints))
 
 
 def _pin(data: Mapping[str, Any]) -> object:

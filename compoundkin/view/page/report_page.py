@@ -5,13 +5,10 @@ from __future__ import annotations
 import os
 import tempfile
 import webbrowser
-from base64 import b64encode
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import singledispatch
-from importlib.util import find_spec
 from pathlib import Path
-from typing import ClassVar, TypeAlias
+from typing import ClassVar
 
 from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.base.errors import CompoundkinError
@@ -20,18 +17,13 @@ from compoundkin.base.version import VERSION
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
-from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.study_result import StudyResult
-from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.html_blocks import ABOUT, Blocks
 from compoundkin.view.page.html_document import Document, asset, vendored_library
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.live.compact_data import compact
 from compoundkin.view.page.live.live_assets import FIGURES, PANEL_SCRIPTS, PANEL_STYLES, is_live, scripts_of, styles_of
-from compoundkin.view.page.markup import data_script, element, lines, safe
+from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.viewer import PANEL_KEY, PANEL_TITLE, Viewer, panel_section, viewer_of
-from compoundkin.view.plot import Plot, bands, contributions, improvement, scatter_matrix, starts
-from compoundkin.view.report.force_sheet import ForceSheet
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Outcome, Section, Subject, TableBlock
@@ -57,20 +49,16 @@ OUTPUTS = "outputs"
 MOST_CELLS = 12_000
 # What draws the plots.
 PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plot_panel.js", "plots.js")
-# More outputs than these are no page: the tables have all.
-MOST_OUTPUTS = 6
-# The key of a section, its plot, and its caption.
-SectionPlot: TypeAlias = tuple[str, Plot, str]
 
 
 def section_figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
     """Return the figures at the heads of a report's sections, by their keys."""
-    return dict(_view_figures(sections, subject)) if subject is not None and _is_legible(subject) else {}
+    return dict(_view_figures(sections, subject)) if subject is not None and is_legible(subject) else {}
 
 
 def sketch_figure(subject: Subject) -> str:
     """Return the kinematic sketch of one pose as a figure; "" where it cannot be drawn."""
-    if not _is_legible(subject):
+    if not is_legible(subject):
         return ""
     try:
         picture = draw(subject)
@@ -99,7 +87,8 @@ def _view_figures(sections: Sequence[Section], subject: Subject) -> Iterator[tup
                 continue
 
 
-def _is_legible(subject: Subject) -> bool:
+def is_legible(subject: Subject) -> bool:
+    """Return whether a picture of all links can be read."""
     return len(subject.mechanism.links) <= MOST_LINKS
 
 
@@ -174,15 +163,15 @@ def page_of(
     subject: Structure | Motion | None = None,
     outputs: Sequence[str] = (),
     design: int = 0,
-    studied: object = None,
+    figures: Mapping[str, str] | None = None,
 ) -> Page:
-    """Return any report as a page. It has pictures of its subject, and the moving sketch of a motion."""
+    """Return any report as a page, with pictures of its subject, the moving sketch of a motion, and further figures."""
     motion = subject if isinstance(subject, Motion) else None
     known = subject.structure if isinstance(subject, Motion) else subject
     poses: dict[str, Sequence[int]] = {}
     if motion is not None:
         sections, poses[OUTPUTS] = with_every_pose(sections, motion, outputs, design)
-    pictures = section_figures(sections, subject) | study_figures(studied)
+    pictures = section_figures(sections, subject) | dict(figures or {})
     blocks = Blocks(names_of(known), pictures, poses)
     document = _document(title, sections, outcome, blocks)
     moving = None if motion is None else viewer_of(motion, design, outputs)
@@ -230,69 +219,3 @@ def with_viewer(document: Document, moving: Viewer) -> Document:
     before = tuple((key, title) for key, title, _ in first)
     changed = replace(document, viewer=moving.html, sections=sections, before=before)
     return replace(changed, data=data, scripts=scripts, styles=styles)
-
-
-def study_figures(found: object) -> dict[str, str]:
-    """Return the plots of a study, a tolerance analysis or a search as figures, by the keys of sections.
-
-    Without Matplotlib there are none. Of a sheet of forces they are the free body and the polygon of each link.
-    """
-    if isinstance(found, ForceSheet):
-        return (
-            {key: sheet_figures(found, link) for key, link in found.links.items()}
-            if _is_legible(found.forces.motion)
-            else {}
-        )
-    pictures: dict[str, str] = {}
-    for key, plot, caption in _study_plots(found) if find_spec("matplotlib") else ():
-        pictures[key] = pictures.get(key, "") + _plot_figure(plot, caption)
-    return pictures
-
-
-def sheet_figures(known: ForceSheet, link: str) -> str:
-    """Return the free body of a link beside the polygon of its forces, where two or more act."""
-    design, pose = known.scene.pose
-    body = draw(known.forces, kind="free-bodies", pose=pose, design=design, link=link)
-    figures = [picture_figure(body, f"The free body of {link}.")]
-    if sum(bool(one.force) for one in known.acting[link]) > 1:
-        polygon = draw(known.forces, kind="force-polygon", pose=pose, design=design, link=link)
-        figures.append(picture_figure(polygon, f"The polygon of the forces on {link}."))
-    return element("div", lines(figures), class_="beside")
-
-
-def _plot_figure(plot: Plot, caption: str) -> str:
-    """Return a plot with a caption, as an image, so that ids of several plots do not clash."""
-    source = f"data:image/svg+xml;base64,{b64encode(plot.content('svg')).decode('ascii')}"
-    image = f'<img src="{source}" alt="{safe(caption)}" style="max-width:100%;height:auto">'
-    return element("figure", f"{image}\n<figcaption>{safe(caption)}</figcaption>")
-
-
-@singledispatch
-def _study_plots(found: object) -> Iterator[SectionPlot]:
-    yield from ()
-
-
-@_study_plots.register
-def _(found: StudyResult) -> Iterator[SectionPlot]:
-    if any(one.is_figure for one in found.columns):
-        caption = "Dimensions and figures against each other; above the diagonal their rank correlations."
-        yield "figures", scatter_matrix(found, title=""), caption
-    if any(one.width for one in found.columns):
-        yield "figures", bands(found, title=""), "Quantities over the motion, between percentiles of the designs."
-
-
-@_study_plots.register
-def _(found: ToleranceAnalysis) -> Iterator[SectionPlot]:
-    outputs = list(found.values())[:MOST_OUTPUTS]
-    if any(one.is_course for one in outputs):
-        names = [one.name for one in outputs if one.is_course]
-        yield "bands", bands(found, *names, title=""), "Errors over the motion."
-    for one in outputs:
-        caption = f"Contributions to the error of {one.name}."
-        yield "contributions", contributions(found, one.name, title=""), caption
-
-
-@_study_plots.register
-def _(found: Optimum) -> Iterator[SectionPlot]:
-    yield "optimum", improvement(found, title=""), "What became better: the mechanism as it stood, and the best one."
-    yield "minima", starts(found, title=""), "Where the searches began and ended."

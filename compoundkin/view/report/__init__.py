@@ -6,8 +6,7 @@ A section is made of blocks (`report_data`); functions that make sections know n
 
 from __future__ import annotations
 
-from compoundkin.view.report.forces_section import sheet
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.whole_report import page, report
 
-__all__ = ["Report", "page", "report", "sheet"]
+__all__ = ["Report", "page", "report"]

@@ -172,8 +172,14 @@ class Report(DisplaysHtml, Savable):
         """Return it as a page, which can be saved and opened in the browser."""
         from compoundkin.view.page.report_page import page_of
 
-        subject = self.subject, self.outputs, self.design, self.studied
-        return page_of(self.title, self.sections, self.outcome, *subject)
+        figures: dict[str, str] = {}
+        if self.studied is not None:
+            # what studies and their plots take is not loaded for other pages
+            from compoundkin.view.page.study_figures import study_figures
+
+            figures = study_figures(self.studied)
+        subject = self.subject, self.outputs, self.design
+        return page_of(self.title, self.sections, self.outcome, *subject, figures)
 
     def content(self, form: str) -> bytes:
         """Return the bytes of a file in the form "text", "markdown", "json" or "html"."""

@@ -47,6 +47,21 @@ DIGITS = 4
 MOST_MINIMA = 8
 # Speeds that differ by no more than this part are the same: some programs have rpm of three decimals.
 _SAME_SPEED = 1e-3
+# So many rows with the least values of a figure are listed, and as many with the greatest.
+BEST = 3
+
+
+def whole_study_report(
+    what: StudyResult | ToleranceAnalysis | Optimum | MechanismComparison, outputs: Sequence[str]
+) -> Report:
+    """Report a study, a tolerance analysis, an optimisation or a comparison as a whole."""
+    if isinstance(what, ToleranceAnalysis):
+        return tolerance_report(what, outputs)
+    if isinstance(what, Optimum):
+        return optimum_report(what, outputs)
+    if isinstance(what, MechanismComparison):
+        return comparison_report(what)
+    return study_report(what, outputs, outputs, BEST)
 
 
 def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequence[str] = (), best: int = 1) -> Report:

@@ -7,29 +7,27 @@ from collections.abc import Sequence
 from math import prod
 from typing import TYPE_CHECKING, TypeAlias
 
-from compoundkin.analysis.comparison import MechanismComparison
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import motion_of_design, shape_of
 from compoundkin.model.mechanism import Mechanism, mechanism_of_design
 from compoundkin.structure import Structure, decompose
-from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.study_result import StudyResult
-from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.report_data import Outcome, Subject
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.structure_sections import about_section, counted_sections, faults_section
-from compoundkin.view.report.study_reports import comparison_report, optimum_report, study_report, tolerance_report
 
 if TYPE_CHECKING:
+    from compoundkin.analysis.comparison import MechanismComparison
+    from compoundkin.studies.optimisation.optimum import Optimum
+    from compoundkin.studies.study_result import StudyResult
+    from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
     from compoundkin.view.page import Page
 
-Studied: TypeAlias = StudyResult | ToleranceAnalysis | Optimum | MechanismComparison
-Reported: TypeAlias = Mechanism | Structure | Motion | Studied
-# So many rows with the least values of a figure are listed, and as many with the greatest.
-BEST = 3
+# written as texts: what studies take is not loaded for the report of a mechanism
+Studied: TypeAlias = "StudyResult | ToleranceAnalysis | Optimum | MechanismComparison"
+Reported: TypeAlias = "Mechanism | Structure | Motion | Studied"
 
 
 @checked
@@ -54,8 +52,12 @@ def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Repo
     >>> print(report(crank).text().splitlines()[0])
     Crank
     """
-    if isinstance(what, Studied):
-        return _study_report(what, outputs, design)
+    if not isinstance(what, Mechanism | Structure | Motion):
+        if design:
+            raise InvalidInput(Problem("design", "a study is reported as a whole", "report the motion of that design"))
+        from compoundkin.view.report.study_reports import whole_study_report
+
+        return whole_study_report(what, outputs)
     subject, among = _report_subject(what, design)
     if isinstance(subject, Structure):
         return _structure_report(subject)
@@ -77,19 +79,6 @@ def page(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Page:
     '<!DOCTYPE html>'
     """
     return report(what, outputs, design).page()
-
-
-def _study_report(what: Studied, outputs: Sequence[str], design: int) -> Report:
-    """Report a study or the like as a whole."""
-    if design:
-        raise InvalidInput(Problem("design", "a study is reported as a whole", "report the motion of that design"))
-    if isinstance(what, ToleranceAnalysis):
-        return tolerance_report(what, outputs)
-    if isinstance(what, Optimum):
-        return optimum_report(what, outputs)
-    if isinstance(what, MechanismComparison):
-        return comparison_report(what)
-    return study_report(what, outputs, outputs, BEST)
 
 
 def _report_subject(what: Mechanism | Subject, design: int) -> tuple[Subject, int]:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from math import floor, isfinite, log10
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import SUPERSCRIPTS, with_superscripts
-from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.view.report.report_data import Cell, Column
+
+if TYPE_CHECKING:
+    from compoundkin.studies.optimisation.optimum import Optimum
 
 SIGNIFICANT = 6
 # Outside of these, numbers are written with exponents.

@@ -100,7 +100,7 @@ def test_notebooks_show_the_tables(found: Any) -> None:
 
 
 def test_without_matplotlib_pages_have_no_plots(monkeypatch: pytest.MonkeyPatch) -> None:
-    from compoundkin.view.page import report_page
+    from compoundkin.view.page import study_figures
 
-    monkeypatch.setattr(report_page, "find_spec", lambda name: None)
+    monkeypatch.setattr(study_figures, "find_spec", lambda name: None)
     assert "<img" not in ck.page(tolerances()).html
