@@ -30,7 +30,7 @@ from compoundkin.view.sketch.shapes import (
     unit_direction,
 )
 from compoundkin.view.sketch.sketch_style import BLOCK, PIN, style_of
-from compoundkin.view.sketch.traced_numbers import as_place
+from compoundkin.view.sketch.traced_numbers import as_place, untraced
 
 # A guide goes on by this much beyond the places that the block takes, in picture units.
 BEYOND = 22.0
@@ -382,12 +382,14 @@ def pivot(painter: Painter, letter: str, at: complex) -> Iterator[Laid]:
 
 
 def _free_side(painter: Painter, letter: str, at: complex) -> complex:
+    # a choice among given sides: numbers are enough
+    at = untraced(at)
     away: list[complex] = []
     for link in painter.scene.mechanism.carriers[letter]:
         if link != FRAME:
-            others = (painter.place(link, p) for k, p in painter.scene.points[link].items() if k != letter)
+            others = (untraced(painter.place(link, p)) for k, p in painter.scene.points[link].items() if k != letter)
             away += [unit_direction(p - at) for p in others if abs(p - at) > PIN]
-    near = [painter.window.at(p) for k, p in painter.scene.carried.items() if k != letter]
+    near = [painter.window.at(untraced(p)) for k, p in painter.scene.carried.items() if k != letter]
     away += [unit_direction(p - at) for p in near if PIN < abs(p - at) < 2.0 * PIVOT]
 
     def blocked(down: complex) -> float:

@@ -187,16 +187,25 @@ class ReproducedValues:
     @cached_property
     def closes(self) -> bool:
         """Whether it is assembled where the motion is."""
-        goods = self.program.own([node for _, node in self.program.goods], self.chosen)
+        goods = (self._values[node] for _, node in self.program.goods)
         every = [np.broadcast_to(good, self.failed.shape).astype(bool) for good in goods]
         return bool(np.array_equal(np.logical_and.reduce([np.ones(self.failed.shape, bool), *every]), ~self.failed))
+
+    @cached_property
+    def _values(self) -> dict[int, Number]:
+        """The values of all results by their nodes: computed in one run, for most share most of their operations."""
+        program = self.program
+        moved = (node for links in program.links.values() for nodes in links for node in nodes)
+        told = (node for one in program.recorded for node in (one.x, one.y) if node is not None)
+        nodes = list(dict.fromkeys((*(node for _, node in program.goods), *moved, *told)))
+        return dict(zip(nodes, program.own(nodes, self.chosen), strict=True))
 
     def has_link(self, name: str) -> bool:
         """Return whether it reproduces a link's pose, velocities and accelerations."""
         link, order = self.program.motion.links[name], self.program.order
         wrapped = self.program.mechanism.block.world[name].theta is None
         nodes = [node for moved in self.program.links[name] for node in moved]
-        found = self.program.own(nodes, self.chosen) if self.closes else []
+        found = [self._values[node] for node in nodes] if self.closes else []
         known = [
             part
             for k in range(order + 1)
@@ -211,7 +220,7 @@ class ReproducedValues:
         """Return whether it reproduces an output."""
         values = np.broadcast_to(quantity(self.program.motion, output.name).values, self.program.motion.shape)
         parts = (values,) if len(nodes) == 1 else (values.real, values.imag)
-        found = self.program.own(nodes, self.chosen) if self.closes else []
+        found = [self._values[node] for node in nodes] if self.closes else []
         return self.closes and all(
             self._agrees(one, self._of(part), output.is_wrapped) for one, part in zip(found, parts, strict=True)
         )
