@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.curves.samples import convex_hull
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.outline_shapes import OutlineShape
-from compoundkin.model.pairs.symbols import Pin, Sliding
+from compoundkin.model.pairs.symbols import Sliding
 from compoundkin.view.sketch.scene import PairMark, Scene, Window, is_inside, racks, smallest_wheel
 from compoundkin.view.sketch.shapes import (
     HEAD,
@@ -357,7 +357,7 @@ def pin_shapes(painter: Painter) -> Iterator[Laid]:
 
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
     """Return the names of the pins at a letter. One less than the links that it joins."""
-    found = [s.pair for s in painter.scene.pair_marks if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
+    found = painter.scene.pins_at.get(letter, [])
     auxiliary = painter.scene.mechanism.auxiliary_links
     seen = [pair.name for pair in found if auxiliary.isdisjoint(pair.members)]
     # what leads a pin is one of its links: the others are joined by it all the same
@@ -366,8 +366,7 @@ def joints(painter: Painter, letter: str) -> tuple[str, ...]:
 
 def gliding_points(painter: Painter) -> frozenset[str]:
     """Return the letters of points where a mark of their own is drawn."""
-    others = [s.pair for s in painter.scene.pair_marks if not isinstance(s.mark, Pin)]
-    return frozenset(pair.letters[0] for pair in others)
+    return frozenset(seen.pair.letters[0] for seen in painter.scene.other_marks)
 
 
 def pivot(painter: Painter, letter: str, at: complex) -> Iterator[Laid]:

@@ -18,7 +18,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outline_shapes import OutlineShape, outline_shapes
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.symbols import Mark, Outline, Sliding, Track, Wheel
+from compoundkin.model.pairs.symbols import Mark, Outline, Pin, Sliding, Track, Wheel
 from compoundkin.model.pairs.travel_limits import as_travel_limited, bounds_name
 from compoundkin.structure import DrivenPair, Structure
 from compoundkin.view.sketch.traced_numbers import as_place
@@ -257,6 +257,20 @@ class Scene:
         """The marks of all pairs."""
         return tuple(PairMark(pair, mark, pair.members) for pair in self.structure.pairs for mark in self._marks(pair))
 
+    @cached_property
+    def pins_at(self) -> Mapping[str, list[Pair]]:
+        """The pairs that are drawn as pins, by their letters."""
+        found: dict[str, list[Pair]] = {}
+        for seen in self.pair_marks:
+            if isinstance(seen.mark, Pin):
+                found.setdefault(seen.pair.letters[0], []).append(seen.pair)
+        return found
+
+    @cached_property
+    def other_marks(self) -> tuple[PairMark, ...]:
+        """The marks of pairs that are no pins: in a large mechanism the fewest."""
+        return tuple(seen for seen in self.pair_marks if not isinstance(seen.mark, Pin))
+
     def _marks(self, pair: Pair) -> tuple[Mark, ...]:
         ends, poses = self.ends[pair.name], tuple(self.whole[name] for name in pair.members)
         marks, ended = pair.glyph(ends, poses), as_travel_limited(pair)
@@ -384,7 +398,7 @@ def is_inside(scene: Scene, link: str) -> bool:
 
 def _inside(scene: Scene, link: str, own: Number) -> Iterator[Number]:
     """For each disc of a link, which of its points are within it."""
-    for seen in scene.pair_marks:
+    for seen in scene.other_marks:
         mark = seen.mark
         if isinstance(mark, Wheel) and seen.link == link and not mark.is_ring:
             yield np.abs(own - complex(mark.at)) <= float(mark.radius) * (1.0 + ON_RIM)
@@ -398,7 +412,7 @@ def _inside(scene: Scene, link: str, own: Number) -> Iterator[Number]:
 
 def racks(scene: Scene) -> frozenset[str]:
     """Return the names of the links that carry a rack."""
-    tracks = ((seen.members, seen.mark) for seen in scene.pair_marks if isinstance(seen.mark, Track))
+    tracks = ((seen.members, seen.mark) for seen in scene.other_marks if isinstance(seen.mark, Track))
     return frozenset(members[mark.member] for members, mark in tracks if mark.pitch)
 
 
@@ -408,7 +422,7 @@ def smallest_wheel(scene: Scene, letter: str) -> float:
     return min(
         (
             float(seen.mark.radius)
-            for seen in scene.pair_marks
+            for seen in scene.other_marks
             if isinstance(seen.mark, Wheel)
             and (link := seen.link) in links
             and abs(complex(seen.mark.at) - complex(scene.points[link][letter])) <= ON_RIM * float(seen.mark.radius)

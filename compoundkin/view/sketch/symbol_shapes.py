@@ -268,7 +268,7 @@ SHARP, FLAT = 0.8, 0.1
 def wedge_ends(painter: Painter, link: str) -> tuple[complex, ...]:
     """Return the ends of the guides of a bar that make it a wedge. They begin at one of its two points."""
     found: list[complex] = []
-    for seen in painter.scene.pair_marks:
+    for seen in painter.scene.other_marks:
         if isinstance(seen.mark, Sliding) and seen.members[0] == link != FRAME and not painter.is_rod(seen):
             own = painter.places(link)
             foot, ends = painter.place(link, seen.mark.at), guide_line(painter, link, seen.mark)
