@@ -129,7 +129,7 @@ def write_simulation(found: Simulation, kind: Kind, path: str, outputs: Sequence
     from compoundkin.files import save
 
     if kind == "table":
-        save(found.motion.table(*outputs), path)
+        save(found.table(*outputs), path)
     elif kind == "animation":
         from compoundkin.view.animation import animate
 

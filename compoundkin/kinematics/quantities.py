@@ -243,7 +243,7 @@ def _nearest(owner: str, word: str, known: list[str]) -> str:
     return f"did you mean '{owner}.{remedy.split(chr(39))[1]}'?" if remedy.startswith("did") else remedy
 
 
-ASSEMBLED, DESIGN = "assembled", "design"
+ASSEMBLED, DESIGN, PHASE = "assembled", "design", "phase"
 
 
 # What files and data frames say of the angles in them.
@@ -357,6 +357,21 @@ def table_of(motion: AtPoses, *names: str) -> Table:
     for column in (part for one in whole for part in one.components):
         columns.setdefault(column.name, _flat(column, motion.shape))
     return Table(motion.mechanism.title, tuple(columns.values()))
+
+
+def tables_in_a_row(title: str, tables: Sequence[Table]) -> Table:
+    """Return tables of several phases as one, with the number of each from 1.
+
+    Where a phase has not a column of another one it is NaN.
+    """
+    phases = [np.full(len(table), k + 1) for k, table in enumerate(tables)]
+    found = {PHASE: Quantity(PHASE, "", np.concatenate(phases))}
+    for column in (column for table in tables for column in table.columns):
+        if column.name not in found:
+            parts = [table[column.name].values if column.name in table.names else np.full(len(table), np.nan)
+                     for table in tables]  # fmt: skip
+            found[column.name] = replace(column, values=np.concatenate(parts))
+    return Table(title, tuple(found.values()))
 
 
 def _chosen(motion: AtPoses, names: Sequence[str]) -> Iterator[Quantity]:

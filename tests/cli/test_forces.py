@@ -108,6 +108,20 @@ def test_a_pendulum_is_let_go(run: Run, tmp_path: Path) -> None:
     assert "the energy balance is off by at most" in page
 
 
+def test_a_table_names_the_phases(run: Run, tmp_path: Path) -> None:
+    text = (tmp_path / "pendulum.toml").read_text(encoding="utf-8")
+    opened = '\n[[releases]]\npair = "A"\nuntil = 0.1\n'
+    (tmp_path / "breaking.toml").write_text(text + opened, encoding="utf-8")
+    wanted = "--start", "arm=0", "--output", "arm.angle", "-o", "arm.csv"
+    done = run("simulate", "breaking.toml", "--until", "0.2", *wanted)
+    assert done.exit_code == 0, done.output
+    head, *rows = (tmp_path / "arm.csv").read_text(encoding="utf-8").splitlines()
+    assert head.startswith("phase,time [s]")
+    assert {row.split(",")[0] for row in rows} == {"1", "2"}
+    # each phase has the time at which the pin opens
+    assert [row.split(",")[1] for row in rows].count("0.1") == 2
+
+
 @pytest.mark.parametrize(
     ("args", "said"),
     [

@@ -348,6 +348,92 @@ def test_a_follower_lifts_off_and_lands_against_another_integrator() -> None:
     assert found.energy.worst < 1e-9
 
 
+def test_conjugate_cams_hold_each_other() -> None:
+    """Gravity pulls the follower off one cam, and on the other: by the cycloidal law itself, SciPy's way to go on."""
+    from scipy.integrate import solve_ivp
+
+    mass, arm, inertia, cam, at = 0.2, 65.0, 200.0, 2000.0, 10.0
+    loaded = ck.load("conjugate-cams").replace(
+        ck.mass("cam", 2.0, at="A", inertia=cam),
+        ck.mass("follower", mass, at="P", inertia=inertia),
+        ck.gravity(0, -G),
+        units={"length": "mm", "mass": "kg", "force": "N"},
+    )
+    alone = loaded.replace()
+    alone = ck.Mechanism("Front alone", *(item for item in alone.items if getattr(item, "name", "") != "back"),
+                         units=alone.units)  # fmt: skip
+    with pytest.raises(InvalidInput, match=r"front lets go at once: it would have to pull.*release\(.front.\)"):
+        ck.simulate(alone, start={"cam": (0.0, at)}, until=0.1)
+    found = ck.simulate(loaded, start={"cam": (0.0, at)}, until=0.1)
+    assert found.events == ()
+
+    def rates(t: float, y: Any) -> list[float]:
+        rise, over = ck.deg(24), ck.deg(110)
+        u = y[0] / over
+        lift = rise * (u - np.sin(2 * np.pi * u) / (2 * np.pi))
+        first = rise / over * (1 - np.cos(2 * np.pi * u))
+        second = rise / over**2 * 2 * np.pi * np.sin(2 * np.pi * u)
+        whole = inertia + mass * arm**2
+        weight = -mass * G * 1e3 * arm * np.cos(ck.deg(-145.862407) + lift) * first
+        return [y[1], (weight - whole * first * second * y[1] ** 2) / (cam + whole * first**2)]
+
+    own = solve_ivp(rates, (0.0, 0.1), [0.0, at], "DOP853", rtol=1e-12, atol=1e-13)
+    assert found.motion.drives["cam"].value[-1] == pytest.approx(own.y[0, -1], rel=1e-8)
+    assert found.motion.drives["cam"].rate[-1] == pytest.approx(own.y[1, -1], rel=1e-8)
+    assert found.energy.worst < 1e-9
+
+
+def eccentric_disc(*more: Any, inertia: float = INERTIA) -> ck.Mechanism:
+    """An eccentric disc that lifts a roller follower by its weight."""
+    return ck.Mechanism(
+        "Eccentric disc",
+        ck.link("frame", A=0),
+        ck.link("cam", A=0),
+        ck.link("follower", P=0),
+        ck.slide("follower", on="frame", at="P", through="A", angle=np.pi / 2, name="guide"),
+        ck.cam("follower", on="cam", at="P", profile=ck.profiles.disc(0.03, (ECCENTRIC, 0)), radius=0.008, name="nose"),
+        ck.mode(1, "follower"),
+        ck.drive("cam"),
+        *((ck.mass("cam", 2.0, at="A", inertia=inertia),) if inertia else ()),
+        ck.mass("follower", MASS, at="P", inertia=0.0),
+        ck.gravity(0, -G),
+        *more,
+        units=SI,
+    )
+
+
+def test_contacts_side_by_side_do_not_hold_each_other() -> None:
+    """Two equal discs under one roller lift off when a single one does."""
+    profile = ck.profiles.disc(0.03, (ECCENTRIC, 0))
+    second = ck.cam("follower", on="cam", at="P", profile=profile, radius=0.008, name="second")
+    start = {"cam": (-np.pi / 2, 40.0)}
+    one, two = (ck.simulate(eccentric_disc(*more), start=start, until=0.1) for more in ((), (second,)))
+    assert one.events[0].name == two.events[0].name == "nose lift-off"
+    assert two.events[0].time == pytest.approx(one.events[0].time, abs=1e-9)
+
+
+def test_a_cam_without_inertia_presses_nothing() -> None:
+    """Then the follower falls freely, and the event says why."""
+    found = ck.simulate(eccentric_disc(inertia=0.0), start={"cam": (0.3, 1.0)}, until=0.1)
+    assert found.events[-1].stops
+    assert "has neither inertia nor load" in found.events[-1].text
+
+
+def test_the_table_of_several_phases() -> None:
+    """It names the phase of each row; what a phase has not is NaN there."""
+    found = ck.simulate(four_bar(ck.release("C", until=0.1)), start={"crank": (1.0, 4.0)}, until=0.3)
+    table = found.table("B.x", "rocker.angle", "C on rocker.y")
+    phase, times = table["phase"].values, table["time"].values
+    assert set(phase) == {1, 2}
+    assert np.all(np.diff(phase) >= 0)
+    np.testing.assert_array_equal(times, found.times)
+    np.testing.assert_array_equal(table["B.x"].values[phase == 2], found.phases[1].motion.points["B"].x)
+    assert np.isnan(table["C on rocker.y"].values[phase == 1]).all()
+    assert np.isfinite(table["C on rocker.y"].values[phase == 2]).all()
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'B"):
+        found.table("B.xx")
+
+
 def test_releases_that_cannot_be() -> None:
     """Each is named: unknown pairs, nothing that opens them, loads along what opens."""
     with pytest.raises(InvalidMechanism) as refused:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, cross
+from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.reactions.link_wrench import UNKNOWN_VECTOR
 from compoundkin.dynamics.reactions.pair_forces import PairForce
 from compoundkin.dynamics.reactions.reverse_pass import UndeterminedPart
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.structure.mobility_count import Dropped
 
 # The angle within which a force is along a line of a link at every pose.
@@ -46,6 +47,48 @@ def undetermined_forces(forces: ForceResult) -> tuple[Undetermined, ...]:
     held = {name: PairForce(forces, forces.solving_order.pairs[name]) for name in forces.wrenches}
     left = {name: one.acting.open for name, one in held.items()}
     return tuple(found for name, one in left.items() if one is not None for found in _parts(forces, held[name], one))
+
+
+# A contact is no part of a state of self-stress that has less than this part of its greatest normal force there.
+NO_PART = 1e-9
+
+
+def pressing_force(forces: ForceResult, name: str) -> float:
+    """Return the force that presses a contact at a single pose, negative where it would have to pull.
+
+    Where equilibrium leaves open how contacts share it, as in conjugate cams, it is what they have to spare while
+    none pulls, and infinite where they can be squeezed between each other.
+    """
+    held = {pair.name: PairForce(forces, pair) for pair in forces.solving_order.pairs.values()
+            if (contact := as_profile_contact(pair)) is not None and not contact.has_ends}  # fmt: skip
+    normals = {one: float(np.ravel(own.normal)[0]) for one, own in held.items()}
+    if not forces.relaxed:
+        return normals[name]
+    units = {one: own.pair.wrenches(own.ends, own.poses)[0].force for one, own in held.items()}
+    rows = [{one: float(np.ravel(dot(units[one], state[one].force))[0]) for one in held}
+            for state in forces.self_stress.states]  # fmt: skip
+    shared = [row for row in rows if abs(row[name]) > NO_PART * max(map(abs, row.values()))]
+    if not shared:
+        return normals[name]
+    own = [one for one in held if any(abs(row[one]) > NO_PART * max(map(abs, row.values())) for row in shared)]
+    return _spare(np.array([normals[one] for one in own]), np.array([[row[one] for one in own] for row in shared]))
+
+
+def _spare(normals: Number, states: Number) -> float:
+    """Return the greatest least force of contacts under states of self-stress, each row one."""
+    from scipy.optimize import linprog
+
+    states = states / np.max(np.abs(states), axis=1, keepdims=True)
+    # n + s . x >= t with the greatest t
+    columns = np.column_stack([-states.T, np.ones(len(normals))])
+    goal = np.append(np.zeros(len(states)), -1.0)
+    scale = float(np.max(np.abs(normals))) or 1.0
+    found = linprog(goal, A_ub=columns, b_ub=normals / scale, bounds=(None, None))
+    return np.inf if found.status == UNBOUNDED else -float(found.fun) * scale
+
+
+# The status of a linear program without an end.
+UNBOUNDED = 3
 
 
 def _parts(forces: ForceResult, held: PairForce, left: UndeterminedPart) -> Iterator[Undetermined]:

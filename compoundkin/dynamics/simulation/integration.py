@@ -24,6 +24,7 @@ from compoundkin.dynamics.simulation.simulation_events import (
     REST,
     REVERSES,
     ContactWatch,
+    LiftOffWatch,
     LoadBreak,
     SimulationEvent,
     StopWatch,
@@ -191,8 +192,13 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
         here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]), step.chart.order)
         is_end = watch.name == END and not watch.asked
         text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
+        why, remedy = "", "start elsewhere, or with other loads"
+        if isinstance(watch, LiftOffWatch):
+            why = watch.reason([step.state(time) for time in (step.first, step.last)])
+            remedy = f'press it by a spring or by gravity, or let it lift off: release("{watch.pair}")'
         if watch.falls and one.time <= 0.0:
-            raise InvalidInput(Problem("start", f"{text} at once", "start elsewhere, or with other loads"))
+            raise InvalidInput(Problem("start", f"{text} at once{why}", remedy))
+        text += why
         rebounds = is_end and course.restitution is not None
         impact = after_impact(here, course.restitution or 0.0, course.fastest) if rebounds else None
         stops = watch.stops and impact is None

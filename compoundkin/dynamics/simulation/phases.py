@@ -226,8 +226,11 @@ def _renamed_point(item: Item, link: str, old: str, new: str) -> Item:
 def _written(mechanism: Mechanism, items: Sequence[Item]) -> Mechanism:
     """Return a mechanism of other items."""
     outputs = available_outputs(mechanism, [item.name for item in items if isinstance(item, Drive)])
+    kept = {pair.name for pair in pairs_among(items)}
+    gone = {pair.name for pair in mechanism.written_pairs} - kept
     known = {letter for item in items if isinstance(item, Link) for letter in item.points}
     outputs = [name for name in outputs if name.split(".")[0] in known or "." in name]
+    outputs = [name for name in outputs if name.split("(")[0].split(".")[0] not in gone]
     return Mechanism(mechanism.title, *items, units=mechanism.units, outputs=outputs, source=mechanism.source)
 
 

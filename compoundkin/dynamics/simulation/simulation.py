@@ -10,13 +10,14 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import Table, quantity, tables_in_a_row
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +51,23 @@ class Simulation(DisplaysHtml, DisplaysText):
             raise InvalidInput(Problem("motion", what, "take .phases[0].motion and so on"))
         return self.phases[0].motion
 
+    def table(self, *names: str) -> Table:
+        """Return the quantities of these names as columns, of several phases with the number of each.
+
+        A quantity that a phase does not have is NaN there; without names it is everything. Raises UnknownName for one
+        that no phase has.
+        """
+        if len(self.phases) == 1:
+            return self.motion.table(*names)
+        wanted = [[name for name in names if _has(phase.motion, name)] for phase in self.phases]
+        for name in names:
+            if not any(name in own for own in wanted):
+                quantity(self.phases[0].motion, name)  # says what is wrong with it
+        # where a phase has none of them, its drivers stand for it
+        tables = [phase.motion.table(*(own or (list(phase.motion.drives)[:1] if names else ())))
+                  for phase, own in zip(self.phases, wanted, strict=True)]  # fmt: skip
+        return tables_in_a_row(self.phases[0].mechanism.title, tables)
+
     @cached_property
     def forces(self) -> Forces:
         """The forces in all pairs. The efforts of free drivers are zero but for the tolerance."""
@@ -59,3 +77,12 @@ class Simulation(DisplaysHtml, DisplaysText):
         title, last = self.phases[0].mechanism.title, float(np.ravel(self.times)[-1])
         events = f", {count_phrase(len(self.events), 'event')}" if self.events else ""
         return f"Simulation({title!r} over {last:.6g} s in {count_phrase(self.steps, 'step')}{events})"
+
+
+def _has(motion: Motion, name: str) -> bool:
+    """Return whether a motion has a quantity."""
+    try:
+        quantity(motion, name)
+    except UnknownName:
+        return False
+    return True

@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
@@ -122,6 +123,39 @@ class SlidingWatch(Watch):
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return how far ahead the next one is."""
         return chart.smooth_margin(time, *state[:2].tolist()) if isinstance(chart, FrictionTable) else 1.0
+
+
+# A normal force below this part of the loads and of the inertia forces is none.
+NO_FORCE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class LiftOffWatch(Watch):
+    """A contact that lets go where nothing presses it any more."""
+
+    pair: str = field(kw_only=True)
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return the force that presses it."""
+        n = len(chart.free)
+        return _pressed(self.pair, chart, chart.state(time, state[:n], state[n : 2 * n]), state)
+
+    def reason(self, states: Sequence[KnownState]) -> str:
+        """Return why it lets go, by states of the step in which it does; nothing where it just comes to that."""
+        normals = [float(np.ravel(force_analysis(one.motion).pairs[self.pair].normal)[0]) for one in states]
+        acting = max(_greatest_force(one) for one in states)
+        if max(map(abs, normals)) <= NO_FORCE * acting:
+            return ": what it pushes has neither inertia nor load, so that nothing presses there"
+        if normals[0] < -NO_FORCE * acting:
+            return f": it would have to pull with {-normals[0]:.4g}"
+        return ""
+
+
+def _greatest_force(state: KnownState) -> float:
+    """Return the greatest force of loads and inertia on a link."""
+    loaded = state.loaded
+    wrenches = [*loaded.applied().values(), *map(loaded.inertia, state.chart.mechanism.masses.values())]
+    return max((float(np.max(np.abs(one.force))) for one in wrenches), default=0.0)
 
 
 class StopPassage(NamedTuple):
@@ -328,7 +362,7 @@ def _latched(one: StopContact, chart: Chart, here: KnownState, state: Number) ->
 
 def _pressed(name: str, chart: Chart, here: KnownState, state: Number) -> float:
     """Return the normal force in a contact."""
-    return float(np.ravel(force_analysis(here.motion).pairs[name].normal)[0])
+    return pressing_force(force_analysis(here.motion), name)
 
 
 def _joining(release: Release, chart: Chart, here: KnownState, state: Number) -> float:
@@ -450,7 +484,7 @@ def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:
         # in a groove the roller changes to the other flank
         if contact is not None and not contact.has_ends:
             text = f"the contact at {pair.name} lets go"
-            yield Watch(f"{pair.name} lift-off", _contact_force(pair.name), text, True, True)
+            yield LiftOffWatch(f"{pair.name} lift-off", _speed, text, True, True, pair=pair.name)
 
 
 def _to_end(state: SimulatedState) -> float:
@@ -462,10 +496,6 @@ def ended_pair(state: SimulatedState) -> Pair:
     """Return the pair nearest to a travel limit."""
     ends = state.order.guide_ends
     return ends.pairs[int(np.ravel(ends.nearest(state.block))[-1])]
-
-
-def _contact_force(name: str) -> Function:
-    return lambda state: force_analysis(state.motion).pairs[name].normal
 
 
 def first_passed(
