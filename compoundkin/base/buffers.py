@@ -26,13 +26,12 @@ def arrays_of_one_buffer(shapes: Iterable[tuple[tuple[int, ...], np.dtype[Number
     ((1, 3), dtype('float64'), True)
     """
     shapes = tuple(shapes)
-    sizes = [prod(shape) * dtype.itemsize for shape, dtype in shapes]
-    rooms = [-(-size // LINE) * LINE for size in sizes]
+    rooms = [-(-prod(shape) * dtype.itemsize // LINE) * LINE for shape, dtype in shapes]
     buffer = np.empty(sum(rooms) + LINE, dtype=np.uint8)
-    start = -buffer.ctypes.data % LINE
+    start = -buffer.__array_interface__["data"][0] % LINE
     found = []
-    for (shape, dtype), size, room in zip(shapes, sizes, rooms, strict=True):
-        found.append(buffer[start : start + size].view(dtype).reshape(shape))
+    for (shape, dtype), room in zip(shapes, rooms, strict=True):
+        found.append(np.ndarray(shape, dtype, buffer, start))
         start += room
     return found
 
@@ -45,10 +44,19 @@ def empty_arrays(shapes: Sequence[tuple[tuple[int, ...], np.dtype[Number]]]) -> 
     >>> [one.shape for one in empty_arrays([((1, 3), np.dtype(complex)), ((2, 1), np.dtype(float))])]
     [(1, 3), (2, 1)]
     """
-    if sum(prod(shape) * dtype.itemsize for shape, dtype in shapes) < LARGE:
+    if not are_large(shapes):
         return [np.empty(shape, dtype) for shape, dtype in shapes]
     keep_freed_memory()
     return arrays_of_one_buffer(shapes)
+
+
+def are_large(shapes: Iterable[tuple[tuple[int, ...], np.dtype[Number]]]) -> bool:
+    """Tell whether arrays of these shapes and types lie in one piece.
+
+    >>> are_large([((1, 36_000), np.dtype(float))]), are_large([((1, 361), np.dtype(complex))])
+    (True, False)
+    """
+    return sum(prod(shape) * dtype.itemsize for shape, dtype in shapes) >= LARGE
 
 
 @cache

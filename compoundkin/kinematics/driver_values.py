@@ -212,8 +212,19 @@ def timed(
             remedy = f"leave the {what} out, or give values for every driver and no time"
             raise InvalidInput(Problem(f"{what}.{drive.name}", "the driver moves by its law in time", remedy))
         return _by_law(drive, times, order)
+    if (
+        isinstance(times, np.ndarray)
+        and all(type(one) is float for one in given)
+        and given[1]
+        and given[2:] == (0.0, 0.0)
+    ):
+        # uniform motion: what the polynomial below is then
+        value, speed = given[:2]
+        rate = np.empty(times.shape)
+        rate.fill(speed)
+        return speed * times + value, rate, np.zeros(times.shape), given[3]
     for what, value in zip(asked, given, strict=True):
-        if np.shape(value)[-1:] > (1,):
+        if type(value) is not float and np.shape(value)[-1:] > (1,):
             text = f"its {what} {'vary' if what == 'values' else 'varies'} along the motion, which the times do already"
             remedy = "give a single number, where it is at time 0, or a law" if what == "values" else "give one number"
             raise InvalidInput(Problem(f"drives.{drive.name}.{what}", text, remedy))

@@ -5,8 +5,8 @@ A `ReadyProgram` computes the results of such numbers: complex arrays of two nod
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import prod
 from types import MappingProxyType
@@ -14,8 +14,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from compoundkin.base.arguments import planar_numbers, real_numbers
 from compoundkin.base.arrays import Number
-from compoundkin.base.buffers import empty_arrays
+from compoundkin.base.buffers import are_large, empty_arrays
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.kinematics.driver_values import Inputs, by_name, fit, inputs, times_of
@@ -26,8 +27,10 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.runner import Runner
 from compoundkin.programs.dimensions import FreeDimension, drives_of_call
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, Carried, FlatProgram, flat_program
-from compoundkin.programs.graph.operation_graph import DRIVE, SEED, STEP, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import DRIVE, PARAMETER, SEED, STEP, InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
+
+FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
 
 
 class Call(NamedTuple):
@@ -148,6 +151,41 @@ def call_numbers(
     return CallNumbers(given, shape, still)
 
 
+def parameter_inputs(name: str, is_complex: bool) -> tuple[InputNumber, ...]:
+    """Return the real inputs of a parameter."""
+    return tuple(InputNumber(PARAMETER, name, part) for part in (("x", "y") if is_complex else ("",)))
+
+
+def with_parameters(numbers: CallNumbers, given: Mapping[str, Any]) -> CallNumbers:
+    """Return the numbers of a call with those given by name.
+
+    Raises InvalidInput for what is no number, not finite, or does not broadcast.
+    """
+    arrays = {name: _parameter_array(name, value) for name, value in sorted(given.items())}
+    shape = numbers.shape
+    for name, array in arrays.items():
+        try:
+            shape = np.broadcast_shapes(shape, array.shape)
+        except ValueError:
+            what = f"shape {array.shape} does not broadcast with {shape}"
+            raise InvalidInput(Problem(name, what, "the last axis is the motion")) from None
+    found = numbers.reshaped(shape)
+    more = dict(found.given)
+    for name, array in arrays.items():
+        whole = np.atleast_2d(fit(shape)(array))
+        for part, number in zip(parameter_inputs(name, np.iscomplexobj(array)), (whole.real, whole.imag), strict=False):
+            more[part] = np.asarray(number, float)
+    return replace(found, given=more)
+
+
+def _parameter_array(name: str, value: Any) -> Number:
+    planar = planar_numbers(name, value)
+    array = planar if np.iscomplexobj(value) else real_numbers(name, value)
+    if array.size == 0 or not np.isfinite(array).all():
+        raise InvalidInput(Problem(name, "the value is empty or not finite"))
+    return array
+
+
 def broadcast_shape(shape: tuple[int, ...], other: tuple[int, ...], where: str) -> tuple[int, ...]:
     """Return the shape to which two broadcast; raises InvalidInput, naming `where`."""
     try:
@@ -178,31 +216,51 @@ def output_arrays(out: Any, outputs: Mapping[str, bool], shape: tuple[int, ...])
         return {}
     if not isinstance(out, Mapping):
         raise InvalidInput(Problem("out", f"{short_repr(out)} is no table by name", 'write {"G.position": array}'))
-    problems = [problem for name, array in out.items() if (problem := _array_problem(name, array, outputs, shape))]
-    problems = problems or [
-        Problem(f"out.{other}", f"it is in the memory of out.{name}", "give an array to each output")
-        for (name, array), (other, known) in combinations(out.items(), 2)
-        if np.may_share_memory(array, known)
-    ]
+    problems = [_array_problem(name, array, outputs, shape) for name, array in out.items()
+                if not _can_hold(array, outputs.get(name), shape)]  # fmt: skip
+    # arrays with memory of their own do not overlap
+    if not problems and not (all(array.base is None for array in out.values()) and _are_different(out.values())):
+        problems = [
+            Problem(f"out.{other}", f"it is in the memory of out.{name}", "give an array to each output")
+            for (name, array), (other, known) in combinations(out.items(), 2)
+            if np.may_share_memory(array, known)
+        ]
     if problems:
         raise InvalidInput(problems)
+    if len(shape) == 2:
+        return dict(out)
     return {name: array.reshape(prod(shape[:-1]), *(shape[-1:] or (1,))) for name, array in out.items()}
 
 
-def _array_problem(name: Any, array: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> Problem | None:
+def _can_hold(array: Any, is_vector: bool | None, shape: tuple[int, ...]) -> bool:
+    """Tell whether an array holds the results of an output; None is no output."""
+    return (
+        is_vector is not None
+        and isinstance(array, np.ndarray)
+        and array.dtype == (COMPLEX if is_vector else FLOAT)
+        and array.shape == shape
+        and array.flags.c_contiguous
+        and array.flags.writeable
+    )
+
+
+def _are_different(arrays: Collection[Number]) -> bool:
+    return len({id(array) for array in arrays}) == len(arrays)
+
+
+def _array_problem(name: Any, array: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> Problem:
+    """Return why an array cannot hold an output."""
     where = f"out.{name}"
     if name not in outputs:
         return Problem(where, "there is no such output", suggestion(name, list(outputs)))
-    kind = np.dtype(complex if outputs[name] else float)
+    kind = COMPLEX if outputs[name] else FLOAT
     remedy = f"give numpy.empty({shape}, {kind})"
     if not isinstance(array, np.ndarray) or array.dtype != kind:
         what = f"an array of {array.dtype}" if isinstance(array, np.ndarray) else short_repr(array)
         return Problem(where, f"{what} is not an array of {kind}", remedy)
     if array.shape != shape:
         return Problem(where, f"its shape is {array.shape}, that of the call {shape}", remedy)
-    if not (array.flags.writeable and array.flags.c_contiguous):
-        return Problem(where, "it cannot be written, or is not contiguous", remedy)
-    return None
+    return Problem(where, "it cannot be written, or is not contiguous", remedy)
 
 
 Name = TypeVar("Name")
@@ -215,6 +273,7 @@ class ReadyProgram(ShortRepr, Generic[Name]):
     flat: FlatProgram
     runner: Runner
     nodes: Mapping[Name, tuple[int, ...]]
+    _layouts: dict[Any, ResultLayout] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -234,19 +293,76 @@ class ReadyProgram(ShortRepr, Generic[Name]):
         self, numbers: CallNumbers, threads: int = 1, given: Mapping[Name, Number] = MappingProxyType({})
     ) -> dict[Name, Number]:
         """Compute all results, (1 or designs, 1 or poses) each; arrays `given`, designs x poses, are written."""
+        found = self.computed(numbers.arrays(self.flat), numbers.extent, threads, given)
+        return dict(zip(self.nodes, found, strict=True))
+
+    def computed(
+        self,
+        inputs: Sequence[Any],
+        extent: tuple[int, int],
+        threads: int = 1,
+        given: Mapping[Name, Number] = MappingProxyType({}),
+    ) -> list[Number]:
+        """Compute all results from the arrays that the program reads; they are in the order of `nodes`."""
+        key = (extent, *given) if given else extent
+        layout = self._layouts.get(key)
+        if layout is None:
+            if len(self._layouts) >= LAYOUTS_KEPT:
+                self._layouts.clear()
+            layout = self._layouts[key] = ResultLayout.of(self, extent, given)
+        arrays = layout.empty()
+        if given:
+            made = iter(arrays)
+            arrays = [given[name] if name in given else next(made) for name in self.nodes]
         rows: list[Number] = []
         narrow: list[tuple[Number, Number]] = []
-        shapes = {name: [self.flat.shape(k, *numbers.extent) for k in parts] for name, parts in self.nodes.items()}
-        wanted = [name for name in self.nodes if name not in given]
-        kinds = [np.dtype(complex if len(self.nodes[name]) > 1 else float) for name in wanted]
-        made = empty_arrays([(np.broadcast_shapes(*shapes[n]), kind) for n, kind in zip(wanted, kinds, strict=True)])
-        results = {**dict.fromkeys(self.nodes), **dict(zip(wanted, made, strict=True)), **given}
-        for name, whole in results.items():
-            for shape, part in zip(shapes[name], (whole.real, whole.imag), strict=False):
-                rows.append(part if shape == whole.shape else np.empty(shape))
-                if shape != whole.shape:
-                    narrow.append((part, rows[-1]))
-        self.runner(numbers.arrays(self.flat), rows, numbers.extent, threads)
+        for array, parts in zip(arrays, layout.parts, strict=True):
+            if parts is None:
+                rows.append(array)
+            elif parts is WHOLE:
+                rows.append(array.real)
+                rows.append(array.imag)
+            else:
+                for part, shape in zip((array.real, array.imag), parts, strict=False):
+                    rows.append(part if shape == array.shape else np.empty(shape))
+                    if shape != array.shape:
+                        narrow.append((part, rows[-1]))
+        self.runner(inputs, rows, extent, threads)
         for part, row in narrow:
             part[...] = row
-        return results
+        return arrays
+
+
+# The layouts of so many calls are kept.
+LAYOUTS_KEPT = 4
+# Both parts of a vector vary as it does.
+WHOLE: list[tuple[int, int]] = []
+
+
+class ResultLayout(NamedTuple):
+    """The arrays of a program's results for designs x poses.
+
+    `made` are shapes and types of those that no caller gives. `parts` are, for each, the shapes of what is computed
+    where an array holds more; else WHOLE of a vector, None of a number.
+    """
+
+    made: list[tuple[tuple[int, ...], np.dtype[Number]]]
+    parts: list[list[tuple[int, int]] | None]
+    are_large: bool
+
+    @classmethod
+    def of(cls, program: ReadyProgram[Any], extent: tuple[int, int], given: Collection[Any]) -> ResultLayout:
+        """Return the arrays of a program's results; those that are given by name are designs x poses."""
+        made, parts = [], []
+        for name, nodes in program.nodes.items():
+            shapes = [program.flat.shape(k, *extent) for k in nodes]
+            whole = extent if name in given else np.broadcast_shapes(*shapes)
+            narrow = any(shape != whole for shape in shapes)
+            parts.append(shapes if narrow else WHOLE if len(nodes) > 1 else None)
+            if name not in given:
+                made.append((whole, COMPLEX if len(nodes) > 1 else FLOAT))
+        return cls(made, parts, are_large(made))
+
+    def empty(self) -> list[Number]:
+        """Return the arrays that are made."""
+        return empty_arrays(self.made) if self.are_large else [np.empty(shape, kind) for shape, kind in self.made]

@@ -14,7 +14,7 @@ from compoundkin.kinematics.configuration import SIGNS, Configuration, named
 from compoundkin.kinematics.solution import first_configuration, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.call_numbers import Call, check_threads, output_arrays
+from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.derivatives.path_objective import ObjectivePose, PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities, SensitivityPrograms
 from compoundkin.programs.dimensions import (
@@ -28,7 +28,6 @@ from compoundkin.programs.dimensions import (
 from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.path_programs import PathPrograms
 from compoundkin.programs.path_values import PathValues
-from compoundkin.programs.quick_calls import QuickCalls
 from compoundkin.programs.recording.recorded_motion import output_of
 from compoundkin.programs.sources.path_text import WritesSources
 from compoundkin.structure.kinematic_structure import Structure
@@ -136,18 +135,7 @@ class CompiledPath(WritesSources):
         >>> compile(crank, "B")([0.0])["B"].tolist()
         [(2+0j)]
         """
-        if out is None and time is None and self._quick is not None:
-            quick = self._quick.values(values, dimensions, (speed, acceleration, jerk), threads)
-            if quick is not None:
-                return quick
-        check_threads(threads)
-        programs = self.programs
-        numbers = programs.numbers(Call(values, dimensions, speed, acceleration, jerk, time))
-        return programs.computed(numbers, threads, output_arrays(out, programs.outputs_of(numbers), numbers.shape))
-
-    @cached_property
-    def _quick(self) -> QuickCalls | None:
-        return QuickCalls.of(self.programs)
+        return self.programs.values(Call(values, dimensions, speed, acceleration, jerk, time), out, threads)
 
     @property
     def modes(self) -> str | Configuration:

@@ -19,7 +19,6 @@ import numpy as np
 from compoundkin.base.arguments import real_numbers
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
-from compoundkin.kinematics.curve.change_points import NEAR
 from compoundkin.kinematics.curve.driver_path import SPACING
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
@@ -27,6 +26,7 @@ from compoundkin.model.geometry import vector
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.graph.operation_graph import DRIVE, SEED, InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS, TOTAL
+from compoundkin.programs.limit_screening import safe_margin
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 
@@ -115,17 +115,17 @@ class JaxPath(ShortRepr):
         return inputs
 
     def _certain(self, margin: Any, drives: Mapping[InputNumber, Any]) -> Any:
-        """Tell which designs need no near-limit screening, as `limit_screening.safe_margin` has it."""
+        """Tell which designs need no near-limit screening, by the bound of `safe_margin`."""
         import jax.numpy as jnp
 
         if not margin.ndim:
-            return margin >= NEAR
+            return margin >= safe_margin(1.0)
         longest, order = jnp.ones(()), self.path.reference.solving_order
         for one, value in drives.items():
             if one.part == "0" and jnp.ndim(value) and jnp.shape(value)[-1] > 1:
                 steps = jnp.max(jnp.abs(jnp.diff(jnp.asarray(value))), axis=-1)
                 longest = jnp.maximum(longest, steps / (order.unit(one.name) * SPACING))
-        return jnp.min(margin, axis=-1) >= NEAR * longest**2
+        return jnp.min(margin, axis=-1) >= safe_margin(longest)
 
     def __repr__(self) -> str:
         return f"JaxPath({', '.join(output.name for output in self.path.outputs)})"

@@ -21,7 +21,6 @@ from compoundkin.kinematics.curve.driver_path import MOST, SPACING, approach, dr
 from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, InputNumber
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
@@ -49,18 +48,25 @@ class ScreenedDesigns(ShortRepr):
         return np.setdiff1d(np.flatnonzero(self.failed.any(axis=1)), self.to_solve)
 
 
-def safe_margin(order: SolvingOrder, numbers: CallNumbers) -> float:
-    """Return the margin above which a design needs no screening; it grows with the square of the longest step."""
-    return NEAR * max(1.0, _longest_step(order, numbers)) ** 2
+def safe_margin(longest: Any) -> Any:
+    """Return the margin above which a design needs no screening, of JAX or of NumPy.
+
+    It grows with the square of the longest step of a driver, in the spacings at which `solve` searches for change
+    points; steps below one count as one.
+    """
+    return NEAR * longest**2
 
 
-def _longest_step(order: SolvingOrder, numbers: CallNumbers) -> float:
-    """Return the longest step of a driver, in spacings at which `solve` searches for change points."""
+def _longest_step(spacings: Mapping[str, float], values: Mapping[str, Number]) -> float:
+    """Return the longest step of a driver, in its spacing."""
     longest = 0.0
-    for name, value in numbers.driver_values.items():
+    for name, value in values.items():
         if value.shape[1] > 1:
-            steps = value[:, 1:] - value[:, :-1]
-            longest = max(longest, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
+            row = value[0]
+            steps = row[1:] - row[:-1] if len(value) == 1 else (value[:, 1:] - value[:, :-1]).ravel()
+            # places of the extremes are found in less time than their values
+            farthest = max(steps.item(steps.argmax()), -steps.item(steps.argmin()))
+            longest = max(longest, farthest / spacings[name])
     return min(longest, float(MOST))
 
 
@@ -71,15 +77,32 @@ class LimitScreening(ShortRepr):
         self.recording, self.approach, self.backend = recording, approach, backend
         self._ready: dict[Any, ReadyProgram[int]] = {}
 
+    def is_clear(self, values: Mapping[str, Number], least: Number) -> bool:
+        """Tell whether surely no design needs screening, as `needed` finds out of all of them."""
+        margin = least.item() if least.size == 1 else float(least.min())
+        return (
+            margin >= NEAR
+            and margin >= self._safe_margin(values)
+            and (self.approach.is_passed(values) or not self._squares)
+        )
+
+    def _safe_margin(self, values: Mapping[str, Number]) -> float:
+        return float(safe_margin(max(1.0, _longest_step(self._spacings, values))))
+
+    @cached_property
+    def _spacings(self) -> Mapping[str, float]:
+        """The spacing of each driver at which `solve` searches for change points."""
+        order = self.recording.solving_order
+        return {name: order.unit(name) * SPACING for name in order.structure.driven}
+
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
         """Return which designs need screening, and which have to be solved whatever it says."""
-        order = self.recording.solving_order
         if numbers.is_seeded:
             # their first poses were solved, and so is the rest near a limit
             known = numbers.given.get(HOLDS, np.ones((1, 1)))[:, 0] != 0.0
-            near = ~(known & (least.min(axis=1) >= safe_margin(order, numbers)))
+            near = ~(known & (least.min(axis=1) >= self._safe_margin(numbers.driver_values)))
             return np.zeros_like(near), near
-        near = ~(least.min(axis=1) >= safe_margin(order, numbers))
+        near = ~(least.min(axis=1) >= self._safe_margin(numbers.driver_values))
         approach = self.approach.values(numbers.driver_values) if self._squares else None
         if any(value.shape[1] > 1 for given, value in numbers.given.items() if given.kind == DIMENSION):
             # designs whose dimensions vary along the motion are solved at once
@@ -124,7 +147,7 @@ class LimitScreening(ShortRepr):
         failed, margin, clear = self._computed(self._poses, numbers)
         failed = failed.astype(np.int32)
         to_solve = np.any((failed == 0) & ~((margin >= CLOSE) & (clear != 0.0)), axis=1)
-        steps = int(np.ceil(_longest_step(self.recording.solving_order, numbers)))
+        steps = int(np.ceil(_longest_step(self._spacings, numbers.driver_values)))
         squares = self._squares if steps else None
         if squares:
             to_solve |= self._touches(squares, numbers, steps)
@@ -219,7 +242,7 @@ class DrawnApproach(ShortRepr):
         self.reference, self.shown = reference, shown
         self._drawn: dict[str, Number | None] = {}
 
-    @property
+    @cached_property
     def has_configuration(self) -> bool:
         """Whether a configuration is given at any pose."""
         return bool(self.shown.poses or self.shown.beside)
@@ -229,7 +252,7 @@ class DrawnApproach(ShortRepr):
 
         `values` are those of the motion, (1 or designs, 1 or poses).
         """
-        if not self.has_configuration or self._is_passed(values):
+        if self.is_passed(values):
             return None
         designs, poses = np.broadcast_shapes(*(value.shape for value in values.values()))
         drives = {name: (value,) for name, value in values.items()}
@@ -245,8 +268,10 @@ class DrawnApproach(ShortRepr):
             self._drawn[name] = value
         return self._drawn[name]
 
-    def _is_passed(self, values: Mapping[str, Number]) -> bool:
-        """Tell whether the only driver surely passes its drawn value."""
+    def is_passed(self, values: Mapping[str, Number]) -> bool:
+        """Tell whether there is none to values, or the only driver surely passes its drawn value."""
+        if not self.has_configuration:
+            return True
         if len(values) != 1:
             return False
         ((name, value),) = values.items()

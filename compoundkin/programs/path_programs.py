@@ -14,7 +14,15 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import Description
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram, call_numbers
+from compoundkin.programs.call_numbers import (
+    Call,
+    CallNumbers,
+    ReadyProgram,
+    call_numbers,
+    check_threads,
+    output_arrays,
+)
+from compoundkin.programs.call_plans import CallPlans
 from compoundkin.programs.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.law_slopes import with_law_slopes
 from compoundkin.programs.dimensions import (
@@ -130,22 +138,55 @@ class PathPrograms(ShortRepr):
             self._programs[numbers.form] = ReadyProgram.of(graph, nodes, numbers, self.chosen_backend, carried)
         return self._programs[numbers.form]
 
+    @cached_property
+    def plans(self) -> CallPlans:
+        """The plans of its calls."""
+        return CallPlans(self)
+
+    def values(self, call: Call, out: Any, threads: Any) -> PathValues:
+        """Return the values of a call; raises InvalidInput for what does not fit."""
+        read = self.plans.read(call)
+        if read is not None and type(threads) is int and threads > 0:
+            program = read.plan.program(None, read, LEAST, self._program_of_inputs)
+            if program is not None:
+                given = {} if out is None else output_arrays(out, self._are_vectors(program.program), read.plan.shape)
+                *arrays, least = program.run(read, threads, given)
+                if self.limits.is_clear(read.driver_values, least):
+                    return self.path_values(read.numbers, arrays, None, read.plan.shape)
+                # a full reading reports values that are not finite
+                return self.checked_values(self.numbers(call), arrays, least)
+        check_threads(threads)
+        numbers = self.numbers(call)
+        given = {} if out is None else output_arrays(out, self._are_vectors(self.program(numbers)), numbers.shape)
+        return self.computed(numbers, threads, given)
+
+    def _program_of_inputs(self, numbers: CallNumbers) -> ReadyProgram[str] | None:
+        """Return the program of numbers without seeds; None where it needs some."""
+        return None if self.variant(numbers.still).seeds else self.program(numbers)
+
     def numbers(self, call: Call, with_slopes: bool = False) -> CallNumbers:
         """Return the numbers of a call, perhaps with the slopes of laws; raises InvalidInput for what does not fit."""
+        read = self.plans.read(call)
+        if read is not None and read.is_finite():
+            numbers = read.numbers()
+            return self.seeds.added(self.variant(numbers.still), numbers)
+        return self._read_in_full(call, with_slopes)
+
+    def _read_in_full(self, call: Call, with_slopes: bool) -> CallNumbers:
         values = dimension_values(self.stated, self.dimensions, call.dimensions)
         order = self.reference.solving_order
         if self.law_numbers:
             check_laws(self.law_numbers, call.dimensions, call.times(order))
         numbers = call_numbers(order, call, values, self.order)
+        self.plans.keep(call, numbers)
         numbers = self.seeds.added(self.variant(numbers.still), numbers)
         return (
             with_law_slopes(numbers, order, call, values, self.order) if with_slopes and self.law_numbers else numbers
         )
 
-    def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
+    def _are_vectors(self, program: ReadyProgram[str]) -> dict[str, bool]:
         """Return the names of its outputs, and which are vectors."""
-        nodes = self.program(numbers).nodes
-        return {name: len(nodes[name]) > 1 for name in self.names}
+        return {name: len(program.nodes[name]) > 1 for name in self.names}
 
     def computed(self, numbers: CallNumbers, threads: int, given: Mapping[str, Number]) -> PathValues:
         """Compute all outputs; those in arrays that are given are written there."""

@@ -110,6 +110,41 @@ def small() -> Times:
     return table(f"a call of {FEW} poses", {**calls(POINT, crank), **in_c(crank), **solved}, 1, 300, "solve")
 
 
+def forms() -> Times:
+    """The forms of a call of 361 poses, one pose, and sums of one design, with the fastest back end."""
+    crank, name = np.linspace(0.0, 2 * np.pi, FEW), back_ends()[0]
+    path = ck.compile(six_bar.mechanism(), POINT, free=FREE, backend=name)
+    cost = ck.compile(six_bar.mechanism(), POINT[:1], free=FREE, backend=name).objective(
+        lambda at: abs(at["G.position"] - at["target"]) ** 2
+    )
+    point = {"crank.D": six_bar.ED, "plate.A": six_bar.DA, "plate.C": six_bar.DC, "rocker.A": six_bar.AB}
+    out = {output: np.empty(FEW, complex) for output in POINT}
+    several, target, one = crank.tolist(), six_bar.by_hand(crank)["G"][0], np.array([0.7])
+    subjects: Subjects = {
+        "array": lambda: path(crank, speed=six_bar.SPEED),
+        "one pose": lambda: path(one, speed=six_bar.SPEED),
+        "one number": lambda: path(0.7, speed=six_bar.SPEED),
+        "out=": lambda: path(crank, speed=six_bar.SPEED, out=out),
+        "time=": lambda: path(0.0, speed=six_bar.SPEED, time=crank),
+        "list": lambda: path(several, speed=six_bar.SPEED),
+        "np.float64": lambda: path(crank, speed=np.float64(six_bar.SPEED)),
+        "design": lambda: path(crank, point, speed=six_bar.SPEED),
+        "objective": lambda: cost(crank, point, target=target),
+        "gradient": lambda: cost.gradient(crank, point, target=target),
+    }
+    return table(f"forms of a call of {FEW} poses", {**subjects, **in_c(crank)}, 1, 500, "array")
+
+
+def into_arrays() -> Times:
+    """Position, velocity and acceleration of G, into arrays that are there."""
+    crank = np.linspace(0.0, 2 * np.pi, MANY)
+    subjects = calls(POINT, crank, out={output: np.empty(MANY, complex) for output in POINT})
+    if in_c(crank):
+        kept = [np.empty(MANY, complex) for _ in POINT]
+        subjects["C, vectors"] = lambda: six_bar_in_c.compiled("vectors")(crank, kept)
+    return table(f"one point into kept arrays, {MANY:,} poses", subjects, MANY, 100, "C, vectors")
+
+
 def designs() -> Times:
     """Many designs with eight free dimensions: outputs, an objective, its gradient."""
     random, crank = np.random.default_rng(0), np.linspace(0.0, 2 * np.pi, FEW)
@@ -198,5 +233,16 @@ def beginnings() -> None:
 
 
 if __name__ == "__main__":
-    for part in (one_point, all_outputs, small, designs, threads, pylinkage, class_three, beginnings):
+    for part in (
+        one_point,
+        into_arrays,
+        all_outputs,
+        small,
+        forms,
+        designs,
+        threads,
+        pylinkage,
+        class_three,
+        beginnings,
+    ):
         part()

@@ -57,6 +57,17 @@ def test_small_calls(installed: list[str]) -> None:
     assert min(times[TAPE]) < 90e-6 * NOISE
 
 
+def test_every_form_of_a_call_is_quick(installed: list[str]) -> None:
+    times = programs.forms()
+    for name in times:
+        if name not in ("array", *programs.in_c(np.zeros(8))):
+            assert shortest(times, name, "array") < 1.6 * NOISE, name
+
+
+def test_results_into_arrays(installed: list[str]) -> None:
+    assert shortest(programs.into_arrays(), LLVM, C) < 1.1 * NOISE
+
+
 def test_designs(installed: list[str]) -> None:
     times: Mapping[str, list[float]] = programs.designs()
     assert min(times[f"{LLVM}, order 2"]) < 1.1 * NOISE * min(times["C, vectors, order 2"])

@@ -251,3 +251,64 @@ def test_wrong_objects_in_a_call_are_refused_by_errors_of_the_package():
         except Exception as error:
             offenders.append(f"{key}={wrong!r:.40}: {type(error).__name__}: {str(error)[:80]}")
     assert not offenders, "\n".join(offenders)
+
+
+FORMS = {
+    "array": (CRANK, {}),
+    "one pose": (0.7, {}),
+    "list": (CRANK.tolist(), {}),
+    "by name": ({"crank": CRANK}, {"speed": {"crank": 2.0}}),
+    "number of NumPy": (np.array(0.7), {"speed": np.float64(2.0), "acceleration": 0}),
+    "designs": (CRANK, {"dimensions": {"crank.D": COLUMN, "plate.A.y": 0.1}}),
+    "axes of designs": (CRANK + np.array([0.0, 0.1])[:, None, None], {"dimensions": {"crank.D": COLUMN}, "speed": 3.0}),
+    "time": (0.2, {"time": np.linspace(0.0, 1.0, 40), "speed": 2.0, "acceleration": 0.3}),
+    "uniform motion": (0.2, {"time": np.linspace(0.0, 1.0, 40), "speed": 2.0}),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_call_by_its_plan_is_that_which_was_read_in_full(form):
+    values, more = FORMS[form]
+    path = ck.compile(loaded("six-bar"), OUTPUTS, free=["crank.D", "plate.A.y"])
+    first = path(values, **more)
+    (plan,) = path.programs.plans.known
+    second, motion = path(values, **more), path(values, **more).motion()
+    assert path.programs.plans.known == (plan,)
+    for name in OUTPUTS:
+        np.testing.assert_array_equal(second[name], first[name])
+        one = first[name].reshape(-1, first.shape[-1] if first.shape else 1)[0]
+        np.testing.assert_allclose(solved(motion, name).ravel(), one, atol=1e-11 * np.abs(one).max(), rtol=0)
+
+
+def test_numbers_of_a_known_form_are_held_to_what_they_must_be(path):
+    column, times = COLUMN.copy(), np.linspace(0.0, 1.0, 9)
+    for _ in range(2):
+        path(CRANK, {"crank.D": column}, speed=2.0)
+        path(0.1, time=times)
+    for given in ({"values": CRANK * np.nan}, {"speed": np.inf}, {"dimensions": {"crank.D": column * np.nan}}):
+        with pytest.raises(InvalidInput, match="not finite"):
+            path(**{"values": CRANK, "dimensions": {"crank.D": column}, "speed": 2.0, **given})
+    with pytest.raises(InvalidInput, match="not finite"):
+        path(0.1, time=times * np.nan)
+    with pytest.warns(LikelySlip, match="look like degrees"):
+        path(np.arange(200.0) * 5.0, {"crank.D": column}, speed=2.0)
+    # a rate that is zero in one call of a form and not in the next
+    resting, moving = (path(CRANK, {"crank.D": column}, speed=speed)["G.acceleration"] for speed in (0.0, 2.0))
+    assert np.all(resting == 0.0)
+    assert np.all(moving != 0.0)
+
+
+def test_sums_by_a_plan_are_those_that_were_read_in_full(path):
+    cost = path.objective(lambda at: abs(at["G.position"] - at["target"]) ** 2)
+    target = path(CRANK)["G.position"] + 1.0
+    for aim in (target, target.real):
+        (one, slopes), (two, again) = (cost.gradient(CRANK, {"crank.D": 14.1}, target=aim) for _ in range(2))
+        assert one == two == cost(CRANK, {"crank.D": 14.1}, target=aim)
+        assert slopes == again
+        step = 1e-6
+        beside = [cost(CRANK, {"crank.D": 14.1 + d}, target=aim) for d in (step, -step)]
+        np.testing.assert_allclose(slopes["crank.D"].real, (beside[0] - beside[1]) / (2.0 * step), rtol=1e-6)
+    with pytest.raises(InvalidInput, match="target: the value is empty or not finite"):
+        cost(CRANK, {"crank.D": 14.1}, target=target * np.nan)
+    with pytest.raises(UnknownName, match="aim"):
+        cost(CRANK, {"crank.D": 14.1}, aim=target)

@@ -38,7 +38,14 @@ def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
     for k in range(order + 1):
         total = values[-1] if k < len(values) else 0.0
         for j in range(len(values) - 2, k - 1, -1):
-            total = total * t / (j - k + 1) + values[j]
+            if type(total) is float and total == 0.0 and type(values[j]) is float:
+                total = 0.0 + values[j]  # at all times
+            else:
+                total = (total * t / (j - k + 1) if j > k else total * t) + values[j]
+        if k < len(values) - 1 and type(total) is float and isinstance(t, np.ndarray):
+            everywhere = np.empty(t.shape)
+            everywhere.fill(total)
+            total = everywhere
         found.append(as_number(total))
     return from_derivatives(found)
 
@@ -58,7 +65,7 @@ def from_derivatives(derivatives: list[Number]) -> Series:
 
 def as_number(value: Number) -> Number:
     """Return a number as Python's, an array as it is."""
-    return float(value) if np.ndim(value) == 0 else value
+    return value if isinstance(value, np.ndarray) and value.ndim else float(value)
 
 
 def check_law_numbers(law: Any, *names: str) -> None:

@@ -24,7 +24,13 @@ import numpy as np
 
 from compoundkin.programs.backends.llvm_arrays import FIRST_OBJECT, RECORDS_ARE_KNOWN, array_records, layout_of
 from compoundkin.programs.backends.llvm_plan import ARRAY_KIND, DESIGNS_AT_ONCE, HEADER, NUMBER_KIND, LanePlan, Machine
-from compoundkin.programs.backends.llvm_program import ANGLE_TOO_LARGE, FITS_NOT, program_text, segment_length
+from compoundkin.programs.backends.llvm_program import (
+    ANGLE_TOO_LARGE,
+    FITS_NOT,
+    program_text,
+    segment_length,
+    segments_of,
+)
 from compoundkin.programs.backends.runner import run_in_threads
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 
@@ -42,7 +48,7 @@ class PlannedCode:
     def __init__(self, plan: LanePlan) -> None:
         self.plan = plan
         self.code = compile_text(program_text(plan))
-        self.run = self.code.run
+        self.run, self.run_all = self.code.run, self.code.run_all
         self._own = threading.local()
 
     def scratch(self) -> int:
@@ -56,6 +62,12 @@ class PlannedCode:
             words[first + ARRAY_KIND], words[first + NUMBER_KIND] = id(np.ndarray), id(np.dtype(float))
             self._own.words, self._own.address = words, address
             return address
+
+    def whole(self, objects: int, shape: tuple[int, int]) -> int:
+        """Run all designs and segments; answer 0, or why not."""
+        designs, poses = shape
+        length = segment_length(poses)
+        return self.run_all(objects, self.scratch(), designs, poses, length, segments_of(poses, length))  # type: ignore[no-any-return]
 
     def part(self, objects: int, shape: tuple[int, int], *bounds: int, sums: int | None = None, last: int = 1) -> int:
         """Run some designs and segments; answer 0, or why not."""
@@ -111,11 +123,10 @@ class LlvmRunner:
 def _run_code(code: PlannedCode, objects: int, shape: tuple[int, int], threads: int) -> int:
     """Run all designs and poses, in so many threads."""
     designs, poses = shape
-    threads = min(threads, designs * poses // POSES_PER_THREAD + 1)
-    length = segment_length(poses)
-    segments = max(-(-poses // length), 1)
+    threads = threads if threads == 1 else min(threads, designs * poses // POSES_PER_THREAD + 1)
     if threads == 1:
-        return code.part(objects, shape, 0, designs, 0, segments)
+        return code.whole(objects, shape)
+    segments = segments_of(poses, segment_length(poses))
     if code.plan.axis == BY_DESIGN or designs >= min(threads, DESIGNS_AT_ONCE):
         step = code.plan.width * -(-designs // (threads * code.plan.width))
         parts = [(objects, shape, k, min(k + step, designs), 0, segments) for k in range(0, designs, step)]
@@ -154,6 +165,7 @@ NUMBER, PLACE = ctypes.c_ssize_t, ctypes.c_void_p
 
 
 RUN = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, *[NUMBER] * 6, PLACE, NUMBER, NUMBER)
+RUN_ALL = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, *[NUMBER] * 4)
 
 
 @dataclass(frozen=True)
@@ -162,6 +174,7 @@ class CompiledCode:
 
     engine: Any
     run: Any
+    run_all: Any
 
 
 @cache
@@ -210,7 +223,8 @@ def compile_text(text: str) -> CompiledCode:
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
     engine.add_object_file(llvm.ObjectFileRef.from_data(content))
     engine.finalize_object()
-    return CompiledCode(engine, RUN(engine.get_function_address("run")))
+    run, run_all = (engine.get_function_address(name) for name in ("run", "run_all"))
+    return CompiledCode(engine, RUN(run), RUN_ALL(run_all))
 
 
 # The environment variable that names the folder.

@@ -49,12 +49,26 @@ ARGUMENTS = "ptr %O, ptr %S, i64 %D, i64 %P, i64 %d0, i64 %d1, i64 %s0, i64 %s1,
 RUN = f"define i32 @run({ARGUMENTS}) #0 {{"
 
 
+# All designs and segments in one call: every argument costs as much as a dozen poses.
+RUN_ALL = """define i32 @run_all(ptr %O, ptr %S, i64 %D, i64 %P, i64 %L, i64 %s1) #0 {
+  %answer = call i32 @run(ptr %O, ptr %S, i64 %D, i64 %P, i64 0, i64 %D, i64 0, i64 %s1, ptr null, i64 1, i64 %L)
+  ret i32 %answer
+}"""
+
+
 FITS_NOT, ANGLE_TOO_LARGE = 1, 2
 
 
 def segment_length(poses: int) -> int:
     """Return how many poses a segment has, whoever computes it."""
-    return max(-(-poses // (SEGMENTS * POSES_TOGETHER)) * POSES_TOGETHER, SHORTEST_SEGMENT)
+    if poses <= SEGMENTS * SHORTEST_SEGMENT:
+        return SHORTEST_SEGMENT
+    return -(-poses // (SEGMENTS * POSES_TOGETHER)) * POSES_TOGETHER
+
+
+def segments_of(poses: int, length: int) -> int:
+    """Return how many segments of a length poses have, at least one."""
+    return -(-poses // length) or 1
 
 
 def program_text(plan: LanePlan) -> str:
@@ -71,7 +85,7 @@ def program_text(plan: LanePlan) -> str:
     if plan.staged:
         parts.append(staging_text(plan, PARAMETERS))
         declared.add("declare void @llvm.prefetch.p0(ptr, i32, i32, i32)")
-    parts.append(_by_poses(plan) if plan.axis == BY_POSE else _by_designs(plan))
+    parts += [_by_poses(plan) if plan.axis == BY_POSE else _by_designs(plan), RUN_ALL]
     width = 64 * min(plan.machine.lanes, 8)
     vectors = f'"prefer-vector-width"="{width}" "min-legal-vector-width"="{width}"'
     # registers that do not last are put on the stack: in whole cache lines only if it starts at one

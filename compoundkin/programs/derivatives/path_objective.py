@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial, reduce
+from functools import cached_property, partial, reduce
 from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compoundkin.base.arguments import checked, planar_numbers, real_numbers
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import (
@@ -22,8 +22,16 @@ from compoundkin.base.errors import (
     suggestion,
     warn,
 )
-from compoundkin.kinematics.driver_values import fit
-from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram, check_threads, numbers_of_designs
+from compoundkin.programs.call_numbers import (
+    Call,
+    CallNumbers,
+    ReadyProgram,
+    check_threads,
+    numbers_of_designs,
+    parameter_inputs,
+    with_parameters,
+)
+from compoundkin.programs.call_plans import CallPlans
 from compoundkin.programs.derivatives.differentiation import reverse
 from compoundkin.programs.derivatives.law_slopes import slope_inputs, summed_slopes
 from compoundkin.programs.derivatives.solved_inputs import (
@@ -33,7 +41,7 @@ from compoundkin.programs.derivatives.solved_inputs import (
     known_poses,
     solved_inputs,
 )
-from compoundkin.programs.graph.operation_graph import PARAMETER, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import TOTAL
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_number import RecordedNumber, one_pose, selected
@@ -55,7 +63,10 @@ class PathObjective(ShortRepr):
     function: Callable[[ObjectivePose], Any]
     _programs: dict[Any, ReadyProgram[str]] = field(default_factory=dict)
 
-    @checked
+    @cached_property
+    def _plans(self) -> CallPlans:
+        return CallPlans(self.path)
+
     def __call__(
         self,
         values: Any = None,
@@ -79,10 +90,9 @@ class PathObjective(ShortRepr):
         >>> float(cost([0.0, 0.0], {"crank.B": 3.0}, target=1.0))
         8.0
         """
-        numbers = self.path.numbers(Call(values, dimensions, speed, acceleration, jerk, time))
-        return self._computed(numbers, given, False, threads)[0]
+        call = Call(values, dimensions, speed, acceleration, jerk, time)
+        return (self._planned(call, given, False, threads) or self._in_full(*call, False, threads, **given))[0]
 
-    @checked
     def gradient(
         self,
         values: Any = None,
@@ -108,17 +118,51 @@ class PathObjective(ShortRepr):
         >>> float(value), complex(slope["crank.B"])
         (2.0, (4+0j))
         """
-        numbers = self.path.numbers(Call(values, dimensions, speed, acceleration, jerk, time), with_slopes=True)
-        return self._computed(numbers, given, True, threads)
+        call = Call(values, dimensions, speed, acceleration, jerk, time)
+        return self._planned(call, given, True, threads) or self._in_full(*call, True, threads, **given)
 
-    def _computed(
-        self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
+    def _planned(
+        self, call: Call, given: Mapping[str, Any], is_sloped: bool, threads: Any
+    ) -> tuple[Any, dict[str, Any]] | None:
+        """Return sum and slopes of a call that is read by its plan; None of others."""
+        read = self._plans.read((*call, given))
+        if read is None or type(threads) is not int or threads < 1:
+            return None
+        program = read.plan.program(is_sloped, read, _MARGIN, partial(self._program_of_inputs, given, is_sloped))
+        if program is None:
+            return None
+        found = ObjectiveValues.of(program.program, program.run(read, threads))
+        if self.path.limits.is_clear(read.driver_values, found.least):
+            return found.shaped(read.plan.shape)
+        return self._screened(read.numbers(), given, is_sloped, threads, found) if read.is_finite() else None
+
+    @checked
+    def _in_full(
+        self,
+        values: Any,
+        dimensions: Mapping[str, Any] | None,
+        speed: Any,
+        acceleration: Any,
+        jerk: Any,
+        time: Any,
+        is_sloped: bool,
+        threads: int,
+        **given: Any,
     ) -> tuple[Any, dict[str, Any]]:
-        """Return sum and slopes; designs that come near a limit are computed again with masks."""
+        """Return sum and slopes; raises InvalidInput for what does not fit."""
+        call = Call(values, dimensions, speed, acceleration, jerk, time)
+        numbers = self.path.numbers(call, with_slopes=is_sloped)
         check_threads(threads)
-        whole, complex_names = with_parameters(numbers, given)
-        run, path = partial(self._run, complex_names, is_sloped, threads), self.path
-        first = run(whole, ALL_POSES)
+        whole = with_parameters(numbers, given)
+        self._plans.keep((*call, given), whole)
+        first = self._run(given, is_sloped, threads, whole, ALL_POSES)
+        return self._screened(whole, given, is_sloped, threads, first)
+
+    def _screened(
+        self, whole: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int, first: ObjectiveValues
+    ) -> tuple[Any, dict[str, Any]]:
+        """Return sum and slopes of what was computed first; designs near a limit are computed again with masks."""
+        run, path = partial(self._run, given, is_sloped, threads), self.path
         screened = path.limits.screen(whole, first.least)
         if screened is None:
             return first.shaped(whole.shape)
@@ -135,17 +179,33 @@ class PathObjective(ShortRepr):
             warn(f"{of_all}: numpy.where(at.assembled, ..., 0.0) leaves them out", UnassembledPoses)
         return joined.shaped(whole.shape)
 
-    def _run(
-        self, given: Mapping[str, bool], is_sloped: bool, threads: int, numbers: CallNumbers, known: str
-    ) -> ObjectiveValues:
-        key = numbers.form, tuple(given.items()), is_sloped, known
+    def _program_of_inputs(
+        self, given: Mapping[str, Any], is_sloped: bool, numbers: CallNumbers
+    ) -> ReadyProgram[str] | None:
+        """Return the program of numbers without seeds; None where it needs some."""
+        if self.path.variant(numbers.still).seeds:
+            return None
+        return self._program(given, is_sloped, numbers, ALL_POSES)
+
+    def _program(
+        self, given: Mapping[str, Any], is_sloped: bool, numbers: CallNumbers, known: str
+    ) -> ReadyProgram[str]:
+        # which parameters are complex decides on their inputs
+        kinds = {name: np.iscomplexobj(value) for name, value in sorted(given.items())}
+        key = numbers.form, tuple(kinds.items()), is_sloped, known
         if key not in self._programs:
             path = self.path
             by = slope_inputs(path.dimensions, path.order) if is_sloped else {}
-            form = ObjectiveForm(self.function, given, by, known)
+            form = ObjectiveForm(self.function, kinds, by, known)
             variant = path.variant(numbers.still, known == SOLVED_POSES)
             self._programs[key] = objective_program(variant, path.names, numbers, form, path.chosen_backend)
-        values = ObjectiveValues.of(self._programs[key].run(numbers, threads))
+        return self._programs[key]
+
+    def _run(
+        self, given: Mapping[str, Any], is_sloped: bool, threads: int, numbers: CallNumbers, known: str
+    ) -> ObjectiveValues:
+        program = self._program(given, is_sloped, numbers, known)
+        values = ObjectiveValues.of(program, program.run(numbers, threads).values())
         if not (is_sloped and self.path.law_numbers):
             return values
         return replace(values, slopes=summed_slopes(self.path.dimensions, numbers, values.slopes, self.path.order))
@@ -184,9 +244,10 @@ class ObjectiveValues(ShortRepr):
     slopes: Mapping[str, Number]
 
     @classmethod
-    def of(cls, found: Mapping[str, Number]) -> ObjectiveValues:
-        """Return the results of a program by name."""
-        return cls(found[_SUM], found[_MARGIN], {k: slope for k, slope in found.items() if k not in (_SUM, _MARGIN)})
+    def of(cls, program: ReadyProgram[str], found: Iterable[Number]) -> ObjectiveValues:
+        """Return the results of a program: sum and margin come first."""
+        (_, value), (_, least), *slopes = zip(program.nodes, found, strict=True)
+        return cls(value, least, dict(slopes))
 
     @classmethod
     def joined(cls, count: int, parts: Sequence[tuple[Number, ObjectiveValues]]) -> ObjectiveValues:
@@ -209,9 +270,13 @@ class ObjectiveValues(ShortRepr):
     def shaped(self, shape: tuple[int, ...]) -> tuple[Any, dict[str, Any]]:
         """Return sum and slopes in the shape of the call; slopes along the motion keep the last axis."""
 
+        designs = shape[:-1]
+
         def formed(array: Number) -> Any:
-            over = shape if array.shape[1] > 1 else shape[:-1]
-            whole = array if array.size == prod(over) else np.broadcast_to(array, (prod(shape[:-1]), array.shape[1]))
+            if not designs and array.size == 1:
+                return array.reshape(())
+            over = shape if array.shape[1] > 1 else designs
+            whole = array if array.size == prod(over) else np.broadcast_to(array, (prod(designs), array.shape[1]))
             return whole.reshape(over)
 
         return formed(self.value), {name: formed(slope) for name, slope in self.slopes.items()}
@@ -270,11 +335,6 @@ class ObjectivePose:
         return f"ObjectivePose({', '.join(self._known)})"
 
 
-def parameter_inputs(name: str, is_complex: bool) -> tuple[InputNumber, ...]:
-    """Return the real inputs of a parameter."""
-    return tuple(InputNumber(PARAMETER, name, part) for part in (("x", "y") if is_complex else ("",)))
-
-
 def record_objective(
     function: Callable[[ObjectivePose], Any],
     graph: OperationGraph,
@@ -310,34 +370,3 @@ def record_objective(
     if graph.is_truth(cost.x):
         return graph.apply("select", cost.x, graph.constant(1.0), graph.constant(0.0))
     return cost.x
-
-
-def with_parameters(numbers: CallNumbers, given: Mapping[str, Any]) -> tuple[CallNumbers, dict[str, bool]]:
-    """Return the numbers of a call with those given by name.
-
-    It tells of each name whether it is complex. Raises InvalidInput for what is no number, not finite, or does not
-    broadcast.
-    """
-    arrays = {name: _parameter_array(name, value) for name, value in sorted(given.items())}
-    shape = numbers.shape
-    for name, array in arrays.items():
-        try:
-            shape = np.broadcast_shapes(shape, array.shape)
-        except ValueError:
-            what = f"shape {array.shape} does not broadcast with {shape}"
-            raise InvalidInput(Problem(name, what, "the last axis is the motion")) from None
-    found = numbers.reshaped(shape)
-    more = dict(found.given)
-    for name, array in arrays.items():
-        whole = np.atleast_2d(fit(shape)(array))
-        for part, number in zip(parameter_inputs(name, np.iscomplexobj(array)), (whole.real, whole.imag), strict=False):
-            more[part] = np.asarray(number, float)
-    return replace(found, given=more), {name: np.iscomplexobj(array) for name, array in arrays.items()}
-
-
-def _parameter_array(name: str, value: Any) -> Number:
-    planar = planar_numbers(name, value)
-    array = planar if np.iscomplexobj(value) else real_numbers(name, value)
-    if array.size == 0 or not np.isfinite(array).all():
-        raise InvalidInput(Problem(name, "the value is empty or not finite"))
-    return array
