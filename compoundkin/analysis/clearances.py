@@ -105,11 +105,13 @@ class ClearanceCourse(ShortRepr):
 
     def between(self, which: Number, places: Number) -> Number:
         """Return the clearances of bodies, by their indices, at places along the motion, (n,), NaN without assembly."""
-        moved = between(self.motion, self.design, places, 0)
+        # many bodies are compared at the same places: these are solved once
+        there, at = np.unique(places, return_inverse=True)
+        moved = between(self.motion, self.design, there, 0)
         found = np.full(len(places), np.nan)
-        closed = np.flatnonzero(moved.failed[0] == 0)
+        closed = np.flatnonzero(moved.failed[0][at] == 0)
         z, u = (
-            np.array([_at_places(part, closed) for part in parts]).reshape(-1, len(closed))
+            np.array([_at_places(part, at[closed]) for part in parts]).reshape(-1, len(closed))
             for parts in ([moved.poses[link].z for link in self._rows], [moved.poses[link].u for link in self._rows])
         )
         least = np.full(len(closed), np.inf)
