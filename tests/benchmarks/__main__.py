@@ -1,155 +1,221 @@
-"""Speed, as ratios measured side by side in one run: ``python -m tests.benchmarks`` (a minute and a half).
+"""Speed in one table, each subject beside others that ran in the same rounds: ``python -m tests.benchmarks``.
 
-Compared are, for the six-bar of Example 3-4 with position, velocity and acceleration:
-
-* NumPy written out by hand for this one mechanism, over whole arrays (`six_bar.by_hand`),
-* the usual loop of SciPy's `fsolve` over the poses, with analytic Jacobian (`six_bar.by_fsolve`), timed on
-  a few hundred poses and extrapolated,
-* pylinkage's kernels compiled by numba, for the part of it that they can do (`four_bar`); left out where
-  pylinkage or numba is not installed.
-
-Times are medians, ratios medians over rounds in which each subject ran once. "solved" is `solve` alone,
-"and asked" also reads every quantity that the others compute. `test_ratios.py` checks that all agree, and
-the goals; it and the other tests here run with
+It takes two minutes; ``--save`` writes the table into `docs/benchmarks.md`, as that of this version, with the machine.
+Compared are the six-bar of Example 3-4 with C written by hand (eight poses at a time, and plainly), with NumPy written
+by hand and with the usual loop of SciPy's `fsolve`; the four-bar in it with other packages, as far as they are
+installed (`rivals`); and the start of commands with that of NumPy. Times are medians, ratios medians over rounds in
+which each subject ran once. ``python -m tests.benchmarks.programs`` and ``.studies`` go into more detail;
+`test_ratios.py` checks that all agree, and the goals:
 ``python -m pytest -c tests/benchmarks/pytest.ini tests/benchmarks``, never with the ordinary tests.
 """
 
 from __future__ import annotations
 
-import tracemalloc
-from collections.abc import Callable
+import argparse
+import os
+import platform
+import re
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import compoundkin as ck
-from tests.benchmarks import four_bar, six_bar
+from tests.benchmarks import four_bar, growth, rivals, six_bar, six_bar_in_c
 from tests.benchmarks.measure import Times, commands, interleaved, ratio
 
-MANY, FEW, LOOPED, VARIANTS, DESIGNS = 36_000, 361, 300, 1_000_000, 4096
+MANY, FEW, LOOPED, DESIGNS = 36_000, 361, 181, 4096
+POINT = ("G.position", "G.velocity", "G.acceleration")
+OF_C = ("C.position", "C.velocity", "C.acceleration")
+PAGE = Path(__file__).parents[2] / "docs" / "benchmarks.md"
+HEAD = "| task | by | time | beside |\n|---|---|---|---|"
 
 
-def hand_and_loop() -> None:
-    """36,000 poses of the six-bar, order 2."""
-    crank, plan = np.linspace(0.0, 2 * np.pi, MANY), six_bar.mechanism()
-    some = crank[: LOOPED * (MANY // LOOPED) : MANY // LOOPED]
+class Row(NamedTuple):
+    """A line of the table."""
 
-    def solved() -> ck.results.Motion:
-        return ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
-
-    fast = interleaved(
-        {"hand": lambda: six_bar.by_hand(crank), "solved": solved, "asked": lambda: six_bar.asked(solved())}, 40
-    )
-    loop = interleaved({"loop": lambda: six_bar.by_fsolve(some)}, 3)
-    heading(f"six-bar, {MANY:,} poses, position + velocity + acceleration")
-    for name, label in (("hand", "NumPy by hand"), ("solved", "solved"), ("asked", "solved and asked")):
-        best = min(fast[name]) / min(fast["hand"])
-        row(label, median(fast[name]) / MANY, f"{ratio(fast, name, 'hand'):.2f} x by hand ({best:.2f} of the best)")
-    each = median(loop["loop"]) / LOOPED
-    row("fsolve loop", each, f"{each / (median(fast['asked']) / MANY):,.0f} x solved and asked")
+    task: str
+    by: str
+    time: str
+    beside: str
 
 
-def pylinkage() -> None:
-    """36,000 poses of the four-bar with its coupler point."""
-    heading(f"four-bar with coupler point, {MANY:,} poses (pylinkage has no swinging guide)")
-    crank, plan = np.arange(1, MANY + 1) * (2 * np.pi / MANY), four_bar.mechanism()
-    for order, what in ((1, "velocity"), (2, "acceleration")):
-        try:
-            kernel = four_bar.by_pylinkage(order)
-        except ImportError as missing:
-            print(f"  left out: {missing}")
-            return
-
-        def asked(order: int = order) -> Any:
-            return four_bar.asked(ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED, order=order), order)
-
-        times = interleaved({"pylinkage": lambda k=kernel: k(MANY), "asked": asked}, 20)
-        row(f"pylinkage to {what}", median(times["pylinkage"]) / MANY, "")
-        row("solved and asked", median(times["asked"]) / MANY, f"{ratio(times, 'pylinkage', 'asked'):.1f} x faster")
+def compared(task: str, subjects: Mapping[str, Callable[[], Any]], count: int, rounds: int, beside: str) -> list[Row]:
+    """Return a row for each subject: the time of one of `count`, and how many times as long as one of them it takes."""
+    times = interleaved(subjects, rounds)
+    return [Row(task, name, shown(median(own) / count), _beside(times, name, beside)) for name, own in times.items()]
 
 
-def forces() -> None:
-    """Reactions in all pairs of the six-bar, beside the cost of its motion."""
-    crank, plan = np.linspace(0.0, 2 * np.pi, MANY), six_bar.loaded()
-    motion = ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
-    heading(f"six-bar with masses and loads, {MANY:,} poses, forces in all pairs")
-    times = interleaved(
-        {
-            "solved": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED),
-            "forces": lambda: ck.force_analysis(motion),
-        },
-        40,
-    )
-    row("solved", median(times["solved"]) / MANY, "")
-    row("forces", median(times["forces"]) / MANY, f"{ratio(times, 'forces', 'solved'):.2f} x the motion")
-    lengths = np.linspace(26.0, 30.0, DESIGNS)[:, None]
-    sweep = six_bar.loaded(rocker=lengths, plate=lengths + 11.0)
-    solved = ck.solve(sweep, {"crank": np.linspace(0.0, 2 * np.pi, FEW)}, speed=six_bar.SPEED)
-    task(f"{DESIGNS:,} designs of {FEW} poses", DESIGNS * FEW, lambda: ck.force_analysis(solved).motion)
+def _beside(times: Times, name: str, beside: str) -> str:
+    return f"{ratio(times, name, beside):.2f} x {beside}" if name != beside and beside in times else ""
 
 
-def small() -> None:
-    """361 poses, imports, and the command line."""
-    crank, plan = np.linspace(0.0, 2 * np.pi, FEW), six_bar.mechanism()
-    heading("small tasks")
-    times = interleaved({"solve": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)}, 200)
-    row(f"solve {FEW} poses", median(times["solve"]), f"{min(times['solve']) * 1e3:.2f} ms at best")
-    verb = "from compoundkin.cli import main; main()"
-    starts = commands(
-        {
-            "numpy": ["-c", "import numpy"],
-            "compoundkin": ["-c", "import compoundkin"],
-            "structure": ["-c", verb, "structure", "catalog/six-bar.toml"],
-        },
-        7,
-    )
-    row("import compoundkin", median(starts["compoundkin"]), f"{beyond(starts, 'compoundkin'):.3f} s beyond numpy's")
-    row("compoundkin structure", median(starts["structure"]), f"{beyond(starts, 'structure'):.3f} s beyond numpy's")
-
-
-def large() -> None:
-    """Designs, and a group without a closed form."""
-    heading("large tasks (memory beyond the arguments)")
-    lengths = np.linspace(26.0, 30.0, VARIANTS)[:, None]
-    sweep = six_bar.mechanism(rocker=lengths, plate=lengths + 11.0)
-    task(f"{VARIANTS:,} designs, one pose", VARIANTS, lambda: ck.solve(sweep, {"crank": [0.7]}, speed=six_bar.SPEED))
-    designs = six_bar.mechanism(rocker=np.linspace(26.0, 30.0, 1000)[:, None])
-    full = np.linspace(0.0, 2 * np.pi, FEW)
-    task(f"1,000 designs of {FEW} poses", 1000 * FEW, lambda: ck.solve(designs, {"crank": full}, speed=six_bar.SPEED))
-    triad = ck.load("catalog/class-iii-six-bar.toml")
-    turn = np.linspace(0.0, 2 * np.pi, MANY)
-    task(f"class III group, {MANY:,} poses", MANY, lambda: ck.solve(triad, {"crank": turn}, speed=six_bar.SPEED))
-
-
-def task(label: str, poses: int, call: Callable[[], ck.results.Motion]) -> None:
-    """One row: time a pose, time in all, and the highest memory."""
-    times = interleaved({"it": call}, 3)
-    tracemalloc.start()
-    motion = call()
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    closed = int(np.count_nonzero(motion.assembled))
-    seconds = min(times["it"])
-    row(label, seconds / poses, f"{seconds:.2f} s, {peak / 1e6:,.0f} MB, {closed:,} assembled")
-
-
-def beyond(times: Times, name: str) -> float:
-    """The seconds of a start beyond that of Python with NumPy."""
-    return median(a - b for a, b in zip(times[name], times["numpy"], strict=True))
+def shown(seconds: float) -> str:
+    """Return a time with three digits."""
+    scale, unit = next((s, u) for s, u in ((1e9, "ns"), (1e6, "us"), (1e3, "ms"), (1.0, "s")) if seconds * s < 1e3)
+    return f"{seconds * scale:.3g} {unit}"
 
 
 def heading(text: str) -> None:
-    """A line above a table."""
+    """Print a line above a table."""
     print(f"\n{text}")
 
 
 def row(label: str, seconds: float, note: str) -> None:
-    """One line of a table."""
-    scale, unit = next((s, u) for s, u in ((1e9, "ns"), (1e6, "us"), (1e3, "ms"), (1.0, "s ")) if seconds * s < 1e3)
-    print(f"  {label:30s} {seconds * scale:8.1f} {unit}   {note}")
+    """Print one line of a table."""
+    print(f"  {label:30s} {shown(seconds):>12s}   {note}")
+
+
+def in_c(crank: Any) -> dict[str, Callable[[], Any]]:
+    """Return C by hand, where there is gcc."""
+    try:
+        return {f"C, {kind}": lambda kind=kind: six_bar_in_c.asked(kind, crank) for kind in six_bar_in_c.TEXTS}  # type: ignore[misc]
+    except OSError:
+        return {}
+
+
+def six_bar_rows() -> Iterator[Row]:
+    """The six-bar's point G with velocity and acceleration, a long motion and a short one."""
+    plan = six_bar.mechanism()
+    path = ck.compile(plan, POINT)
+    for count, rounds in ((MANY, 25), (FEW, 200)):
+        crank = np.linspace(0.0, 2 * np.pi, count)
+
+        def solved(crank: Any = crank) -> list[Any]:
+            motion = ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
+            return [motion.points["G"].derivative(k) for k in range(3)]
+
+        subjects: dict[str, Callable[[], Any]] = {
+            **in_c(crank),
+            "program": lambda crank=crank: path({"crank": crank}, speed=six_bar.SPEED),  # type: ignore[misc]
+            "NumPy by hand": lambda crank=crank: six_bar.by_hand(crank),  # type: ignore[misc]
+            "solve": solved,
+        }
+        beside = "C, vectors" if "C, vectors" in subjects else "program"
+        yield from compared(f"six-bar, G to acceleration, {count:,} poses, each", subjects, count, rounds, beside)
+    some = np.linspace(0.0, 2 * np.pi, LOOPED)
+    loop = {"program": lambda: path({"crank": some}, speed=six_bar.SPEED), "fsolve": lambda: six_bar.by_fsolve(some)}
+    yield from compared(f"six-bar, {LOOPED} poses, each", loop, LOOPED, 3, "program")
+    one = np.array([0.7])
+    calls = {"one pose": lambda: path({"crank": one}, speed=six_bar.SPEED), "a number": lambda: path(0.7, speed=10.0)}
+    yield from compared("a call of the six-bar's program", calls, 1, 300, "one pose")
+
+
+def four_bar_rows() -> Iterator[Row]:
+    """The four-bar's coupler point by other packages, as far as they are installed."""
+    plan = four_bar.mechanism()
+    path = ck.compile(plan, OF_C)
+    for count, names in ((MANY, ("pylinkage", "kinepy")), (LOOPED, ("kimech", "mechanism"))):
+        crank = np.linspace(0.0, 2 * np.pi, count)
+        subjects: dict[str, Callable[[], Any]] = {
+            "program": lambda crank=crank: path({"crank": crank}, speed=six_bar.SPEED),  # type: ignore[misc]
+            "solve": lambda crank=crank: four_bar.asked(ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED), 2),  # type: ignore[misc]
+        }
+        for name in names:
+            try:
+                subjects[name] = rival(name, count)
+            except ImportError as missing:
+                print(f"left out: {name}: {missing}")
+        yield from compared(f"four-bar, C to acceleration, {count:,} poses, each", subjects, count, 5, "program")
+
+
+def rival(name: str, count: int) -> Callable[[], Any]:
+    """Return another package's answer. Raises ImportError where it is missing."""
+    if name == "pylinkage":
+        kernel = four_bar.by_pylinkage(2)
+        return lambda: kernel(count)
+    return rivals.BY[name](count)
+
+
+def force_rows() -> Iterator[Row]:
+    """Forces in all pairs beside the motion; designs; a group without a closed form; a machine that runs."""
+    crank, plan = np.linspace(0.0, 2 * np.pi, MANY), six_bar.loaded()
+    motion = ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
+    tasks: dict[str, Callable[[], Any]] = {
+        "solve": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED),
+        "forces in all pairs": lambda: ck.force_analysis(motion),
+    }
+    yield from compared(f"six-bar with masses and loads, {MANY:,} poses, each", tasks, MANY, 15, "solve")
+    lengths, few = np.linspace(26.0, 30.0, DESIGNS)[:, None], np.linspace(0.0, 2 * np.pi, FEW)
+    sweep = six_bar.mechanism(rocker=lengths, plate=lengths + 11.0)
+    designs = {"solve": lambda: ck.solve(sweep, {"crank": few}, speed=six_bar.SPEED)}
+    yield from compared(f"{DESIGNS:,} designs of {FEW} poses, each pose", designs, DESIGNS * FEW, 2, "solve")
+    triad = ck.load("class-iii-six-bar")
+    general = {"solve": lambda: ck.solve(triad, {"crank": crank}, speed=six_bar.SPEED)}
+    yield from compared(f"class III group, {MANY:,} poses, each", general, MANY, 3, "solve")
+    runs = {"simulate": lambda: ck.simulate(plan, start={"crank": (0.0, 5.0)}, until=2.0)}
+    yield from compared("six-bar with masses and loads, let go for 2 s", runs, 1, 3, "simulate")
+
+
+def start_rows() -> Iterator[Row]:
+    """The start of commands."""
+    verb = "from compoundkin.cli import main; main()"
+    page = str(Path(tempfile.mkdtemp()) / "page.html")
+    codes = {
+        "import numpy": ["-c", "import numpy"],
+        "import compoundkin": ["-c", "import compoundkin"],
+        "structure six-bar": ["-c", verb, "structure", "six-bar"],
+        "report six-bar -o page.html": ["-c", verb, "report", "six-bar", "-o", page],
+    }
+    times = commands(codes, 7)
+    yield from (
+        Row("start", name, shown(median(own)), _beside(times, name, "import numpy")) for name, own in times.items()
+    )
+
+
+def growth_rows() -> Iterator[Row]:
+    """How time grows: its exponent between the two largest sizes."""
+    for name, sizes, seconds, exponent in growth.exponents():
+        counts = ", ".join(f"{size:,}" for size in sizes)
+        yield Row(f"{name}: {counts}", "time", ", ".join(map(shown, seconds)), f"exponent {exponent:.2f}")
+
+
+def machine() -> str:
+    """Return what the machine is."""
+    try:
+        found = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text("ascii", "replace"))
+        processor = found[1] if found else platform.processor()
+    except OSError:
+        processor = platform.processor()
+    try:
+        compiler = subprocess.run(
+            ["gcc", "-dumpfullversion"], capture_output=True, text=True, check=True
+        ).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        compiler = "none"
+    cores = f"{os.cpu_count()} cores"
+    return f"{processor}, {cores}; Python {platform.python_version()}, NumPy {np.__version__}, gcc {compiler}"
+
+
+def saved(rows: list[str]) -> None:
+    """Write the table of this version into the page, in place of one of the same version."""
+    from compoundkin.base.version import VERSION
+
+    text = "\n".join([f"## {VERSION}", "", f"On {machine()}.", "", HEAD, *rows, ""])
+    page = PAGE.read_text("utf-8")
+    before, *versions = re.split(r"(?m)^(?=## )", page)
+    others = [one for one in versions if not one.startswith(f"## {VERSION}\n")]
+    PAGE.write_text("\n".join([before.rstrip(), "", text, *others]).rstrip() + "\n", "utf-8")
+
+
+def main() -> None:
+    """Measure all, print it line by line, and save it if so asked."""
+    parser = argparse.ArgumentParser(description="Speed beside C, NumPy and other packages, in one table.")
+    parser.add_argument("--save", action="store_true", help="write the table into docs/benchmarks.md")
+    save = parser.parse_args().save
+    print(f"On {machine()}.\n\n{HEAD}")
+    rows = []
+    for part in (six_bar_rows, four_bar_rows, force_rows, start_rows, growth_rows):
+        for one in part():
+            rows.append(f"| {' | '.join(one)} |")
+            print(rows[-1], flush=True)
+    if save:
+        saved(rows)
 
 
 if __name__ == "__main__":
-    for part in (hand_and_loop, pylinkage, forces, small, large):
-        part()
+    main()
