@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import reduce
+from functools import cached_property, reduce
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -14,6 +14,7 @@ from compoundkin.base.bracketing import false_position
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, compose_series
 from compoundkin.kinematics.block import (
+    Block,
     Root,
     blocks,
     places,
@@ -98,14 +99,16 @@ def pass_through(curve: ConfigurationCurve, near: Iterable[int]) -> Configuratio
         return curve
     asked, todo = set(near), [solver.index for solver in curve.solving_order.solvers if solver.modes_may_meet]
     found, samples, beside = curve, dict[int, Number](), _BesideChangePoints()
-    missed = dict(curve.near_misses)
+    missed, shared = dict(curve.near_misses), _SharedSlopes(curve, {})
     for k in todo:
         if k in found.flips:
             continue
         places, common = list[Place](), beside.common(found, k)
         if k in asked:
-            samples = samples or _near_samples(found, sorted(n for n in asked if n in todo and n >= k))
-            passed = [_passed(found, k, known, common) for known in _known(found, k, samples[k])]
+            if not samples:
+                samples = _near_samples(found, sorted(n for n in asked if n in todo and n >= k))
+                shared = _SharedSlopes(found, samples)
+            passed = [_passed(found, k, known, common) for known in _known(found, k, samples[k], shared)]
             places = [place for each in passed for place in each.places]
             missed[k] = tuple(place for each in passed for place in each.missed)
         places += common
@@ -198,12 +201,34 @@ def _beside(values: Number, count: int) -> tuple[Number, Number]:
 FAR = 0.2
 
 
+class _SharedSlopes:
+    """The slopes of several groups' squares at all samples that any of them is near at.
+
+    One run of all groups tells them, where a run of all groups before it for each took the square of their number. Of
+    more samples than a sweep has, every group is run at its own: there arithmetic counts, not how often it is begun.
+    """
+
+    def __init__(self, curve: ConfigurationCurve, near: Mapping[int, Number]) -> None:
+        self.curve, self.groups = curve, tuple(near)
+        every = np.logical_or.reduce([*near.values()]) if near else np.zeros((0, 0), dtype=bool)
+        self.asked = np.nonzero(every)
+        self.is_made = len(near) > 1 and len(self.asked[0]) <= POSES_OF_A_SWEEP
+        self.row = np.cumsum(every).reshape(every.shape) - 1
+
+    def at(self, k: int, designs: Number, samples: Number) -> list[_Slopes]:
+        """Return the slopes of a group's squares at samples."""
+        rows = self.row[designs, samples]
+        return [_Slopes(*(column[rows] for column in each)) for each in self._found[k]]
+
+    @cached_property
+    def _found(self) -> Mapping[int, list[_Slopes]]:
+        designs, samples = self.asked
+        return _plain_slopes(self.curve, self.groups, designs, self.curve.path.samples[samples])
+
+
 def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Number) -> list[_Slopes]:
     """Return the slopes of a group's squares at places."""
-    beside: Number = np.zeros(len(places), dtype=bool)
-    for n, flips in curve.flips.items():
-        if n < k:
-            beside |= np.any(np.abs(flips[designs] - places[:, None]) < FAR, axis=1)
+    beside = _beside_earlier(curve, k, designs, places)
     parts = [np.flatnonzero(which) for which in (beside, ~beside) if which.any()]
     found = [_some_slopes(curve, k, designs[part], places[part], bool(beside[part[0]])) for part in parts]
     if len(parts) == 1:
@@ -213,21 +238,57 @@ def _slopes_at(curve: ConfigurationCurve, k: int, designs: Number, places: Numbe
     return [_Slopes(*(column[order] for column in each)) for each in joined]
 
 
+def _beside_earlier(curve: ConfigurationCurve, k: int, designs: Number, places: Number) -> Number:
+    """Return which places are next to change points of earlier groups."""
+    beside: Number = np.zeros(len(places), dtype=bool)
+    for n, flips in curve.flips.items():
+        if n < k:
+            beside |= np.any(np.abs(flips[designs] - places[:, None]) < FAR, axis=1)
+    return beside
+
+
 def _some_slopes(curve: ConfigurationCurve, k: int, designs: Number, places: Number, has_roots: bool) -> list[_Slopes]:
     part = curve.path.pick(designs, places)
     groups, found = [n for n in curve.flips if n < k and has_roots], []
     onward, sense = curve.path.onward(curve.solving_order, designs, places)
     spots = (places + SAME * sense)[:, None] if groups else places[:, None], designs[:, None]
     for name in curve.path.moving:
-        rates = {
-            n: (v[0], curve.solving_order.unit_in(part.ends, n) if n == name else 0.0) for n, v in part.drives.items()
-        }
-        along = part.driven(rates)
+        along = _along(curve, part, name)
         roots, _ = roots_along(curve, along, spots, groups, onward)
         found.append(squares(curve, along, spots, k, roots, 2 + (EXTRA if roots else 0)))
+    return _slopes_of(found)
+
+
+def _slopes_of(found: Sequence[Squares]) -> list[_Slopes]:
+    """Return the slopes of a group's squares, which are given along each driver."""
     both = ((each.discriminant for each in found), (each.meeting for each in found if each.meeting))
     bounds = (TOUCHING, TOUCHING**2)
     return [_slopes(columns, bound) for columns, bound in zip(map(list, both), bounds, strict=True) if columns]
+
+
+def _plain_slopes(
+    curve: ConfigurationCurve, groups: Sequence[int], designs: Number, places: Number
+) -> dict[int, list[_Slopes]]:
+    """Return the slopes of the squares of groups at places, by one run of all groups for each driver."""
+    part, spots = curve.path.pick(designs, places), (places[:, None], designs[:, None])
+    found: dict[int, list[Squares]] = {k: [] for k in groups}
+    for name in curve.path.moving:
+        along = _along(curve, part, name)
+        notes: dict[int, list[Series]] = {k: [] for k in groups}
+        roots = {k: recorded_root(noted) for k, noted in notes.items()}
+        block = curve.run(along, 2, *spots, max(groups) + 1, roots)
+        for k, noted in notes.items():
+            found[k].append(_squares_in(curve, block, k, noted[0], 2, len(places)))
+    return {k: _slopes_of(each) for k, each in found.items()}
+
+
+def _along(curve: ConfigurationCurve, part: Inputs, moving: str) -> Inputs:
+    """Return inputs with one driver that moves at unit rate."""
+    rates = {
+        name: (v[0], curve.solving_order.unit_in(part.ends, name) if name == moving else 0.0)
+        for name, v in part.drives.items()
+    }
+    return part.driven(rates)
 
 
 def _near_samples(curve: ConfigurationCurve, groups: Sequence[int]) -> dict[int, Number]:
@@ -260,13 +321,17 @@ def _may_pass(sines: Number) -> Number:
     return found
 
 
-def _known(curve: ConfigurationCurve, k: int, near: Number) -> list[_Known]:
+def _known(curve: ConfigurationCurve, k: int, near: Number, shared: _SharedSlopes) -> list[_Known]:
     """Return what is known of a group's squares at some samples, (designs, samples)."""
     designs, samples = np.nonzero(near)
     if not len(designs):
         return []
-    parts = (slice(i, i + POSES_OF_A_SWEEP) for i in range(0, len(designs), POSES_OF_A_SWEEP))
-    found = [_slopes_at(curve, k, designs[part], curve.path.samples[samples[part]]) for part in parts]
+    places = curve.path.samples[samples]
+    if shared.is_made and not _beside_earlier(curve, k, designs, places).any():
+        found = [shared.at(k, designs, samples)]
+    else:
+        parts = (slice(i, i + POSES_OF_A_SWEEP) for i in range(0, len(designs), POSES_OF_A_SWEEP))
+        found = [_slopes_at(curve, k, designs[part], places[part]) for part in parts]
     slopes = (reduce(_Slopes.joined, each) for each in zip(*found, strict=True))
     return [_Known(designs, samples, each, square) for square, each in enumerate(slopes)]
 
@@ -456,15 +521,20 @@ def squares(
     notes: list[Series] = []
     order = order + 2 * len(roots)
     block = curve.run(part, order, places, designs, k + 1, {**roots, k: recorded_root(notes)})
+    return _squares_in(curve, block, k, notes[0], order, len(places))
+
+
+def _squares_in(curve: ConfigurationCurve, block: Block, k: int, noted: Series, order: int, count: int) -> Squares:
+    """Return the squares of a group in a block that was run, by coefficients, (count,) each."""
 
     def column(c: tuple[Number, ...]) -> list[Number]:
         padded = [*c, *[0.0] * (order + 1 - len(c))]
-        return [np.broadcast_to(np.reshape(x, (-1,)) if np.ndim(x) else x, (len(places),)) for x in padded]
+        return [np.broadcast_to(np.reshape(x, (-1,)) if np.ndim(x) else x, (count,)) for x in padded]
 
     line = block.meetings.get(k)
-    size = size_in(part.ends, curve.solving_order.size)
+    size = size_in(block.ends, curve.solving_order.size)
     meeting = None if line is None else column(tuple(c / size**2 for c in line.abs2().c))
-    return Squares(column(notes[0].c), meeting)
+    return Squares(column(noted.c), meeting)
 
 
 def roots_along(

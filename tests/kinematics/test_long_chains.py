@@ -1,0 +1,39 @@
+"""Work on long chains of groups grows with their number: groups are counted as they are assembled, not timed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.kinematics.groups.dyad import DyadSolver
+from tests.benchmarks.growth import chain
+
+
+def assembled(monkeypatch: pytest.MonkeyPatch, dyads: int) -> int:
+    """How often a group is assembled while a chain is solved at 37 poses."""
+    count, close = [0], DyadSolver.close
+
+    def counted(self: DyadSolver, *given: object) -> None:
+        count[0] += 1
+        close(self, *given)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as patched:
+        patched.setattr(DyadSolver, "close", counted)
+        motion = ck.solve(chain(dyads), {"crank": np.linspace(0.0, 2 * np.pi, 37)})
+    assert motion.assembled.all()
+    return count[0]
+
+
+def test_groups_are_assembled_a_few_times_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every group comes near a limit; each was looked at by a run of all groups before it, which grew as the square."""
+    few, many = assembled(monkeypatch, 8), assembled(monkeypatch, 64)
+    assert many <= 8.5 * few
+
+
+def test_a_long_chain_is_what_its_beginning_is_alone() -> None:
+    """A part of a chain does not see what follows it."""
+    turn = {"crank": np.linspace(0.0, 2 * np.pi, 37)}
+    short, long = ck.solve(chain(5), turn), ck.solve(chain(40), turn)
+    for name in short.points:
+        assert np.array_equal(short.points[name].position, long.points[name].position)
