@@ -129,6 +129,10 @@ def turns_above(angle: Number, low: Number, turn: Number = TURN) -> Number:
     return turn * np.floor((angle - low) / turn)
 
 
+# Less than half a turn, by more than rounding.
+HALF_TURN = 3.14
+
+
 def unwrapped(angle: Number) -> Number:
     """Make an angle continuous along the last axis, over gaps of NaN too.
 
@@ -137,6 +141,14 @@ def unwrapped(angle: Number) -> Number:
     """
     if np.ndim(angle) == 0 or np.shape(angle)[-1] < 2:
         return angle
+    spread = np.max(angle) - np.min(angle) if np.size(angle) else np.nan
+    if spread < HALF_TURN:
+        return angle  # no step is of half a turn, as of most links
+    if np.size(angle) == np.shape(angle)[-1] and np.isfinite(spread):
+        row = np.ravel(angle)
+        # the sums of turns below decide on the sign of a negative zero
+        if not np.signbit(row[row == 0.0]).any():
+            return _unwrapped_row(row).reshape(np.shape(angle))
     turns = np.rint((angle[..., 1:] - angle[..., :-1]) * (0.5 / np.pi))
     if not turns.any():
         return angle
@@ -147,6 +159,19 @@ def unwrapped(angle: Number) -> Number:
         known = ~np.isnan(row)
         row[known] = np.unwrap(row[known])
     return rows.reshape(np.shape(angle))
+
+
+def _unwrapped_row(angle: Number) -> Number:
+    """Make one row of finite angles continuous, piece by piece between its jumps."""
+    steps = angle[1:] - angle[:-1]
+    jumps = np.flatnonzero(np.abs(steps) > HALF_TURN)
+    turns = np.cumsum(np.rint(steps[jumps] * (0.5 / np.pi)))
+    if not turns.any():
+        return angle
+    found = np.array(angle)
+    for first, end, turn in zip(jumps + 1, np.append(jumps[1:] + 1, len(angle)), turns, strict=True):
+        found[first:end] -= 2.0 * np.pi * turn
+    return found
 
 
 # --- values at one design and pose ---

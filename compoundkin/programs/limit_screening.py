@@ -22,7 +22,8 @@ from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, InputNumber
+from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import LEAST
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 
@@ -57,17 +58,41 @@ def safe_margin(longest: Any) -> Any:
     return NEAR * longest**2
 
 
-def _longest_step(spacings: Mapping[str, float], values: Mapping[str, Number]) -> float:
-    """Return the longest step of a driver, in its spacing."""
-    longest = 0.0
-    for name, value in values.items():
-        if value.shape[1] > 1:
-            row = value[0]
-            steps = row[1:] - row[:-1] if len(value) == 1 else (value[:, 1:] - value[:, :-1]).ravel()
-            # places of the extremes are found in less time than their values
-            farthest = max(steps.item(steps.argmax()), -steps.item(steps.argmin()))
-            longest = max(longest, farthest / spacings[name])
-    return min(longest, float(MOST))
+def _longest_step(value: Number) -> float:
+    """Return the longest step of a driver from pose to pose."""
+    row = value[0]
+    steps = row[1:] - row[:-1] if len(value) == 1 else (value[:, 1:] - value[:, :-1]).ravel()
+    # places of the extremes are found in less time than their values
+    return float(max(steps.item(steps.argmax()), -steps.item(steps.argmin())))
+
+
+# Values from which on a program finds the longest step in less time than NumPy.
+MANY_VALUES = 4_096
+
+
+class StepProgram(ShortRepr):
+    """A program of the longest step of a driver from pose to pose, for many poses."""
+
+    def __init__(self, backend: str | None) -> None:
+        self.backend = backend
+        self._ready: dict[bool, ReadyProgram[str]] = {}
+
+    def longest(self, value: Number) -> float:
+        """Return the longest step among a driver's values, (1 or designs, poses)."""
+        designs, poses = value.shape
+        if (designs > 1) not in self._ready:
+            self._ready[designs > 1] = self._made(value)
+        # a step has no sign: the order of the two makes no difference
+        (least,) = self._ready[designs > 1].computed([value[:, :-1], value[:, 1:]], (designs, poses - 1))
+        return -float(least.item() if least.size == 1 else least.min())
+
+    def _made(self, value: Number) -> ReadyProgram[str]:
+        graph = OperationGraph()
+        ends = [InputNumber(DRIVE, "", part) for part in ("before", "after")]
+        numbers = CallNumbers(dict.fromkeys(ends, value), value.shape, frozenset())
+        step = graph.apply("abs", graph.apply("sub", *map(graph.input, ends)))
+        least = graph.apply(LEAST, graph.apply("neg", step))
+        return ReadyProgram.of(graph, {"": (least,)}, numbers, self.backend)
 
 
 class LimitScreening(ShortRepr):
@@ -87,7 +112,20 @@ class LimitScreening(ShortRepr):
         )
 
     def _safe_margin(self, values: Mapping[str, Number]) -> float:
-        return float(safe_margin(max(1.0, _longest_step(self._spacings, values))))
+        return float(safe_margin(max(1.0, self._longest_step(values))))
+
+    def _longest_step(self, values: Mapping[str, Number]) -> float:
+        """Return the longest step of a driver, in its spacing."""
+        longest = 0.0
+        for name, value in values.items():
+            if value.shape[1] > 1:
+                step = _longest_step(value) if value.size < MANY_VALUES else self._steps.longest(value)
+                longest = max(longest, step / self._spacings[name])
+        return min(longest, float(MOST))
+
+    @cached_property
+    def _steps(self) -> StepProgram:
+        return StepProgram(self.backend)
 
     @cached_property
     def _spacings(self) -> Mapping[str, float]:
@@ -147,7 +185,7 @@ class LimitScreening(ShortRepr):
         failed, margin, clear = self._computed(self._poses, numbers)
         failed = failed.astype(np.int32)
         to_solve = np.any((failed == 0) & ~((margin >= CLOSE) & (clear != 0.0)), axis=1)
-        steps = int(np.ceil(_longest_step(self._spacings, numbers.driver_values)))
+        steps = int(np.ceil(self._longest_step(numbers.driver_values)))
         squares = self._squares if steps else None
         if squares:
             to_solve |= self._touches(squares, numbers, steps)

@@ -218,7 +218,9 @@ class PathPrograms(ShortRepr):
     ) -> PathValues:
         """Return outputs by name; angles are unwrapped along the motion in place."""
         for k in self._wrapped:
-            arrays[k][...] = self.outputs[k].continuous(arrays[k])
+            found = self.outputs[k].continuous(arrays[k])
+            if found is not arrays[k]:
+                arrays[k][...] = found
         return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solve, shape, screened)
 
     @cached_property

@@ -46,6 +46,14 @@ def test_angles_are_unwrapped_row_by_row_over_gaps() -> None:
     assert found[1, 2] == pytest.approx(TURN - 1.0)
 
 
+@given(steps=st.lists(st.floats(-3.1, 3.1), min_size=1, max_size=60), start=st.floats(-3.0, 3.0))
+def test_one_row_is_unwrapped_as_it_was_before_it_was_wrapped(steps: list[float], start: float) -> None:
+    angles = np.cumsum([start, *steps])
+    found = unwrapped(np.asarray(wrapped(angles)))
+    np.testing.assert_allclose(found, angles - angles[0] + wrapped(angles[0]), atol=1e-12)
+    np.testing.assert_array_equal(unwrapped(np.array([wrapped(angles)] * 2)), [found, found])
+
+
 @pytest.mark.parametrize("shape", [(), (4,), (1,), (3, 1), (1, 4), (3, 4), (1, 1)])
 def test_an_entry_is_that_of_the_broadcast_array(shape: tuple[int, ...]) -> None:
     value = np.arange(float(np.prod(shape))).reshape(shape)

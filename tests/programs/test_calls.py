@@ -312,3 +312,18 @@ def test_sums_by_a_plan_are_those_that_were_read_in_full(path):
         cost(CRANK, {"crank.D": 14.1}, target=target * np.nan)
     with pytest.raises(UnknownName, match="aim"):
         cost(CRANK, {"crank.D": 14.1}, aim=target)
+
+
+@pytest.mark.parametrize("poses", [4096, 5003])
+def test_many_poses_are_those_of_few(path, poses):
+    crank = np.linspace(0.3, 6.0, poses)
+    whole, parts = path(crank, speed=2.0), [path(part, speed=2.0) for part in np.array_split(crank, 7)]
+    for name in OUTPUTS[:2]:
+        np.testing.assert_array_equal(whole[name], np.concatenate([part[name] for part in parts]))
+    # one step that is too long for a margin is found among many
+    far = crank.copy()
+    far[poses // 2 :] += 2.0
+    motion = ck.solve(path.mechanism(), far, modes=path.modes)
+    np.testing.assert_allclose(path(far)["G.position"], motion.points["G"].position, atol=1e-11)
+    assert path(far).screened is not None
+    assert whole.screened is None

@@ -42,6 +42,10 @@ POSES_PER_THREAD = 8_192
 FEW_POSES = 12
 
 
+# Poses of a design from which on they are worth code of their own, without masks: it takes a tenth less.
+LONG_POSES = 4_096
+
+
 class PlannedCode:
     """The code for one plan, with scratch for each thread."""
 
@@ -80,7 +84,7 @@ class LlvmRunner:
     def __init__(self, program: FlatProgram) -> None:
         self.program = program
         self._codes: dict[Any, PlannedCode] = {}
-        self._recent: dict[tuple[int, bool], PlannedCode] = {}
+        self._recent: dict[tuple[int, bool, bool], PlannedCode] = {}
         carried = {one.given for one in program.carried}
         self._given = [i for i, k in enumerate(program.inputs) if k not in carried]
 
@@ -91,7 +95,8 @@ class LlvmRunner:
         designs, poses = shape
         by_designs = designs > 1 and poses < FEW_POSES and poses < designs
         axis = BY_DESIGN if by_designs or self.program.carried else BY_POSE
-        way = (axis, designs == 1 and axis == BY_POSE)
+        is_single = designs == 1 and axis == BY_POSE
+        way = (axis, is_single, is_single and poses >= LONG_POSES and host_target()[0].has_masks)
         code = self._recent.get(way)
         answer = FITS_NOT
         arrays = (*inputs, *outputs)
@@ -100,7 +105,9 @@ class LlvmRunner:
         if answer:
             self._other_way(answer, way, (inputs, outputs), shape, threads)
 
-    def _other_way(self, answer: int, way: tuple[int, bool], arrays: Any, shape: tuple[int, int], threads: int) -> None:
+    def _other_way(
+        self, answer: int, way: tuple[int, bool, bool], arrays: Any, shape: tuple[int, int], threads: int
+    ) -> None:
         """Run the code that suits the arrays, or the angles."""
         program = self.program
         inputs, outputs = arrays
@@ -113,10 +120,10 @@ class LlvmRunner:
             answer = _run_code(self._code(way, layout, True), objects, shape, threads)
         assert not answer
 
-    def _code(self, way: tuple[int, bool], layout: Any, wide: bool) -> PlannedCode:
+    def _code(self, way: tuple[int, bool, bool], layout: Any, wide: bool) -> PlannedCode:
         key = (way, layout, wide)
         if key not in self._codes:
-            self._codes[key] = PlannedCode(LanePlan(self.program, way[0], layout, host_target()[0], wide, way[1]))
+            self._codes[key] = PlannedCode(LanePlan(self.program, way[0], layout, host_target()[0], wide, *way[1:]))
         return self._codes[key]
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, FlatProgram
+from compoundkin.programs.graph.operations import TOTAL
 
 # Sections, in the order in which they run, each with what its values are computed for.
 FIXED, BEFORE, ROWS, LOOP, AFTER = "fixed", "before", "rows", "loop", "after"
@@ -70,7 +71,8 @@ def home(program: FlatProgram, node: int) -> str:
 class LanePlan:
     """A program with the axis of its lanes, and where each value is kept.
 
-    `wide` programs ask the system's library for sines and cosines. `is_single` ones have one design.
+    `wide` programs ask the system's library for sines and cosines. `is_single` ones have one design, `is_long` ones
+    many poses of it.
     """
 
     program: FlatProgram
@@ -79,6 +81,17 @@ class LanePlan:
     machine: Machine
     wide: bool = False
     is_single: bool = False
+    is_long: bool = False
+
+    @property
+    def overlaps(self) -> bool:
+        """Whether a last vector that is not full starts earlier, and computes some poses again, instead of masks.
+
+        Sums would count those twice.
+        """
+        graph = self.program.graph
+        counts = any(graph.nodes[k].operation == TOTAL for k in self.reductions)
+        return self.is_long and self.is_single and self.axis == BY_POSE and not counts
 
     @cached_property
     def section_of(self) -> dict[int, str]:

@@ -79,7 +79,8 @@ def program_text(plan: LanePlan) -> str:
     )
     for name in filter(lambda name: _is_used(plan, name), SECTIONS):
         for suffix in ("",) if plan.machine.has_masks else ("", "_rest"):
-            function, declares = function_text(plan, name, bool(suffix) or plan.machine.has_masks, suffix)
+            is_masked = bool(suffix) or (plan.machine.has_masks and not (plan.overlaps and name == LOOP))
+            function, declares = function_text(plan, name, is_masked, suffix)
             parts.append(function)
             declared |= declares
     if plan.staged:
@@ -291,7 +292,11 @@ class _RowLoop:
     def close(self, ends: list[tuple[str, str, int]], large: str | None) -> None:
         """Write the end of a round, and after the last what is kept of it."""
         text, step = self.text, self.text.lanes if self.section.axis == BY_POSE else 1
-        self.phis.append("  %p = phi i64 [ %from, %entry ], [ %next, %head ]")
+        first = "%from"
+        if self.plan.overlaps:
+            last = text.first(f"sub i64 %to, {step}")
+            first = text.first(f"call i64 @llvm.smin.i64(i64 %from, i64 {last})")
+        self.phis.append(f"  %p = phi i64 [ {first}, %entry ], [ %next, %head ]")
         for name, end, word in ends:
             start = text.number(reduction_start(self.plan, self.plan.reductions[word])) if self.plan.width == 1 else ""
             if not start:
@@ -302,8 +307,12 @@ class _RowLoop:
             false = "zeroinitializer" if text.lanes > 1 else "false"
             some = text.truths("or", "%l", large)
             self.phis.append(f"  %l = phi {text.truth} [ {false}, %entry ], [ {some}, %head ]")
-        text.do(f"%next = add i64 %p, {step}")
-        text.do("%more = icmp slt i64 %next, %to")
+        if self.plan.overlaps:
+            text.do(f"%next = call i64 @llvm.smin.i64(i64 {text.put(f'add i64 %p, {step}')}, i64 {last})")
+            text.do(f"%more = icmp slt i64 %p, {last}")
+        else:
+            text.do(f"%next = add i64 %p, {step}")
+            text.do("%more = icmp slt i64 %next, %to")
         text.do("br i1 %more, label %head, label %done")
         text.lines.append("done:")
         for _, end, word in ends:

@@ -60,7 +60,8 @@ class ProgramOutput(NamedTuple):
         if not self.is_wrapped:
             return values
         # the sign of a zero, which no formula keeps, tells half a turn back from half a turn on
-        return unwrapped(np.where(values == -np.pi, np.pi, values))
+        back = values == -np.pi
+        return unwrapped(np.where(back, np.pi, values) if back.any() else values)
 
 
 def output_of(motion: Motion, name: str) -> ProgramOutput:
