@@ -222,6 +222,8 @@ STEADY = "!invariant.load !0"
 
 # Bytes: so far ahead results are prepared for; twelve outputs out of cache then take half the time.
 AHEAD, CACHE_LINE = 512, 64
+# Of more arrays than these nothing is prepared: they would be a tenth faster, and take three times as long to compile.
+MOST_PREPARED = 256
 
 
 class LaneArrays:
@@ -380,6 +382,8 @@ class LaneArrays:
 
     def _prepare(self, place: str, lanes: int) -> None:
         """Write that the cache is asked for what will be written soon: with many outputs it does not see it come."""
+        if self.plan.arrays > MOST_PREPARED:
+            return
         self.text.declared.add("declare void @llvm.prefetch.p0(ptr, i32, i32, i32)")
         for byte in range(AHEAD, AHEAD + 8 * lanes, CACHE_LINE):
             line = self.text.put(f"getelementptr i8, ptr {place}, i64 {byte}")
