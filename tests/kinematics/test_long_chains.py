@@ -26,7 +26,7 @@ def assembled(monkeypatch: pytest.MonkeyPatch, dyads: int) -> int:
 
 
 def test_groups_are_assembled_a_few_times_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Some groups come near a limit; each of these was looked at by a run of all groups before it, which grew as the square."""
+    """Some come near a limit; each of these was looked at by a run of all groups before it: as the square of them."""
     few, many = assembled(monkeypatch, 32), assembled(monkeypatch, 128)
     assert many <= 4.2 * few
 
