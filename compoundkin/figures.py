@@ -47,6 +47,7 @@ from compoundkin.dynamics.driver_course import drive_figures, force_ratio
 from compoundkin.dynamics.equilibria import equilibria
 from compoundkin.dynamics.flywheel import flywheel
 from compoundkin.dynamics.harmonics import harmonics
+from compoundkin.dynamics.intermittent_motion import intermittent_motion
 from compoundkin.dynamics.mass_motion import equivalent_inertia
 from compoundkin.dynamics.motor_sizing import sizing
 from compoundkin.dynamics.strength import strength
@@ -73,6 +74,7 @@ __all__ = [
     "four_bar_code",
     "harmonics",
     "inflection_circle",
+    "intermittent_motion",
     "link_position",
     "linkage_types",
     "mechanical_advantage",

@@ -18,6 +18,7 @@ from compoundkin.analysis.singularities import Singularities, Singularity
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
 from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.intermittent_motion import IntermittentMotion
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.files.exchange.contract import Exported, Imported
@@ -55,6 +56,7 @@ __all__ = [
     "Group",
     "Imported",
     "Interference",
+    "IntermittentMotion",
     "LoopEquations",
     "MechanismComparison",
     "MobilityAnalysis",

@@ -359,6 +359,15 @@ def table_of(motion: AtPoses, *names: str) -> Table:
     return Table(motion.mechanism.title, tuple(columns.values()))
 
 
+def has_quantity(motion: HasQuantities, name: str) -> bool:
+    """Return whether a motion has a quantity of a name."""
+    try:
+        quantity(motion, name)
+    except UnknownName:
+        return False
+    return True
+
+
 def tables_in_a_row(title: str, tables: Sequence[Table]) -> Table:
     """Return tables of several phases as one, with the number of each from 1.
 

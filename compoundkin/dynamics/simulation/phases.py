@@ -25,7 +25,7 @@ from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import KnownState, LinearAngle, pair_named
 from compoundkin.dynamics.simulation.stop_contacts import StopContact
 from compoundkin.kinematics import solve
-from compoundkin.kinematics.configuration import Configuration, placed_at
+from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.fields import point_fields
@@ -77,7 +77,7 @@ def without_pair(state: KnownState, opened: Release, work: float) -> PhaseStart:
     chart: Chart = state.chart
     pair = pair_meant(chart, opened.pair)
     _check_loads(chart.mechanism, pair)
-    items = _opened_items(chart.mechanism, pair)
+    items = opened_items(chart.mechanism, pair)
     driven = chart.start.structure.driven
     dropped = next((name for name, own in driven.items() if own.pair.name == pair.name), "")
     items = [item for item in items if not (isinstance(item, Drive) and item.name == dropped)]
@@ -89,7 +89,7 @@ def without_pair(state: KnownState, opened: Release, work: float) -> PhaseStart:
         body = more[0]
         items = [body if isinstance(item, Link) and item.name == carried.name else item for item in items]
         items, poses = [*items, *more[1:]], {**poses, **carried.poses}
-    base = _written(chart.mechanism, items)
+    base = with_items(chart.mechanism, items)
     known = {name: value for name, value in _driven_values(state).items() if name != dropped}
     kept = tuple(one for one in chart.stop_contacts if pair_meant(chart, one.stop.pair).name != pair.name)
     contact = as_profile_contact(pair)
@@ -98,7 +98,7 @@ def without_pair(state: KnownState, opened: Release, work: float) -> PhaseStart:
         open_contacts = (*open_contacts, OpenContact(contact, chart.mechanism, chart.laws))
     for added in _choices(base):
         try:
-            found = _begun(_written(chart.mechanism, [*items, *added]), state, poses, laws, known)
+            found = _begun(with_items(chart.mechanism, [*items, *added]), state, poses, laws, known)
         except CompoundkinError:
             continue
         return _continued(found, state, work, kept, open_contacts)
@@ -187,7 +187,7 @@ def _check_loads(mechanism: Mechanism, pair: Pair) -> None:
                 raise InvalidInput(Problem(item.where, what, "let it act between points of the two links"))
 
 
-def _opened_items(mechanism: Mechanism, pair: Pair) -> list[Item]:
+def opened_items(mechanism: Mechanism, pair: Pair) -> list[Item]:
     """Return the items without a pair: a written one is left out, at a pin the second link gets a point of its own."""
     gone = (Mode, Expectation)
     items = [item for item in mechanism.items if not isinstance(item, gone) and not _is_of(mechanism, item, pair)]
@@ -223,7 +223,7 @@ def _renamed_point(item: Item, link: str, old: str, new: str) -> Item:
     return changed
 
 
-def _written(mechanism: Mechanism, items: Sequence[Item]) -> Mechanism:
+def with_items(mechanism: Mechanism, items: Sequence[Item]) -> Mechanism:
     """Return a mechanism of other items."""
     outputs = available_outputs(mechanism, [item.name for item in items if isinstance(item, Drive)])
     kept = {pair.name for pair in pairs_among(items)}
@@ -231,7 +231,7 @@ def _written(mechanism: Mechanism, items: Sequence[Item]) -> Mechanism:
     known = {letter for item in items if isinstance(item, Link) for letter in item.points}
     outputs = [name for name in outputs if name.split(".")[0] in known or "." in name]
     outputs = [name for name in outputs if name.split("(")[0].split(".")[0] not in gone]
-    return Mechanism(mechanism.title, *items, units=mechanism.units, outputs=outputs, source=mechanism.source)
+    return Mechanism(mechanism.title, *items, **mechanism.unit_words, outputs=outputs, source=mechanism.source)
 
 
 def _floating(mechanism: Mechanism, items: Sequence[Item], opened: Pair) -> list[str]:
@@ -333,7 +333,7 @@ def _begun(
         sense = float(as_driven(own.pair).driven_by(own.drive.link))
         values[name] = known.get(name, float(np.ravel(series.c[0])[0]) * sense)
         rates[name] = float(np.ravel(series.c[1])[0]) * sense if len(series.c) > 1 else 0.0
-    here = Configuration(structure, values, placed_at(poses, (0, 0)), {}, {}, {})
+    here = Configuration(structure, values, placed_at(poses, (0, 0)), {}, {}, dimensions_at(structure, 0, 0))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FewDigits)
         start = solve(mechanism, {one: [value] for one, value in values.items()}, order=1, modes=here)

@@ -10,14 +10,14 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import Table, quantity, tables_in_a_row
+from compoundkin.kinematics.quantities import Table, has_quantity, quantity, tables_in_a_row
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class Simulation(DisplaysHtml, DisplaysText):
         """
         if len(self.phases) == 1:
             return self.motion.table(*names)
-        wanted = [[name for name in names if _has(phase.motion, name)] for phase in self.phases]
+        wanted = [[name for name in names if has_quantity(phase.motion, name)] for phase in self.phases]
         for name in names:
             if not any(name in own for own in wanted):
                 quantity(self.phases[0].motion, name)  # says what is wrong with it
@@ -77,12 +77,3 @@ class Simulation(DisplaysHtml, DisplaysText):
         title, last = self.phases[0].mechanism.title, float(np.ravel(self.times)[-1])
         events = f", {count_phrase(len(self.events), 'event')}" if self.events else ""
         return f"Simulation({title!r} over {last:.6g} s in {count_phrase(self.steps, 'step')}{events})"
-
-
-def _has(motion: Motion, name: str) -> bool:
-    """Return whether a motion has a quantity."""
-    try:
-        quantity(motion, name)
-    except UnknownName:
-        return False
-    return True

@@ -6,7 +6,7 @@ It is also the remainder of a slide, or of a pin, with a redundant constraint re
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -134,6 +134,28 @@ class Slot(FrictionContact, Guided, TravelLimited, StraightLine):
 def _centre_line(ends: Ends, low: float, high: float) -> Number:
     """Return the centre line of a slot, as far as it is used."""
     return point_array(ends[0].point + ends[0].along.c[0] * place for place in (low, high))
+
+
+def slot_with_ends(pair: Pair) -> TravelLimited | None:
+    """Return a pair as a pin in a slot that has ends, or None."""
+    return pair if isinstance(pair, Slot) and pair.reach is not None else None
+
+
+def letter_in_slot(pair: Pair, link: str) -> str:
+    """Return the point of a link that a slot has: of its line, or its pin."""
+    assert isinstance(pair, Slot)
+    return pair.at if link == pair.link else pair.through
+
+
+def slot_elsewhere(pair: Pair, link: str, letter: str, turned: complex, geometry: Geometry) -> Pair:
+    """Return a slot at another point of one of its links: its line, turned by a unit vector, or its pin."""
+    assert isinstance(pair, Slot)
+    if link == pair.link:
+        return replace(pair, at=letter)
+    low, high = (float(np.ravel(one)[0]) for one in pair.bounds(geometry))
+    reach = (low if np.isfinite(low) else None, high if np.isfinite(high) else None)
+    angle = float(np.angle(complex(pair.line(geometry)[1]) * turned))
+    return replace(pair, through=letter, angle=angle, toward=None, reach=reach)
 
 
 slot = constructor("slot", Slot)
