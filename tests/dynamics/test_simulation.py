@@ -458,14 +458,6 @@ def test_simulations_with_friction_solve_no_pose(monkeypatch: pytest.MonkeyPatch
     assert found.energy.worst < 1e-10
 
 
-def test_friction_of_several_drivers_is_refused() -> None:
-    """It is said which."""
-    with pytest.raises(InvalidInput, match="is simulated in mechanisms with one driver"):
-        ck.simulate(
-            five_bar().replace(ck.friction("P", 0.1, radius=0.01)), start={"left": 1.7, "right": 1.0}, until=1.0
-        )
-
-
 # --- loads that count turns ---
 
 # A rotor on a clock spring: J q'' = -k q. It makes a turn and a half to each side.

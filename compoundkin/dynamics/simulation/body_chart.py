@@ -246,6 +246,8 @@ class BodyChart:
         here = self._projected(time, values, speeds)
         return sprung(self.closed, here, here.rates) if self.closed else here.rates
 
+    pressing_rates = unheld_rates
+
     @property
     def rigid(self) -> tuple[StopContact, ...]:
         """The closed contacts that hold a coordinate."""

@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.errors import CompoundkinError, FewDigits, InvalidInput, Problem
+from compoundkin.base.errors import CompoundkinError, FewDigits
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.dynamics.simulation.body_chart import BodyChart
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState
+from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics import solve
@@ -123,16 +124,13 @@ def as_driven(pair: Pair) -> Drivable:
 def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> DriverChart:
     """Return the chart around a pose, with a table if there is a single driver.
 
-    Raises InvalidInput for friction with several drivers, or with gears, whose flank depends on the force.
+    Friction is in no table where there are gears and belts, whose flanks and strands depend on the force.
     """
     frictions, only = start.mechanism.frictions, len(free) + len(laws) == 1
     if not frictions:
         return TabulatedChart(start, free, laws) if only else DriverChart(start, free, laws)
     geared = any(as_transmitting_pair(pair) for pair in start.solving_order.pairs.values())
-    if geared or not only:
-        what = f"friction ({', '.join(frictions)}) is simulated in mechanisms with one driver and without gears"
-        raise InvalidInput(Problem("frictions", what, "leave it out, or write dampers"))
-    return FrictionTable(start, free, laws)
+    return DriverChart(start, free, laws) if geared or not only else FrictionTable(start, free, laws)
 
 
 def integrable(chart: DriverChart, time: float, state: Number) -> tuple[Chart, Number]:
@@ -148,7 +146,8 @@ def by_links(chart: DriverChart, state: DriverState) -> tuple[BodyChart, Number]
     """Return the chart of the coordinates of all links, and a state of drivers in it."""
     world = {link: _still(pose) for link, pose in state.block.world.items()}
     contacts = chart.stop_contacts, chart.closed, chart.phase, chart.open_contacts
-    found = BodyChart(chart.start, chart.free, chart.laws, world, *contacts)
+    kind = FrictionChart if chart.mechanism.frictions else BodyChart
+    found = kind(chart.start, chart.free, chart.laws, world, *contacts)
     rates = [_rates(state.block.world[link]) for link in found.links]
     return found, np.concatenate([found.first, np.ravel(rates)])
 

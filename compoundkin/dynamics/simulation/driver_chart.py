@@ -111,6 +111,8 @@ class DriverChart:
         free = self.free_rates(time, values, speeds)
         return sprung(self._added, self.state(time, values, speeds), free) if self._added else free
 
+    pressing_rates = unheld_rates
+
     def free_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state without the contacts at stops and in latches."""
         return self.rates(time, values, speeds) if self.held is None else self.held.rates(self, time, values, speeds)

@@ -198,9 +198,11 @@ def _times(course: SimulatedCourse, times: Any) -> Number:
 
 
 def _holding(course: SimulatedCourse, phase: int, times: Number) -> tuple[Effort, ...]:
-    """Return what rigid stops and latches hold with, as loads over the motion: the drivers are left without effort."""
+    """Return what stops, latches and friction hold with, as loads over the motion: drivers are left without effort."""
     found = course.holding(phase, times) if course.steps[-1].chart.adds_stops else {}
-    return tuple(effort(one.pair, force, name=f"hold of {one.name}") for one, force in found.items())
+    held = [effort(one.pair, force, name=f"hold of {one.name}") for one, force in found.items()]
+    stuck = course.sticking(phase, times).items()
+    return (*held, *(effort(pair, force, name=f"friction at rest in {pair}") for pair, force in stuck))
 
 
 def _farthest(step: Step) -> float:

@@ -15,9 +15,11 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.dynamics.friction.friction_contacts import LoadedContact
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
+from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.phases import OpenContact, landed, without_pair
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
@@ -139,7 +141,12 @@ def _begun(chart: Chart, time: float, state: Number, course: SimulatedCourse) ->
     """Return the integrator from a state, after a rest where friction holds it; None where it stays at rest."""
     n = len(chart.free)
     values, speeds = state[:n], state[n : 2 * n]
-    if chart.begin(time, values, speeds):
+    moves = chart.begin(time, values, speeds)
+    if isinstance(chart, FrictionChart):
+        state = chart.settled(time, state)
+        course.events += [SimulationEvent(time, name, text, False) for name, text in chart.told]
+        chart.told.clear()
+    if moves:
         if chart.held is None and not speeds.any():
             held = _holding(chart, time, state, course)
             if held is not None and isinstance(chart, DriverChart):
@@ -643,6 +650,16 @@ class Step:
         self.chart.recall(memory)
         return found
 
+    def sticking(self, time: float) -> list[tuple[LoadedContact, float]]:
+        """Return the pairs that friction holds at a time in the step, with their efforts."""
+        if not isinstance(self.chart, FrictionChart):
+            return []
+        memory = self.chart.memory
+        self.chart.recall(self.memory)
+        found = self.chart.sticking(time, self.chart.settled(time, self.between(np.array(time))))
+        self.chart.recall(memory)
+        return found
+
     def holding(self, time: float) -> list[tuple[StopContact, float]]:
         """Return the contacts that hold a coordinate at a time in the step, with their forces."""
         chart, memory, n = self.chart, self.chart.memory, len(self.chart.free)
@@ -654,6 +671,11 @@ class Step:
             forces = holding([one.at(here) for one in rigid], here, free)
         chart.recall(memory)
         return list(zip(rigid, forces.tolist(), strict=True))
+
+    def settled(self, times: Number) -> Number:
+        """Return the states at times in the step, in columns."""
+        self.chart.recall(self.memory)
+        return np.array([self.chart.settled(t, y) for t, y in zip(times, self.between(times).T, strict=True)]).T
 
     def accelerations_at(self, times: Number, states: Number) -> Number:
         """Return the accelerations of the free drivers at times in the step, in columns."""
@@ -747,6 +769,16 @@ class SimulatedCourse:
                 found.setdefault(one.stop, np.zeros(len(times)))[k] += one.side * force
         return found
 
+    def sticking(self, phase: int, times: Number) -> dict[str, Number]:
+        """Return the efforts at times in a phase with which friction holds pairs, by their names."""
+        steps = [step for step in self.steps if step.chart.phase == phase]
+        index = np.minimum(np.searchsorted([step.last for step in steps], times), len(steps) - 1)
+        found: dict[str, Number] = {}
+        for k, time in enumerate(times):
+            for one, force in steps[index[k]].sticking(float(time)):
+                found.setdefault(one.name, np.zeros(len(times)))[k] += force
+        return found
+
     @property
     def losses(self) -> dict[str, float]:
         """The energy lost up to now, by stops and pairs."""
@@ -773,8 +805,7 @@ def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
     states, accelerations = [], []
     for k in np.unique(index):
         here = whole[index == k]
-        found = steps[k].between(here)
-        states.append(np.array([steps[k].chart.settled(t, y) for t, y in zip(here, found.T, strict=True)]).T)
+        states.append(steps[k].settled(here))
         accelerations.append(steps[k].accelerations_at(here, states[-1]))
     whole_states, rates = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
     return ChartStretch(steps[0].chart, whole, whole_states, rates, np.isin(whole, own))

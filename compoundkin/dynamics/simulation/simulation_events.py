@@ -15,6 +15,7 @@ from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
+from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.phases import LANDED, OpenContact, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
@@ -106,8 +107,8 @@ class RestWatch(Watch):
     """The rest of a single driver."""
 
     def value(self, chart: Chart, time: float, state: Number) -> float:
-        """Return its speed."""
-        return float(state[1])
+        """Return its speed, with several drivers a number that is never zero."""
+        return float(state[1]) if isinstance(chart, FrictionTable) else 1.0
 
 
 class SlidingWatch(Watch):
@@ -158,6 +159,18 @@ def _greatest_force(state: KnownState) -> float:
     return max((float(np.max(np.abs(one.force))) for one in wrenches), default=0.0)
 
 
+class StickWatch(SlidingWatch):
+    """Changes of friction of several drivers: a pair comes to rest, slips, or is pressed the other way."""
+
+    def is_idle(self, chart: Chart) -> bool:
+        """Return whether no such state was nearly met in the last step."""
+        return not (isinstance(chart, FrictionChart) and chart.has_left)
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return how far ahead the next one is."""
+        return chart.margin_at(time, state) if isinstance(chart, FrictionChart) else 1.0
+
+
 class StopPassage(NamedTuple):
     """What happens at a stop or a latch: the event, the state behind it, and the speed of an impact."""
 
@@ -182,7 +195,7 @@ class StopWatch(Watch):
             return one.indentation(here) * (1.0 if one in chart.closed else -1.0)
         if one not in chart.closed:
             return one.at(here).gap
-        found = margins(chart.rigid, here, chart.unheld_rates(time, state[:n], state[n : 2 * n]))
+        found = margins(chart.rigid, here, chart.pressing_rates(time, state[:n], state[n : 2 * n]))
         return float(found[chart.rigid.index(one)])
 
     def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
@@ -213,7 +226,7 @@ def _met(chart: Chart, time: float, state: Number, one: StopContact, restitution
     after = np.array([*state[:n], *hit.speeds, state[-1] - hit.lost])
     elastic = [other for other in chart.closed if other.stop.is_elastic]
     chart.closed = (*elastic, *hit.staying, *(() if restitution else (one,)))
-    free = chart.unheld_rates(time, after[:n], after[n : 2 * n])
+    free = chart.pressing_rates(time, after[:n], after[n : 2 * n])
     here = chart.state(time, after[:n], after[n : 2 * n])
     while chart.rigid and np.min(found := margins(chart.rigid, here, free)) < 0.0:
         left = chart.rigid[int(np.argmin(found))]
@@ -472,6 +485,7 @@ def _speed(state: SimulatedState) -> float:
 FRICTIONS = (
     RestWatch(REST, _speed, "it comes to rest", False),
     SlidingWatch(REVERSES, _speed, "friction acts the other way", False),
+    StickWatch(REVERSES, _speed, "friction changes", False, True),
 )
 
 
