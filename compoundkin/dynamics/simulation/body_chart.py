@@ -179,15 +179,17 @@ class BodyChart:
         structure = self.start.structure
         pins = [pair for pair in structure.pairs if pair.is_simple and pair.free_is_angle]
         members = np.array([[self.index[link] for link in pair.members] for pair in pins], dtype=int).reshape(-1, 2)
-        points = np.array([[end.point for end in self._ends(pair)] for pair in pins], dtype=complex).reshape(-1, 2)
+        points = np.array([[end.point for end in self.ends_of(pair)] for pair in pins], dtype=complex).reshape(-1, 2)
         self.pins = _Pins(members[:, 0], members[:, 1], points[:, 0], points[:, 1])
         slides = [pair for pair in structure.pairs if pair.is_simple and not pair.free_is_angle]
         members = np.array([[self.index[link] for link in pair.members] for pair in slides], dtype=int).reshape(-1, 2)
-        sides = np.array([[(end.point, end.along.c[0]) for end in self._ends(pair)] for pair in slides], dtype=complex)
+        sides = np.array(
+            [[(end.point, end.along.c[0]) for end in self.ends_of(pair)] for pair in slides], dtype=complex
+        )
         sides = sides.reshape(-1, 2, 2)
         self.slides = _Slides(members[:, 0], members[:, 1], *sides[..., 0].T, *sides[..., 1].T)
         self.pairs = tuple(
-            _HeldPair(pair, self._ends(pair), self._columns(pair), np.array(constraint_scales(pair, self.size)))
+            _HeldPair(pair, self.ends_of(pair), self._columns(pair), np.array(constraint_scales(pair, self.size)))
             for pair in structure.pairs
             if pair not in pins and pair not in slides
         )
@@ -198,7 +200,7 @@ class BodyChart:
         self.held_coordinates = tuple(self._held(*one) for one in (*passive, *driven))
 
     def _held(self, pair: Any, sense: float, law: str | None) -> _HeldCoordinate:
-        ends = self._ends(pair)
+        ends = self.ends_of(pair)
         scale = 1.0 if pair.free_is_angle else self.size
         # angles of links may be written with other turns than the driver's
         first = sense * _value(pair.coordinate(ends, self._still(pair)), 0)
@@ -209,7 +211,8 @@ class BodyChart:
         world = self._world(self.first, np.zeros_like(self.first))
         return tuple(world[link] for link in pair.members)
 
-    def _ends(self, pair: Pair) -> Ends:
+    def ends_of(self, pair: Pair) -> Ends:
+        """Return the ends of a pair as plain numbers."""
         known = self.ends.get(pair.name)
         return known or tuple(mapped(end, _number) for end in pair.ends(self.mechanism.geometry))
 
@@ -313,7 +316,7 @@ class BodyChart:
         for name in self.drivers:
             own = self.start.structure.driven[name]
             sense = float(own.pair.driven_by(own.drive.link))
-            series = own.pair.coordinate(self._ends(own.pair), tuple(poses[link] for link in own.pair.members))
+            series = own.pair.coordinate(self.ends_of(own.pair), tuple(poses[link] for link in own.pair.members))
             rows = [np.broadcast_to(_row(series.derivative(k)), times.shape) * sense for k in range(3)]
             if own.pair.free_is_angle:
                 begun = float(np.ravel(self.start.drives[name].value)[0])
@@ -590,7 +593,7 @@ class BodyState:
         """Return the rates of a pair's coordinate by all coordinates."""
         columns, poses = self.chart._columns(pair), tuple(self.world[link] for link in pair.members)
         found = np.zeros(len(self.values) + 3)
-        found[columns] = np.reshape(pair.jacobian(self.chart._ends(pair), poses), (-1, len(columns)))[-1]
+        found[columns] = np.reshape(pair.jacobian(self.chart.ends_of(pair), poses), (-1, len(columns)))[-1]
         return found[:-3]
 
     @cached_property

@@ -415,7 +415,7 @@ class FrictionState(BodyState):
         """
         found = self.equations.jacobian.T.copy()
         for pair, rows in self.chart.geared:
-            ends, poses = self.chart._ends(pair), tuple(self.world[link] for link in pair.members)
+            ends, poses = self.chart.ends_of(pair), tuple(self.world[link] for link in pair.members)
             columns = np.zeros((len(self.values) + 3, rows.stop - rows.start))
             for column, unit in zip(columns.T, pair.wrenches(ends, poses)[: rows.stop - rows.start], strict=True):
                 self._add(column, pair, unit)
@@ -529,7 +529,7 @@ class FrictionState(BodyState):
         return tuple(self._geared_pair(pair, rows) for pair, rows in self.chart.geared)
 
     def _geared_pair(self, pair: TransmittingPair, rows: slice) -> _GearedPair:
-        ends, poses = self.chart._ends(pair), tuple(self.world[link].trimmed(0) for link in pair.members)
+        ends, poses = self.chart.ends_of(pair), tuple(self.world[link].trimmed(0) for link in pair.members)
         written = self.chart.mechanism.pretensions.get(pair.name)
         tension = None if written is None else self.loaded.fitted(written.force, f"pretensions.{pair.name}")
         beside = tuple(pair.accompanying(ends, poses, one, tension) for one in (-1.0, 0.0, 1.0))
