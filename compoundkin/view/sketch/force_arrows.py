@@ -33,10 +33,17 @@ SMALL_PART = 0.03
 KINDS = {REACTION: "reactions and drivers", LOAD: "loads and weights", INERTIA: "inertia"}
 # The arc of a moment: its radius, what it goes through (radians), and how much farther the next one is.
 ROUND, SWEEP, NEXT = 19.0, 2.7, 7.0
+# Between the end of an arc and an arrow there is such an angle, if possible (radians).
+ARC_ROOM = 0.3
 # Arrows begin and end so far from the point at which they act, so that the pin stays visible.
 CLEAR = 6.0
 # Around a driven pin it is outside of the arrow of the driver.
 AROUND_DRIVER = 34.0
+# Arrows on one line are drawn so far beside each other; they are on one where they differ by less than this angle
+# (radians) and cover each other by more than this length.
+ASIDE, PARALLEL, CLOSE = 6.0, 0.05, 1.0
+# Directions in which the arc of a moment is tried around its place, and what an arrow in it costs beside its own link.
+TURNED, ON_ARROW, ON_LINK = 16, 2.0, 1.0
 # A shorter arrow is not drawn, but listed below the picture.
 SHORTEST = 5.0
 # Digits of the values beside arrows.
@@ -75,9 +82,21 @@ class DrawnForce:
         made = arrow_shapes(self.start, self.stop, self.force.kind)
         return (ShapeGroup(made, title=title, links=(self.force.link,)),) if self.is_visible else ()
 
+    def lies_on(self, other: DrawnForce) -> bool:
+        """Return whether its arrow covers a part of another."""
+        way, e = self.stop - self.start, unit_direction(other.stop - other.start)
+        if not (self.is_visible and other.is_visible) or abs((np.conjugate(e) * way).imag) > PARALLEL * abs(way):
+            return False
+        ends = [np.conjugate(e) * (end - other.start) for end in (self.start, self.stop)]
+        if abs(ends[0].imag + ends[1].imag) / 2.0 >= ASIDE - CLOSE:
+            return False
+        low, high = sorted(end.real for end in ends)
+        return bool(min(high, abs(other.stop - other.start)) - max(low, 0.0) > CLOSE)
+
     def label(self, text: str, key: str) -> Label:
         """Return the label at the free end of the arrow."""
-        at = self.stop if self.away == unit_direction(self.stop - self.start) else self.start
+        is_ahead = (np.conjugate(self.away) * (self.stop - self.start)).real > 0.0
+        at = self.stop if is_ahead else self.start
         return label_around(key, at, text_half(text, SMALL), 3.0, self.away)
 
 
@@ -96,6 +115,24 @@ def force_arrow(one: ActingForce, at: complex, scale: VectorScale, middle: compl
     return DrawnForce(one, at + e * CLEAR, at + e * CLEAR + way, e)
 
 
+def side_by_side(arrows: Sequence[DrawnForce]) -> list[DrawnForce]:
+    """Return arrows of which none lies on another: one that would is shifted across its line.
+
+    >>> one = ActingForce("F", "M", "", "a", "", "load", 0j, 10 + 0j, 0.0)
+    >>> both = DrawnForce(one, 6 + 0j, 40 + 0j, 1 + 0j), DrawnForce(one, 60 + 0j, 6 + 0j, 1 + 0j)
+    >>> [drawn.start for drawn in side_by_side(both)]
+    [(6+0j), (60-6j)]
+    """
+    found: list[DrawnForce] = []
+    for one in arrows:
+        across = 1j * unit_direction(one.stop - one.start)
+        # the nearest free line, on either side of its own
+        shifts = (across * ASIDE * k for n in range(len(arrows) + 1) for k in dict.fromkeys((n, -n)))
+        moved = (replace(one, start=one.start + shift, stop=one.stop + shift) for shift in shifts)
+        found.append(next(own for own in moved if not any(map(own.lies_on, found))) if one.is_visible else one)
+    return found
+
+
 def moment_arc(one: ActingForce, at: complex, radius: float, toward: complex) -> tuple[Shape, ...]:
     """Draw a moment as an arc with a head beside its place. It is not to scale."""
     # counterclockwise is clockwise in coordinates whose y points downward
@@ -106,9 +143,16 @@ def moment_arc(one: ActingForce, at: complex, radius: float, toward: complex) ->
 
 
 def moment_arcs(
-    forces: Sequence[ActingForce], place: Callable[[complex], complex], toward: complex, first: float = ROUND
+    forces: Sequence[ActingForce],
+    place: Callable[[complex], complex],
+    toward: complex,
+    first: float = ROUND,
+    arrows: Sequence[DrawnForce] = (),
 ) -> Iterator[tuple[ActingForce, tuple[Shape, ...], Label]]:
-    """Yield the arcs of all moments with labels. Several at one place are one around another."""
+    """Yield the arcs of all moments with labels. Several at one place are one around another.
+
+    An arc is on the side away from the link where no arrow begins, as far as there is room.
+    """
     taken: list[complex] = []
     for k, one in enumerate(one for one in forces if one.moment):
         at = place(one.at)
@@ -116,10 +160,29 @@ def moment_arcs(
         radius += NEXT * sum(abs(other - at) < 1.0 for other in taken)
         taken.append(at)
         way = toward - at if abs(toward - at) > CLEAR else -1j
-        outward = -unit_direction(complex(way))
+        outward = _free_side(at, radius, unit_direction(complex(way)), arrows)
         shapes = moment_arc(one, at, radius, outward)
         half = text_half(one.turning, SMALL)
         yield one, shapes, label_around(f"moment {k} {one.turning}", at + outward * radius, half, 5.0, outward)
+
+
+def _free_side(at: complex, radius: float, inward: complex, arrows: Sequence[DrawnForce]) -> complex:
+    """Return the direction of the middle of an arc that crosses the fewest arrows, else is farthest from its link."""
+    near = (max((one.start, one.stop), key=lambda end: abs(end - at)) for one in arrows
+            if one.is_visible and min(abs(one.start - at), abs(one.stop - at)) < radius)  # fmt: skip
+    crossed = [(unit_direction(end - at), ON_ARROW) for end in near if abs(end - at) > radius]
+    best, least = -inward, np.inf
+    for k in range(TURNED):
+        tried = complex(-inward * np.exp(2j * np.pi * k / TURNED))
+        cost = sum(weight * _covered(tried, way) for way, weight in [*crossed, (inward, ON_LINK)])
+        if cost < least - NOTHING:
+            best, least = tried, cost
+    return best
+
+
+def _covered(middle: complex, way: complex) -> float:
+    """Return how far a direction is within an arc: 1 in its middle, 0 from its ends with some room on."""
+    return max(0.0, 1.0 - abs(float(np.angle(way * np.conjugate(middle)))) / (0.5 * SWEEP + ARC_ROOM))
 
 
 def force_name(key: str, text: str, at: complex, kind: str) -> tuple[Shape, ...]:

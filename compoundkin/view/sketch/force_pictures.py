@@ -25,6 +25,7 @@ from compoundkin.view.sketch.force_arrows import (
     force_text,
     is_drawn_once,
     moment_arcs,
+    side_by_side,
 )
 from compoundkin.view.sketch.kinematic_sketch import by_links, in_layers, window_on
 from compoundkin.view.sketch.labels import (
@@ -146,7 +147,7 @@ def _acting(
     shapes = [shape for one in arrows for shape in one.shapes]
     names = [(one.label(one.force.name, f"force {k}"), one.force.name, one.force.kind)
              for k, one in enumerate(arrows) if one.is_visible]  # fmt: skip
-    for one, arc, label in moment_arcs(shown, lambda at: complex(window.at(at)), painter.middle, AROUND_DRIVER):
+    for one, arc, label in moment_arcs(shown, lambda at: complex(window.at(at)), painter.middle, AROUND_DRIVER, arrows):
         shapes += arc
         names.append((label, one.turning, one.kind))
     return shapes, names
@@ -158,7 +159,9 @@ def _arrows(
     """The arrows; forces that press on their link come from outside, so that its bars stay visible."""
     if scale is None:
         return []
-    return [force_arrow(one, complex(window.at(one.at)), scale, complex(window.at(known.middle(one)))) for one in shown]
+    return side_by_side(
+        [force_arrow(one, complex(window.at(one.at)), scale, complex(window.at(known.middle(one)))) for one in shown]
+    )
 
 
 def picture_with_notes(
@@ -352,8 +355,9 @@ def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | N
     painter = Painter(scene, window, frozenset({link}))
     points = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
     middle = complex(np.mean(points)) if points else window.at(0j)
-    arrows = [] if scale is None else [force_arrow(one, complex(window.at(one.at)), scale, middle) for one in own]
-    arcs = list(moment_arcs(own, lambda at: complex(window.at(at)), middle))
+    placed_at = [] if scale is None else [force_arrow(one, complex(window.at(one.at)), scale, middle) for one in own]
+    arrows = side_by_side(placed_at)
+    arcs = list(moment_arcs(own, lambda at: complex(window.at(at)), middle, arrows=arrows))
     shapes = [
         *by_links([*in_layers(painter, grounded=False), *pin_shapes(painter)]),
         *_mass_centre(known, window, link),
