@@ -295,7 +295,10 @@ def _needed(forces: Forces, driver: str, efficiency: float, design: int) -> Sizi
 
     own, units = motion.drives[driver], motion.mechanism.stated_units
     value, speed, second = row(own.value), row(own.rate), row(own.second)
-    effort = row(np.asarray(forces.drives[driver].effort).reshape(shape)) + row(_given(forces, driver))
+    given, rotor = _given(forces, driver)
+    effort = row(np.asarray(forces.drives[driver].effort).reshape(shape)) + row(given)
+    # the rotor of a motor that is there goes with that motor: those of the list bring their own
+    effort -= units.inertia * row(rotor) * second
     if not np.isfinite(effort).all():
         raise InvalidInput(
             Problem("motion", "its efforts are not known at all poses", "size it over poses that are assembled")
@@ -303,7 +306,7 @@ def _needed(forces: Forces, driver: str, efficiency: float, design: int) -> Sizi
     times = row(motion.time) if motion.time is not None else _times(value, speed)
     newton, length = FORCES[units.force], LENGTHS[units.length]
     metre, factor = (1.0, newton * length) if own.is_angle else (length, newton)
-    inertia = _felt(forces, driver, design) * units.inertia * factor / metre
+    inertia = (_felt(forces, driver, design) - float(np.mean(row(rotor)))) * units.inertia * factor / metre
     return Sizing(driver, own.is_angle, times, speed * metre, second * metre, effort * factor, inertia, efficiency, ())
 
 
@@ -317,10 +320,10 @@ def _felt(forces: Forces, driver: str, design: int) -> float:
     return float(np.nanmean(found.matrix[..., k, k].reshape(shape)[design]))
 
 
-def _given(forces: Forces, driver: str) -> Number:
-    """Return what motors along a driver give already, along its coordinate."""
+def _given(forces: Forces, driver: str) -> tuple[Number, Number]:
+    """Return what motors along a driver give already, along its coordinate, and the inertia of their rotors there."""
     motion = forces.motion
-    total = np.zeros(motion.failed.shape)
+    total, felt = np.zeros(motion.failed.shape), np.zeros(motion.failed.shape)
     for motor in filter(None, map(as_motor, motion.mechanism.loads.values())):
         for at in loaded_blocks(motion):
             own, other = dict(at.unit_effort(driver)), dict(at.unit_effort(motor.pair))
@@ -328,7 +331,8 @@ def _given(forces: Forces, driver: str) -> Number:
                 link = next(iter(own))
                 alike = dot(own[link].force, other[link].force) + own[link].moment * other[link].moment
                 total[at.designs, at.poses] += np.sign(alike) * motor.effort(at)
-    return total
+                felt[at.designs, at.poses] += at.fitted(motor.rotor()[1], motor.where)
+    return total, felt
 
 
 def _times(values: Number, speeds: Number) -> Number:

@@ -173,6 +173,15 @@ def test_what_motors_give_already_counts_as_needed() -> None:
     np.testing.assert_allclose(helped.torques, alone.torques, atol=1e-9)
 
 
+def test_the_rotor_of_a_motor_that_is_there_is_not_needed_twice() -> None:
+    """It was in what the machine needs, and the listed motor's own came on top."""
+    alone = ck.figures.sizing(swung(PERIOD))
+    curve = {"at": [-99.0, 99.0], "values": [3.0, -3.0]}
+    driven = ck.figures.sizing(swung(PERIOD, ck.motor("arm", torque=curve, gear=4.0, inertia=0.7)))
+    np.testing.assert_allclose(driven.torques, alone.torques, atol=1e-9 * alone.peak)
+    assert driven.inertia == pytest.approx(alone.inertia, rel=1e-9)
+
+
 def test_a_dwell_cools_the_motor() -> None:
     """At rest for three quarters of the time, the effective torque is half of what it is without."""
     whole = np.linspace(0.0, 4.0 * PERIOD[-1], 4001)
