@@ -114,7 +114,9 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
             if passed.released is not None or passed.landing is not None:
                 chart, state = _next_phase(chart, passed, state, course)
                 n = len(chart.free)
-            solver = _begun(chart, passed.time, state, course)
+            # friction changes, and nothing else: steps are as long as before
+            paced = solver.h_abs if passed.is_smooth and not solver.is_implicit else None
+            solver = _begun(chart, passed.time, state, course, paced)
         if progress is not None:
             progress(int(PARTS * course.last / course.until), PARTS)
     return None
@@ -137,7 +139,7 @@ def _next_phase(chart: Chart, passed: _Interruption, state: Number, course: Simu
     return found.chart, found.state
 
 
-def _begun(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> Any:
+def _begun(chart: Chart, time: float, state: Number, course: SimulatedCourse, step: float | None = None) -> Any:
     """Return the integrator from a state, after a rest where friction holds it; None where it stays at rest."""
     n = len(chart.free)
     values, speeds = state[:n], state[n : 2 * n]
@@ -152,7 +154,7 @@ def _begun(chart: Chart, time: float, state: Number, course: SimulatedCourse) ->
             if held is not None and isinstance(chart, DriverChart):
                 chart.held = held
                 _tell_held(course, time, held)
-        return _solver(chart, time, state, course)
+        return _solver(chart, time, state, course, step)
     last = chart.released(time, values, course.until)
     course.events.append(SimulationEvent(time, STICKS, "friction holds the mechanism", False))
     course.steps.append(Step(chart, time, last, _resting(state), chart.memory))
@@ -175,6 +177,7 @@ class _Interruption(NamedTuple):
     state: Number | None
     released: Release | None = None  # the pair that comes apart there
     landing: OpenContact | None = None  # the contact that closes there
+    is_smooth: bool = False  # whether speeds and states go on as they are
 
 
 def _passed(course: SimulatedCourse) -> _Interruption | None:
@@ -195,7 +198,7 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
             return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
         if watch.name == REVERSES and not watch.asked:
             course.cut(one.time)
-            return _Interruption(one.time, one.state)
+            return _Interruption(one.time, one.state, is_smooth=True)
         here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]), step.chart.order)
         is_end = watch.name == END and not watch.asked
         text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
@@ -527,8 +530,8 @@ def _stop(course: SimulatedCourse, name: str, text: str) -> None:
     course.events.append(SimulationEvent(course.last, name, text, True))
 
 
-def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse) -> Any:
-    """Return the integrator at a state of a chart."""
+def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse, step: float | None = None) -> Any:
+    """Return the integrator at a state of a chart, with a first step where one is known."""
     from scipy.integrate import DOP853, Radau
 
     n = len(chart.free)
@@ -544,7 +547,8 @@ def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse) -
     allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
     end = next((one.before for one in course.breaks if one.before > time), course.until)
     method = Radau if course.implicit else DOP853
-    solver: Any = method(grown, time, state, end, rtol=course.tolerance, atol=allowed)
+    first = None if step is None else min(step, end - time)
+    solver: Any = method(grown, time, state, end, rtol=course.tolerance, atol=allowed, first_step=first)
     solver.allowed, solver.is_implicit = allowed, course.implicit
     return solver
 
