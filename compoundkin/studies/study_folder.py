@@ -11,7 +11,7 @@ import json
 import os
 import re
 import secrets
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -315,7 +315,7 @@ class RowsInFolder(StudyRows):
         found: Number | None = None
         start = 0
         for part in self.parts:
-            values = part_column(part.path, column)[part.fresh.start - part.rows.start :]
+            values = part_columns(part.path, [column])[name][part.fresh.start - part.rows.start :]
             if found is None:
                 found = np.empty((self.count, *values.shape[1:]), values.dtype)
             found[start : start + len(values)] = values
@@ -323,6 +323,13 @@ class RowsInFolder(StudyRows):
         if found is None:
             raise InvalidInput(Problem(name, "there is no row yet", "run the study"))
         return found
+
+    def pieces(self, *names: str) -> Iterator[dict[str, Number]]:
+        """Yield some columns of each part."""
+        wanted = [one for one in self.columns if one.name in names]
+        for part in self.parts:
+            found = part_columns(part.path, wanted)
+            yield {name: found[name][part.fresh.start - part.rows.start :] for name in names}
 
     def picked(self, places: Number) -> dict[str, Number]:
         """Return all columns of some rows."""
@@ -382,10 +389,11 @@ def rows_of_part(path: Path, fingerprint: str) -> range | None:
     return range(first.min, last.max + 1)
 
 
-def part_column(path: Path, column: StudyColumn) -> Number:
-    """Return a column of a part. Raises InvalidInput where it is damaged."""
+def part_columns(path: Path, columns: Sequence[StudyColumn]) -> dict[str, Number]:
+    """Return some columns of a part. Raises InvalidInput where it is damaged."""
     with _opened(path) as file:
-        return _values(file.read([column.name]), column)
+        table = file.read([column.name for column in columns])
+    return {column.name: _values(table, column) for column in columns}
 
 
 @contextmanager

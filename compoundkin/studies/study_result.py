@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -121,15 +122,57 @@ class StudyResult(DisplaysHtml, ShortRepr):
         The best is first. They are those that assemble, each with all columns by name.
         Raises InvalidInput for a column that is no number.
         """
-        values = self[name]
+        self._check_number(name)
+        if count < 1:
+            raise InvalidInput(Problem("count", f"there are no {count} best rows", "at least 1"))
+        best, places, start = np.empty(0), np.empty(0, dtype=int), 0
+        for piece in self.rows.pieces(name, ASSEMBLED):
+            values = -piece[name] if greatest else piece[name]
+            valid = piece[ASSEMBLED] & np.isfinite(values)
+            if len(places) == count:
+                # of equal rows the first ones stay
+                valid &= values < best[-1]
+            found = np.flatnonzero(valid)
+            if len(found):
+                best, places = np.append(best, values[found]), np.append(places, start + found)
+                order = np.argsort(best, kind="stable")[:count]
+                best, places = best[order], places[order]
+            start += len(values)
+        return self._rows(places)
+
+    def _check_number(self, name: str) -> None:
+        """Raise InvalidInput for a column that is not one number for each row, UnknownName for none."""
+        column = self._named.get(name)
+        piece = {} if column is None else next(self.rows.pieces(name), {})
+        values = piece[name] if piece else self[name]
         if values.ndim != 1 or values.dtype.kind not in "fiu":
             remedy = "take a figure, such as its least value" if values.ndim == 2 else ""
             raise InvalidInput(Problem(name, "it is not one number for each row", remedy))
-        if count < 1:
-            raise InvalidInput(Problem("count", f"there are no {count} best rows", "at least 1"))
-        valid = np.flatnonzero(self.assembled & np.isfinite(values))
-        order = np.argsort(-values[valid] if greatest else values[valid], kind="stable")
-        return self._rows(valid[order[:count]])
+
+    def percentiles(self, name: str, shares: Sequence[float], *, factor: float = 1.0) -> list[float]:
+        """Return percentiles of a column, times a factor, among the rows that assemble; nothing where none is known.
+
+        They are those of `numpy.percentile`, in memory that does not grow with the rows.
+
+        >>> import compoundkin as ck
+        >>> result = ck.study(ck.load("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, "rocker.angle.stroke", count=64).run()
+        >>> least, middle = result.percentiles("rocker.angle.stroke", [0.0, 50.0])
+        >>> least == result["rocker.angle.stroke"].min(), middle == np.median(result["rocker.angle.stroke"])
+        (True, True)
+        """
+
+        def known() -> Iterator[Number]:
+            for piece in self.rows.pieces(name, ASSEMBLED):
+                yield piece[name][piece[ASSEMBLED] & np.isfinite(piece[name])] * factor
+
+        return percentiles_of(known, shares)
+
+    def counts(self, name: str, *, assembled: bool = False) -> Counter[Any]:
+        """Return how many rows have each value of a state, perhaps only of those that assemble."""
+        found: Counter[Any] = Counter()
+        for piece in self.rows.pieces(name, ASSEMBLED):
+            found.update((piece[name][piece[ASSEMBLED]] if assembled else piece[name]).tolist())
+        return found
 
     def _rows(self, places: Number) -> tuple[dict[str, Any], ...]:
         found = self.rows.picked(places)
@@ -193,6 +236,68 @@ class StudyResult(DisplaysHtml, ShortRepr):
 
 def _single(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
+
+
+# So many values are sorted at once. More of them are counted first, in so many classes.
+MOST_SORTED, CLASSES = 2**21, 2**16
+
+
+def percentiles_of(pieces: Callable[[], Iterable[Number]], shares: Sequence[float]) -> list[float]:
+    """Return percentiles of finite values that come in pieces, each time they are asked for; nothing without values.
+
+    They are those of `numpy.percentile`: between two neighbours in order, linear. Of very many values, the classes in
+    which these neighbours lie are found by counting.
+
+    >>> values = np.arange(10.0) ** 2
+    >>> percentiles_of(lambda: np.split(values, 2), [0.0, 25.0, 100.0]), np.percentile(values, 25.0).item()
+    ([0.0, 5.5, 81.0], 5.5)
+    """
+    sizes = [(len(piece), piece.min(), piece.max()) for piece in pieces() if len(piece)]
+    count = sum(size for size, _, _ in sizes)
+    if not count:
+        return []
+    places = [(count - 1) * (share / 100.0) for share in shares]
+    wanted = sorted({k for place in places for k in (int(place), min(int(place) + 1, count - 1))})
+    low, high = min(least for _, least, _ in sizes), max(greatest for _, _, greatest in sizes)
+    ordered = dict(zip(wanted, _in_order(pieces, count, float(low), float(high), wanted), strict=True))
+    return [
+        _between_neighbours(ordered[int(place)], ordered[min(int(place) + 1, count - 1)], place - int(place))
+        for place in places
+    ]
+
+
+def _in_order(
+    pieces: Callable[[], Iterable[Number]], count: int, low: float, high: float, wanted: Sequence[int]
+) -> list[float]:
+    """Return the values at places in order of all those from `low` to `high`, of which there are so many."""
+
+    def inside() -> Iterator[Number]:
+        return (piece[(piece >= low) & (piece <= high)] for piece in pieces())
+
+    if count <= MOST_SORTED or low == high:
+        values = np.full(1, low) if low == high else np.concatenate(list(inside()))
+        return [float(np.sort(values)[min(k, len(values) - 1)]) for k in wanted]
+    bounds = np.linspace(low, high, CLASSES + 1)
+    sizes = np.zeros(CLASSES, dtype=int)
+    ends = np.full((2, CLASSES), [[np.inf], [-np.inf]])
+    for piece in inside():
+        which = np.clip(np.searchsorted(bounds, piece, side="right") - 1, 0, CLASSES - 1)
+        sizes += np.bincount(which, minlength=CLASSES)
+        np.minimum.at(ends[0], which, piece)
+        np.maximum.at(ends[1], which, piece)
+    before = np.concatenate([[0], np.cumsum(sizes)])
+    owners = np.searchsorted(before, wanted, side="right") - 1
+    found: list[float] = []
+    for owner in dict.fromkeys(owners.tolist()):
+        inner = [k - int(before[owner]) for k, own in zip(wanted, owners, strict=True) if own == owner]
+        found += _in_order(pieces, int(sizes[owner]), float(ends[0, owner]), float(ends[1, owner]), inner)
+    return found
+
+
+def _between_neighbours(one: float, other: float, share: float) -> float:
+    """Return the value at a share of the way from one to the other, rounded as `numpy.percentile` does."""
+    step = other - one
+    return one + step * share if share < 0.5 else other - step * (1.0 - share)
 
 
 def pareto_rows(first: Number, second: Number) -> Number:

@@ -35,6 +35,10 @@ class StudyRows(ABC, ShortRepr):
         """Return all values of a column, (rows,), of a course (rows, poses)."""
 
     @abstractmethod
+    def pieces(self, *names: str) -> Iterator[dict[str, Number]]:
+        """Yield some columns of all rows, piece by piece in their order: no more is in memory."""
+
+    @abstractmethod
     def picked(self, places: Number) -> dict[str, Number]:
         """Return all columns of some rows, by their places among the existing ones."""
 
@@ -53,6 +57,11 @@ class RowsInMemory(StudyRows):
     def column(self, name: str) -> Number:
         """Return the array of a column."""
         return np.asarray(self.arrays[name])
+
+    def pieces(self, *names: str) -> Iterator[dict[str, Number]]:
+        """Yield parts of the arrays."""
+        for start in range(0, self.count, MOST_ROWS):
+            yield {name: self.column(name)[start : start + MOST_ROWS] for name in names}
 
     def picked(self, places: Number) -> dict[str, Number]:
         """Return all columns of some rows."""

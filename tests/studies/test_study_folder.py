@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.studies import study_result
 from compoundkin.studies.study_folder import is_reachable
 from tests.source import ROOT
 from tests.studies.test_study import assert_same, six_bar
@@ -178,3 +179,35 @@ def test_other_versions_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("compoundkin.studies.study_program.VERSION", "99.0")
     with pytest.warns(ck.errors.LikelySlip, match="now compoundkin 99.0, not"):
         six_bar(4).run(tmp_path)
+
+
+def test_the_best_and_percentiles_are_those_of_whole_columns(tmp_path: Path) -> None:
+    result = six_bar(COUNT).run(tmp_path / "folder", chunk=4096)
+    assert len(list(result.rows.pieces("row"))) == COUNT // 4096
+    for column in result.columns:
+        if not column.is_figure:
+            continue
+        values, there = result[column.name], result.assembled
+        for greatest in (False, True):
+            order = np.argsort(np.where(there, -values if greatest else values, np.inf), kind="stable")
+            found = (
+                [row["row"] for row in result.best(column.name, 50, greatest=greatest)] if "." in column.name else []
+            )
+            assert found in ([], order[:50].tolist())
+        shares = [0.0, 5.0, 50.0, 97.3, 100.0]
+        assert result.percentiles(column.name, shares) == np.percentile(values[there], shares).tolist()
+    assert result.counts("assembled")[True] == np.count_nonzero(result.assembled)
+
+
+@pytest.mark.parametrize("kind", ["normal", "rounded", "spread", "constant", "two clusters"])
+def test_percentiles_of_very_many_values_are_those_of_sorted_ones(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(study_result, "MOST_SORTED", 50)
+    monkeypatch.setattr(study_result, "CLASSES", 16)
+    random = np.random.default_rng(1)
+    for count in (1, 2, 51, 400):
+        values = random.normal(size=count)
+        values = {"rounded": np.round(values, 1), "spread": np.exp(20.0 * values), "constant": 0.0 * values + 2.5,
+                  "two clusters": np.where(values > 0.0, 1.0 + 1e-12 * values, 1e9)}.get(kind, values)  # fmt: skip
+        parts, shares = np.array_split(values, 3), [0.0, 5.0, 25.0, 50.0, 95.0, 99.9, 100.0]
+        found = study_result.percentiles_of(lambda parts=parts: parts, shares)  # type: ignore[misc]
+        assert found == np.percentile(values, shares).tolist()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial, reduce
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -91,7 +91,7 @@ class PathObjective(ShortRepr):
         8.0
         """
         call = Call(values, dimensions, speed, acceleration, jerk, time)
-        return (self._planned(call, given, False, threads) or self._in_full(*call, False, threads, **given))[0]
+        return self.computed(call, given, False, threads).value
 
     def gradient(
         self,
@@ -119,11 +119,13 @@ class PathObjective(ShortRepr):
         (2.0, (4+0j))
         """
         call = Call(values, dimensions, speed, acceleration, jerk, time)
-        return self._planned(call, given, True, threads) or self._in_full(*call, True, threads, **given)
+        return self.computed(call, given, True, threads)[:2]
 
-    def _planned(
-        self, call: Call, given: Mapping[str, Any], is_sloped: bool, threads: Any
-    ) -> tuple[Any, dict[str, Any]] | None:
+    def computed(self, call: Call, given: Mapping[str, Any], is_sloped: bool = False, threads: int = 1) -> ComputedSum:
+        """Return sum and slopes of a call with what the function reads; raises what a call does."""
+        return self._planned(call, given, is_sloped, threads) or self._in_full(*call, is_sloped, threads, **given)
+
+    def _planned(self, call: Call, given: Mapping[str, Any], is_sloped: bool, threads: Any) -> ComputedSum | None:
         """Return sum and slopes of a call that is read by its plan; None of others."""
         read = self._plans.read((*call, given))
         if read is None or type(threads) is not int or threads < 1:
@@ -133,7 +135,7 @@ class PathObjective(ShortRepr):
             return None
         found = ObjectiveValues.of(program.program, program.run(read, threads))
         if self.path.limits.is_clear(read.driver_values, found.least):
-            return found.shaped(read.plan.shape)
+            return ComputedSum(*found.shaped(read.plan.shape), True)
         return self._screened(read.numbers(), given, is_sloped, threads, found) if read.is_finite() else None
 
     @checked
@@ -145,10 +147,11 @@ class PathObjective(ShortRepr):
         acceleration: Any,
         jerk: Any,
         time: Any,
-        is_sloped: bool,
+        is_sloped: Any,
         threads: int,
+        /,
         **given: Any,
-    ) -> tuple[Any, dict[str, Any]]:
+    ) -> ComputedSum:
         """Return sum and slopes; raises InvalidInput for what does not fit."""
         call = Call(values, dimensions, speed, acceleration, jerk, time)
         numbers = self.path.numbers(call, with_slopes=is_sloped)
@@ -160,12 +163,12 @@ class PathObjective(ShortRepr):
 
     def _screened(
         self, whole: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int, first: ObjectiveValues
-    ) -> tuple[Any, dict[str, Any]]:
+    ) -> ComputedSum:
         """Return sum and slopes of what was computed first; designs near a limit are computed again with masks."""
         run, path = partial(self._run, given, is_sloped, threads), self.path
         screened = path.limits.screen(whole, first.least)
         if screened is None:
-            return first.shaped(whole.shape)
+            return ComputedSum(*first.shaped(whole.shape), True)
         designs = whole.extent[0]
         parts = [(np.arange(designs), first)]
         if len(screened.unassembled):
@@ -177,7 +180,7 @@ class PathObjective(ShortRepr):
         if missing:
             of_all = f"{missing} of {designs} designs have poses that cannot be assembled"
             warn(f"{of_all}: numpy.where(at.assembled, ..., 0.0) leaves them out", UnassembledPoses)
-        return joined.shaped(whole.shape)
+        return ComputedSum(*joined.shaped(whole.shape), False)
 
     def _program_of_inputs(
         self, given: Mapping[str, Any], is_sloped: bool, numbers: CallNumbers
@@ -212,6 +215,14 @@ class PathObjective(ShortRepr):
 
     def __repr__(self) -> str:
         return f"PathObjective(of {self.path!r})"
+
+
+class ComputedSum(NamedTuple):
+    """The sum of each design, its slopes by free dimensions, and whether surely no design comes near a limit."""
+
+    value: Any
+    slopes: dict[str, Any]
+    is_clear: bool
 
 
 # Besides the names of dimensions: the sum and the least margin.

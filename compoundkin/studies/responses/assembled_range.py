@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,10 +37,12 @@ class AssembledRange(ShortRepr):
     after: Number
     to_solve: Number
 
-    @property
+    @cached_property
     def assembled(self) -> Number:
         """Which designs are assembled over the whole motion, (designs,)."""
-        return ~self.failed.any(axis=1) & (self.between == 0)
+        # of designs that are all clear one row stands for all
+        at_poses = self.failed[:1] if self.failed.strides[0] == 0 else self.failed
+        return ~at_poses.any(axis=1) & (self.between == 0)
 
 
 def assembled_range(designs: Designs) -> AssembledRange:
@@ -49,13 +52,16 @@ def assembled_range(designs: Designs) -> AssembledRange:
 
 def _search_failures(designs: Designs) -> AssembledRange:
     shape = designs.number, designs.poses
+    none: Number = np.empty(0, dtype=int)
+    if designs.is_clear and not designs.path.has_ends:
+        good = np.zeros(shape[0], dtype=np.int32)
+        return AssembledRange(np.broadcast_to(good[:1], shape), good, np.zeros(shape[0], dtype=int), none)
     values = designs.outputs
     failed = np.zeros(shape, dtype=np.int32) if values.failed is None else np.broadcast_to(values.failed, shape)
     between, after = np.zeros(shape[0], dtype=np.int32), np.zeros(shape[0], dtype=int)
-    none: Number = np.empty(0, dtype=int)
-    programs = designs.path.compiled.programs
     if values.screened is None and not designs.path.has_ends:
         return AssembledRange(failed, between, after, none)
+    programs = designs.path.compiled.programs
     screened = values.screened
     near, handed = (np.arange(shape[0]), none) if screened is None else (screened.designs, screened.to_solve)
     near = np.arange(shape[0]) if designs.path.has_ends else near

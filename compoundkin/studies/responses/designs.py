@@ -125,10 +125,17 @@ class Designs(ShortRepr):
         return self.computed_once("numbers", self._numbers)
 
     def _numbers(self) -> CallNumbers:
-        values, dimensions, more = self.call
-        speed, acceleration, jerk = (more.get(name) for name in RATES)
-        programs = self.path.compiled.programs
-        return programs.numbers(Call(values, dimensions, speed, acceleration, jerk, more.get(TIME)))
+        return self.path.compiled.programs.numbers(self.arguments)
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether surely no design comes near a limit; a sum that was computed before tells as well as the outputs."""
+        known: bool | None = self._computed.get("is_clear")
+        return self.outputs.screened is None if known is None else known
+
+    def note_limits(self, is_clear: bool) -> None:
+        """Note what a sum over the poses has told of limits."""
+        self._computed["is_clear"] = is_clear
 
     @property
     def motion(self) -> Motion:
@@ -200,6 +207,13 @@ class Designs(ShortRepr):
             return self._call_in_time
         values, *rates = ({name: each[k] for name, each in self.inputs.drives.items()} for k in range(len(RATES) + 1))
         return values, self._columns, dict(zip(RATES, rates, strict=True))
+
+    @property
+    def arguments(self) -> Call:
+        """The same in the order of a call."""
+        values, dimensions, more = self.call
+        speed, acceleration, jerk = (more.get(name) for name in RATES)
+        return Call(values, dimensions, speed, acceleration, jerk, more.get(TIME))
 
     @property
     def _call_in_time(self) -> tuple[Any, Mapping[str, Number], dict[str, Any]]:

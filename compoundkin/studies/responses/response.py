@@ -14,6 +14,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import Dimension
+from compoundkin.programs.derivatives.path_objective import ComputedSum
 from compoundkin.studies.responses.designs import Designs
 
 
@@ -76,20 +77,21 @@ class SummedResponse(Response):
 
     def values(self, designs: Designs) -> Number:
         """Return the sum of each design, NaN where a pose is not assembled, unless the function skips it."""
-        return np.asarray(self._called(designs, designs.path.objective(self.function)))
+        return np.asarray(self._computed(designs, False).value)
 
     def slopes(self, designs: Designs) -> Number:
         """Return its slopes, (coordinates, designs)."""
-        _, by = self._called(designs, designs.path.objective(self.function).gradient)
+        by = self._computed(designs, True).slopes
         found = []
         for name, factor in designs.path.directions.values():
             slope = np.broadcast_to(by[name], designs.number)
             found.append(slope.imag if factor == 1j else slope.real)
         return np.array(found)
 
-    def _called(self, designs: Designs, function: Callable[..., Any]) -> Any:
-        values, dimensions, more = designs.call
-        return function(values, dimensions, **more, **self.given)
+    def _computed(self, designs: Designs, is_sloped: bool) -> ComputedSum:
+        found = designs.path.objective(self.function).computed(designs.arguments, self.given, is_sloped)
+        designs.note_limits(found.is_clear)
+        return found
 
 
 def summed_response(motion: Motion, name: str, function: object, given: Mapping[str, Any]) -> Response:

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.analysis.common_pose import scale_of_units
 from compoundkin.analysis.comparison import ROUNDING, MechanismComparison
 from compoundkin.base.arrays import Number, degrees
-from compoundkin.kinematics.quantities import Quantity
+from compoundkin.kinematics.quantities import ASSEMBLED, Quantity
 from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS
 from compoundkin.model.geometry import FRAME
 from compoundkin.studies.optimisation.optimum import LocalMinimum, Optimum
@@ -69,7 +69,7 @@ def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequen
 
     Raises UnknownName and InvalidInput for names that are no figures of the study.
     """
-    closed = int(np.count_nonzero(found.assembled))
+    closed = found.counts(ASSEMBLED)[True]
     figures = [*((name, False) for name in least), *((name, True) for name in greatest)]
     tables = [block for name, is_greatest in figures for block in _best_designs(found, name, best, is_greatest)]
     sections = [
@@ -102,10 +102,9 @@ def _figures_table(found: StudyResult) -> TableBlock:
     rows: list[tuple[Cell, ...]] = []
     for column in _figure_columns(found):
         factor, unit = _display_unit(column)
-        values = found[column.name][found.assembled] * factor
-        known = values[np.isfinite(values)]
-        if known.size:
-            rows.append((column.name, unit, *np.percentile(known, (0.0, *PERCENTILES, 100.0)).tolist()))
+        known = found.percentiles(column.name, (0.0, *PERCENTILES, 100.0), factor=factor)
+        if known:
+            rows.append((column.name, unit, *known))
     named = (LEAST, *(f"{share:g} %" for share in PERCENTILES), GREATEST)
     heads = (Column(name, style="each") for name in named)
     return TableBlock((Column("of"), Column("unit"), *heads), tuple(rows), keys=1)
@@ -113,16 +112,17 @@ def _figures_table(found: StudyResult) -> TableBlock:
 
 def _state_blocks(found: StudyResult) -> Iterator[Block]:
     """Yield why designs do not assemble, and on how many circuits the others are."""
-    reasons = Counter(one for one in found[REASON] if one)
+    reasons = found.counts(REASON)
+    del reasons[None]
     if reasons:
         yield Paragraph("What does not assemble:")
         yield _reasons_table(reasons)
-    circuits = Counter(found[CIRCUIT][found.assembled])
+    circuits = found.counts(CIRCUIT, assembled=True)
     if len(circuits) > 1:
         yield Paragraph("The others are on these circuits:")
         rows = tuple((count, text) for text, count in circuits.most_common(MOST_STATES))
         yield TableBlock((Column("designs", style="each"), Column("on")), rows)
-    wrong = int(np.count_nonzero(found[ORDER_DEFECT]))
+    wrong = found.counts(ORDER_DEFECT)[True]
     if wrong:
         yield Paragraph(f"{counted(wrong, 'design')} with the poses not in one sense.")
 
