@@ -26,6 +26,7 @@ from compoundkin.model.elements import Drive, Link
 from compoundkin.model.fields import changed_fields, stated_numbers
 from compoundkin.model.geometry import vector
 from compoundkin.model.laws.law_numbers import law_numbers, law_of_designs, law_with
+from compoundkin.model.loads import Mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
 from compoundkin.model.pairs.contract import Ends, drawn_fields
@@ -40,8 +41,9 @@ class FreeDimension:
     """A dimension by its name.
 
     It is of a link (`word` is the letter of a point, `part` empty for both coordinates), of a pair or cylinder
-    (`word` is a field, `part` which of two numbers), or of the law of a driver (`part` is the number), whose values
-    and rates programs then have as inputs, and not the number itself.
+    (`word` is a field, `part` which of two numbers), of the law of a driver (`part` is the number), whose values
+    and rates programs then have as inputs, and not the number itself, or of a mass or load (`word` is a field), which
+    no motion depends on: figures of forces are then found by solving.
     """
 
     name: str
@@ -50,6 +52,12 @@ class FreeDimension:
     part: str = ""
     is_of_link: bool = False
     is_of_law: bool = False
+    is_of_load: bool = False
+
+    @property
+    def is_read(self) -> bool:
+        """Whether programs read it."""
+        return not (self.is_of_law or self.is_of_load)
 
     @property
     def is_vector(self) -> bool:
@@ -126,7 +134,25 @@ class StatedDimensions(ShortRepr):
     @cached_property
     def known(self) -> dict[str, FreeDimension]:
         """All dimensions by name."""
-        return {one.name: one for one in (*self._numbers(), *self._law_numbers(), *self._points())}
+        found = {one.name: one for one in self._load_numbers()}
+        return found | {one.name: one for one in (*self._numbers(), *self._law_numbers(), *self._points())}
+
+    @cached_property
+    def loaded(self) -> dict[str, list[Any]]:
+        """The masses, loads and frictions by the words under which their numbers stand: "rod", "return spring", "C"."""
+        mechanism, found = self.mechanism, dict[str, list[Any]]()
+        points = mechanism.geometry.points
+        # without the rotors of motors, which are not written with the masses
+        masses = {one.link: one.completed(points[one.link]) for one in mechanism.items if isinstance(one, Mass)}
+        named = masses, mechanism.loads, mechanism.frictions, mechanism.pretensions
+        for items in named:
+            for name, item in items.items():
+                found.setdefault(name, []).append(item)
+        return found
+
+    def loads_of(self, one: FreeDimension) -> Any:
+        """Return the mass, load or friction that has a number."""
+        return next(item for item in self.loaded[one.owner] if one.number in load_numbers(item))
 
     def own(self, one: FreeDimension) -> Number:
         """Return the mechanism's own value of a dimension."""
@@ -134,11 +160,13 @@ class StatedDimensions(ShortRepr):
             return one.part_of(self.mechanism.geometry.points[one.owner][one.word])
         if one.is_of_law:
             return self._laws[one.owner][one.part]
+        if one.is_of_load:
+            return load_numbers(self.loads_of(one))[one.number]
         return self._stated(one.owner)[one.number]
 
     def unit(self, one: FreeDimension) -> str:
         """Return the unit of a dimension. Ratios and numbers of laws have none."""
-        if one.is_of_law:
+        if not one.is_read:
             return ""
         keys = () if one.is_of_link else self.items[one.owner].keys
         kind = next((key.kind for key in keys if key.name == one.word), "length")
@@ -158,6 +186,11 @@ class StatedDimensions(ShortRepr):
         for owner, numbers in self._laws.items():
             for number in numbers:
                 yield FreeDimension(f"{owner}.{LAW}.{number}", owner, LAW, number, is_of_law=True)
+
+    def _load_numbers(self) -> Iterator[FreeDimension]:
+        for owner, items in self.loaded.items():
+            for number in dict.fromkeys(number for item in items for number in load_numbers(item)):
+                yield FreeDimension(f"{owner}.{number}", owner, *number.partition(".")[::2], is_of_load=True)
 
     def _points(self) -> Iterator[FreeDimension]:
         for owner, link in self.mechanism.rigid_links.items():
@@ -205,7 +238,7 @@ def check_single_values(stated: StatedDimensions, free: Sequence[FreeDimension])
     several = [
         one.name
         for one in stated.known.values()
-        if not (one.is_of_law or freed.issuperset(one.inputs)) and np.ndim(stated.own(one))
+        if one.is_read and not freed.issuperset(one.inputs) and np.ndim(stated.own(one))
     ]
     if several:
         remedy = f"compile(..., free={[*(one.name for one in free), several[0]]!r})"
@@ -274,9 +307,10 @@ def mechanism_with(
             points[one.word] = as_python_number(
                 value if one.is_vector else _with_part(points[one.word], one.part, value)
             )
-        elif not one.is_of_law:
+        elif one.is_read:
             numbers.setdefault(one.owner, {})[one.number] = as_python_number(value)
     items: list[Any] = [Link(name, points) for name, points in links.items()]
+    items += loads_with(stated, values)
     for name, item in stated.items.items():
         changes = {**stated.read_off.get(name, {}), **changed_fields(item, numbers.get(name, {}))}
         if changes:
@@ -288,6 +322,42 @@ def mechanism_with(
         drives = [replace(one, values=None) if isinstance(one.values, np.ndarray) else one for one in drives]
     items += [one for one, before in zip(drives, own, strict=True) if one is not before]
     return (stated.mechanism.replace if must_fit else stated.mechanism.as_design)(*items) if items else stated.mechanism
+
+
+def loads_with(stated: StatedDimensions, values: Mapping[FreeDimension, Number]) -> list[Any]:
+    """Return masses, loads and frictions with other numbers; what is left out of a mass follows the new ones."""
+    changed: dict[int, tuple[Any, dict[str, Any]]] = {}
+    for one, value in values.items():
+        if one.is_of_load:
+            item = stated.loads_of(one)
+            _, fields = changed.setdefault(id(item), (item, {}))
+            whole = fields.get(one.word, getattr(item, one.word))
+            fields[one.word] = as_python_number(_with_part(whole, one.part, value) if one.part else value)
+    written = {(type(item), item.name): item for item in stated.mechanism.items if hasattr(item, "name")}
+    return [replace(written.get((type(item), item.name), item), **fields) for item, fields in changed.values()]
+
+
+# Kinds of keys of masses and loads that are a number, or a number or a law, and that are a vector.
+_NUMBERS, _VECTORS = ("length", "angle", "number", "coordinate", "rate", "amount"), ("spot", "planar", "point")
+
+
+def load_numbers(item: Any) -> dict[str, Number]:
+    """Return the numbers of a mass, a load or a friction by name: "stiffness", "at.x".
+
+    >>> from compoundkin.model.loads import spring
+    >>> sorted(load_numbers(spring("arm", 2 + 1j, at="S", stiffness=900)))
+    ['free_length', 'point.x', 'point.y', 'preload', 'stiffness']
+    """
+    found: dict[str, Number] = {}
+    for key in item.keys:
+        value = getattr(item, key.name)
+        if isinstance(value, bool) or not isinstance(value, int | float | complex | np.ndarray):
+            continue
+        if key.kind in _NUMBERS and not np.iscomplexobj(value):
+            found[key.name] = value
+        elif key.kind in _VECTORS:
+            found |= {f"{key.name}.{part}": PARTS[part](value) for part in AXES}
+    return found
 
 
 def _with_part(point: Number, part: str, value: Number) -> Number:
@@ -331,7 +401,7 @@ def check_redundant_pairs(motion: Motion, stated: StatedDimensions, free: Sequen
     Nothing is asked of a mechanism that is not overconstrained.
     """
     redundant = motion.structure.redundant
-    for one in (each for each in free if redundant and not each.is_of_law):
+    for one in (each for each in free if redundant and each.is_read):
         value = stated.own(one)
         step = CHANGE * (
             motion.size * ASIDE if one.is_vector else motion.size if one.is_of_link else _size_of_value(value)

@@ -103,7 +103,7 @@ class JaxPath(ShortRepr):
         """Return the free dimensions; those left out have the mechanism's own values."""
         import jax.numpy as jnp
 
-        given, free = call.dimensions or {}, [one for one in self.path.dimensions if not one.is_of_law]
+        given, free = call.dimensions or {}, [one for one in self.path.dimensions if one.is_read]
         _check_names("dimensions", given, [one.name for one in free])
         inputs: dict[InputNumber, Any] = {}
         for one in free:

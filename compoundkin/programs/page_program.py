@@ -72,7 +72,7 @@ class PageProgram(ShortRepr):
         signs, still, ends = ProgramConfiguration.of(motion).signs, _zero_rates(motion, order), motion.inputs.ends
         stated = StatedDimensions(motion.mechanism, ends)
         # coordinates of points, and numbers of pairs
-        single = [one for one in stated.known.values() if not one.is_of_law and not one.is_vector]
+        single = [one for one in stated.known.values() if one.is_read and not one.is_vector]
         free = buildable_dimensions(stated, single)
         mechanism = record_mechanism(Recording(motion.solving_order, signs, free, order, still, ends))
         found = dict(_recordable(mechanism, [one for one in outputs if one.attribute.order <= order]))

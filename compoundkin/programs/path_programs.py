@@ -126,7 +126,7 @@ class PathPrograms(ShortRepr):
     def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:
         own = self.reference
         steps = STEPS if own.solving_order.numbered else 0
-        read = tuple(one for one in self.dimensions if not one.is_of_law)
+        read = tuple(one for one in self.dimensions if one.is_read)
         return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
     def program(self, numbers: CallNumbers) -> ReadyProgram[str]:

@@ -124,7 +124,7 @@ def _arguments(path: PathVariants, mechanism: RecordedMechanism, states: Sequenc
             values = np.broadcast_to(motion.inputs.drives[name][k], motion.failed.shape)
             unit, start = unit_of(motion.mechanism.unit, dimension, k), float(values[0, first])
             yield Argument(given, names.take(called), meaning, unit, start if k else None, start)
-    for one in (each for each in path.dimensions if not each.is_of_law):
+    for one in (each for each in path.dimensions if each.is_read):
         for given, number in one.parts_of(path.stated.own(one)):
             word, value = given.full_name, float(number)
             yield Argument(given, names.take(word), f"dimension {word}", path.stated.unit(one), value, value)

@@ -58,7 +58,7 @@ class StudiedPath(ShortRepr):
         """Return the scale of a coordinate: the mechanism's size, or a radian."""
         programs = self.compiled.programs
         one = next(one for one in programs.dimensions if one.name == self.directions[coordinate][0])
-        own = np.abs(programs.stated.own(one)) if one.is_of_law else 0.0
+        own = np.abs(programs.stated.own(one)) if not one.is_read else 0.0
         is_length = programs.stated.unit(one) not in ("", RADIANS)
         return float(np.max(own)) or (self.reference.size if is_length else 1.0)
 
