@@ -99,6 +99,8 @@ def test_blocks_slide_on_each_other_until_they_rest(floor: float, top: float, lo
     np.testing.assert_allclose([drives["lower"].value[-1], drives["upper"].value[-1]], ends, rtol=1e-9, atol=1e-12)
     lost = G * (floor * (LOWER + UPPER) * ways[0] + top * UPPER * ways[1])
     assert -found.energy.work[-1] == pytest.approx(lost, rel=1e-9)
+    shares = G * np.array([floor * (LOWER + UPPER), top * UPPER]) * ways
+    assert found.losses == pytest.approx(dict(zip(("friction in floor", "friction in top"), shares, strict=True)))
     assert found.energy.worst < 1e-10
     assert efforts(found) < 1e-9
     assert found.events[-1].text == "friction holds the mechanism"
@@ -212,6 +214,7 @@ def test_a_five_bar_with_rubbing_pins_loses_what_its_frictions_take() -> None:
     steps = np.diff(found.times)[0] / 3.0 * (power[2:-2:2] + 4.0 * power[3:-1:2] + power[4::2])
     np.testing.assert_allclose(found.energy.work[4::2] - found.energy.work[2], np.cumsum(steps), rtol=1e-5)
     assert found.energy.work[-1] < -1e-3
+    assert abs(sum(found.losses.values()) + found.energy.work[-1]) < 1e-9 * found.energy.peak
     assert found.energy.worst < 1e-9
     assert efforts(found) < 1e-9
 
@@ -227,6 +230,7 @@ def test_blocks_bounce_off_their_stop() -> None:
         reduced = LOWER * UPPER / (LOWER + UPPER)
         lost = reduced * approach**2 * (1.0 - restitution**2) / 2.0
         assert found.losses["buffer"] == pytest.approx(lost, rel=1e-9)
+        assert sum(found.losses.values()) == pytest.approx(-found.energy.work[-1], rel=1e-10)
         first = UPPER * approach * (1.0 + restitution) / (LOWER + UPPER)
         event = found.events[0]
         assert event.time == pytest.approx((3.0 - approach) / (top * G), rel=1e-9)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -456,6 +458,9 @@ def test_simulations_with_friction_solve_no_pose(monkeypatch: pytest.MonkeyPatch
     steps = np.diff(found.times)[0] / 3.0 * (power[:-2:2] + 4.0 * power[1::2] + power[2::2])
     np.testing.assert_allclose(found.energy.work[2::2], np.cumsum(steps), rtol=1e-5)
     assert found.energy.worst < 1e-10
+    assert set(found.losses) == {f"friction in {pair}" for pair in ("guide", "O", "A", "B")}
+    assert sum(found.losses.values()) == pytest.approx(-found.energy.work[-1], rel=1e-9)
+    assert pickle.loads(pickle.dumps(found)).losses == found.losses
 
 
 # --- loads that count turns ---

@@ -110,7 +110,7 @@ def simulate(
     energy = joined_energy(energies)
     _warn(energy, tolerance)
     counts = len(course.steps), course.evaluations
-    return Simulation(phases, energy, tuple(course.events), course.tolerance, *counts, course.losses)
+    return Simulation(phases, energy, tuple(course.events), course.tolerance, *counts, course)
 
 
 def _phases(course: SimulatedCourse, times: Number) -> Iterator[tuple[SimulationPhase, SimulatedEnergy]]:

@@ -312,6 +312,12 @@ class FrictionChart(BodyChart):
         n = len(self.free)
         return self.state(time, state[:n], state[n : 2 * n]).margin
 
+    def friction_powers(self, time: float, values: Number, speeds: Number) -> Number:
+        """Return the powers of all frictions, never positive."""
+        here = self.state(time, values, speeds)
+        found: Number = np.where(self.modes.senses != 0.0, here.solution.sizes * here.sliding, 0.0)
+        return found
+
     def sticking(self, time: float, state: Number) -> list[tuple[LoadedContact, float]]:
         """Return the contacts that stick, with the efforts along their coordinates that hold them."""
         n = len(self.free)

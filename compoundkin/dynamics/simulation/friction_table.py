@@ -73,9 +73,10 @@ AHEAD = 1e-10
 
 
 class FreeMotion(NamedTuple):
-    """The acceleration at which the driver has no effort, and the normal forces then, if they are known."""
+    """The acceleration at which the driver has no effort, the frictions, and the normal forces if they are known."""
 
     acceleration: float
+    sizes: Number
     components: Number | None = None
 
 
@@ -116,7 +117,8 @@ class NormalForceState:
             weights = None if self.is_mild else joint.weights
             found = joint.solution(weights) if self.is_mild or weights is not None else None
             if found is not None:
-                return FreeMotion(first + float(self.along.dot(found.sizes)) / self.inertia, found.components)
+                a = first + float(self.along.dot(found.sizes)) / self.inertia
+                return FreeMotion(a, found.sizes, found.components)
         return self._by_secants(first)
 
     def _by_secants(self, first: float) -> FreeMotion | None:
@@ -131,13 +133,18 @@ class NormalForceState:
             a += step
             if abs(step) <= STEP_TOLERANCE * abs(a):
                 break
-        return FreeMotion(a)
+        sizes = self._sizes(a)
+        return None if sizes is None else FreeMotion(a, sizes)
+
+    def _sizes(self, a: float) -> Number | None:
+        """Return the frictions at an acceleration, None where they are not unique."""
+        here = PoseInfluence(self.layout, self.own + a * self.second, self.by, self.senses)
+        found = None if here.weights is None else here.solution(here.weights)
+        return self._searched(here) if found is None else found.sizes
 
     def effort(self, a: float) -> float | None:
         """Return the driver's effort at an acceleration, None where it is not unique."""
-        here = PoseInfluence(self.layout, self.own + a * self.second, self.by, self.senses)
-        found = None if here.weights is None else here.solution(here.weights)
-        sizes = self._searched(here) if found is None else found.sizes
+        sizes = self._sizes(a)
         return None if sizes is None else self.inertia * a - self.push - float(self.along.dot(sizes))
 
     def _searched(self, here: PoseInfluence) -> Number | None:
@@ -244,6 +251,19 @@ class FrictionTable(TabulatedChart):
         return np.array(
             [self._free(self._solved(state, state.speeds, second, self.direction), state.time).acceleration]
         )
+
+    def friction_powers(self, time: float, values: Number, speeds: Number) -> Number:
+        """Return the powers of all frictions, never positive."""
+        value, speed = float(values[0]), float(speeds[0])
+        if speed == 0.0:
+            return np.zeros(len(self.contacts))
+        way = float(np.sign(speed))
+        found = self._in_table(time, value, speed, way)
+        if found is None:
+            state = self.state(time, values, speeds)
+            normal = self._solved(state, state.speeds, np.array([[0.0, 1.0]]), way)
+            return normal.along * self._free(normal, time).sizes * speed
+        return found.normal.along * self._free(found.normal, time).sizes * speed
 
     def _free(self, normal: NormalForceState, time: float, held: Number | None = None) -> FreeMotion:
         """Return the motion without effort. Raises InvalidInput where it is not unique."""

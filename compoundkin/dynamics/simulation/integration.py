@@ -20,6 +20,7 @@ from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, d
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
+from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.phases import OpenContact, landed, without_pair
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
@@ -654,6 +655,21 @@ class Step:
         self.chart.recall(memory)
         return found
 
+    def rubbed(self) -> dict[str, float]:
+        """Return the energy that each pair with friction takes in the step, by its name."""
+        chart, n = self.chart, len(self.chart.free)
+        if not isinstance(chart, FrictionTable | FrictionChart):
+            return {}
+        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        half, memory, found = (self.last - self.first) / 2.0, chart.memory, np.zeros(len(chart.contacts))
+        chart.recall(self.memory)
+        for node, weight in zip(nodes.tolist(), weights.tolist(), strict=True):
+            time = self.first + half * (node + 1.0)
+            y = chart.settled(time, self.between(np.array(time)))
+            found -= half * weight * chart.friction_powers(time, y[:n], y[n : 2 * n])
+        chart.recall(memory)
+        return {one.name: lost for one, lost in zip(chart.contacts, found.tolist(), strict=True)}
+
     def sticking(self, time: float) -> list[tuple[LoadedContact, float]]:
         """Return the pairs that friction holds at a time in the step, with their efforts."""
         if not isinstance(self.chart, FrictionChart):
@@ -792,6 +808,9 @@ class SimulatedCourse:
                 found[event.loser] += event.lost
         for contact in self.steps[-1].memory[0][1]:
             found[contact.stop.name] = found.get(contact.stop.name, 0.0) + self.damped(contact, False)
+        for step in self.steps:
+            for name, lost in step.rubbed().items():
+                found[f"friction in {name}"] = found.get(f"friction in {name}", 0.0) + lost
         return found
 
     @property

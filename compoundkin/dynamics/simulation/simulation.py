@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.simulation.integration import SimulatedCourse
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
@@ -26,8 +28,7 @@ class Simulation(DisplaysHtml, DisplaysText):
 
     Where pairs come apart there are several `phases`, each with its own mechanism and motion, and no single motion.
 
-    `events` are in the order of time. `steps` and `evaluations` count those of the integration. `losses` are the
-    energies lost at stops and ends of guides, by their names.
+    `events` are in the order of time. `steps` and `evaluations` count those of the integration.
     """
 
     phases: tuple[SimulationPhase, ...]
@@ -36,7 +37,7 @@ class Simulation(DisplaysHtml, DisplaysText):
     tolerance: float
     steps: int
     evaluations: int
-    losses: Mapping[str, float] = field(default_factory=dict)
+    course: SimulatedCourse = field(repr=False)
 
     @property
     def times(self) -> Number:
@@ -69,9 +70,18 @@ class Simulation(DisplaysHtml, DisplaysText):
         return tables_in_a_row(self.phases[0].mechanism.title, tables)
 
     @cached_property
+    def losses(self) -> Mapping[str, float]:
+        """The energies lost at stops, at ends of guides and by friction in pairs, by their names."""
+        return self.course.losses
+
+    @cached_property
     def forces(self) -> Forces:
         """The forces in all pairs. The efforts of free drivers are zero but for the tolerance."""
         return force_analysis(self.motion)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what is kept of it: all but its course, of which the losses are known."""
+        return {**self.__dict__, "losses": self.losses, "course": None}
 
     def __repr__(self) -> str:
         title, last = self.phases[0].mechanism.title, float(np.ravel(self.times)[-1])
