@@ -14,6 +14,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, WedgedPoses, warn
+from compoundkin.base.poses import FIXED
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.coulomb_friction import (
@@ -38,6 +39,7 @@ from compoundkin.dynamics.reactions.singular_poses import at_singular_poses
 from compoundkin.dynamics.reactions.virtual_work import holding_effort, holding_wrenches
 from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.loads.motor import as_motor
 from compoundkin.model.mechanism import Mechanism
 
 
@@ -54,6 +56,10 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
     """
     _check_analysable(motion, inertia)
     refuse_off_pin(motion)
+    if not inertia and any(one.loses_at_rotor for one in filter(None, map(as_motor, motion.mechanism.loads.values()))):
+        # efforts of such motors depend on the acceleration, and statics has none
+        poses = {link: pose if pose is FIXED else pose.trimmed(1) for link, pose in motion.poses.items()}
+        motion = replace(motion, order=min(motion.order, 1), poses=poses)
     found = _wrenches(motion, inertia, holding)
     singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia, holding))
     on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia, "holding": holding})

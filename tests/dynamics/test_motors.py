@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import compoundkin as ck
+from compoundkin.dynamics.motor_sizing import ListedMotor
 from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.files import dumps, loads
 
@@ -79,6 +80,71 @@ def test_the_loss_of_a_gear_is_against_the_flow_of_power(speed: float, torque: f
     """A motor that drives loses a part in the gear; one that is driven back is the harder to turn."""
     motor = ck.motor("rotor", torque=0.4, gear=10.0, efficiency=0.8)
     assert torques(motor, np.array([speed]))[0] == pytest.approx(torque, rel=1e-14)
+
+
+@pytest.mark.parametrize(("stall", "load", "begun"), [(0.4, 0.0, 0.0), (0.4, -8.0, -30.0), (0.0, 6.0, 3.0)])
+def test_a_rotor_is_before_the_losses_of_its_gear(stall: float, load: float, begun: float) -> None:
+    """J a = L + e n (M - n Jm a): a = (L + e n M) / (J + e n^2 Jm), with 1 / e while the load drives the motor."""
+    motor = ck.motor("rotor", torque=stall, gear=10.0, efficiency=0.7, inertia=5e-4)
+    loads = motor, *([ck.torque("rotor", load)] if load else [])
+    e = 0.7 if begun == 0.0 else 1.0 / 0.7
+    second = (load + e * 10.0 * stall) / (0.05 + e * 100.0 * 5e-4)
+    passed = 10.0 * (stall - 10.0 * 5e-4 * second)
+    assert passed * (begun or 1.0) * (1.0 if e == 0.7 else -1.0) > 0.0, "the closed form is of the other sense"
+    until = 0.9 * abs(begun / second) if begun * second < 0.0 else 0.5
+    found = ck.simulate(rotor(*loads), start=(0.0, begun), until=until)
+    np.testing.assert_allclose(
+        found.motion.drives["rotor"].rate, begun + second * found.times, rtol=0, atol=1e-10 * 60.0
+    )
+    assert np.max(np.abs(found.forces.drives["rotor"].effort)) < 1e-9
+    assert found.energy.worst < 1e-9
+    assert ck.verify(found.forces).passed
+
+
+def test_the_run_up_of_a_motor_behind_a_lossy_gear_is_an_exponential() -> None:
+    """(J + e n^2 Jm) w' = e n M0 (1 - n w / w0)."""
+    motor = ck.motor("rotor", stall=0.4, no_load=1000.0, gear=10.0, efficiency=0.8, inertia=2e-4)
+    found = ck.simulate(rotor(motor), start=0.0, until=3.0)
+    lag = (0.05 + 0.8 * 100.0 * 2e-4) * 100.0 / (0.8 * 4.0)
+    np.testing.assert_allclose(
+        found.motion.drives["rotor"].rate, 100.0 * (1.0 - np.exp(-found.times / lag)), rtol=0, atol=1e-8 * 100.0
+    )
+
+
+def test_what_sizing_asks_of_a_motor_is_what_it_gives_in_the_run_up() -> None:
+    """Torques at the shaft over the simulated motion, of the same rotor behind the same gear with the same losses."""
+    motor = ck.motor("rotor", stall=0.4, no_load=1000.0, gear=10.0, efficiency=0.8, inertia=2e-4)
+    run = ck.simulate(rotor(motor), start=(0.0, 1.0), until=3.0)
+    listed = ListedMotor("same", 1.0, 1.0, 1e3, 1e3, 2e-4, ((0.0, 1e3), (1.0, 1.0)))
+    torques, speeds = ck.figures.sizing(run.forces, [listed], gear=10.0, efficiency=0.8).at_shaft(listed, 10.0)
+    np.testing.assert_allclose(torques, 0.4 * (1.0 - speeds / 1000.0), rtol=0, atol=1e-9)
+
+
+def test_statics_of_a_motor_behind_a_lossy_gear_has_no_rotor() -> None:
+    motor = ck.motor("rotor", torque=0.4, gear=10.0, efficiency=0.8, inertia=2e-4)
+    motion = ck.solve(rotor(motor), {"rotor": [0.0]}, speed=2.0, acceleration=50.0)
+    still = ck.force_analysis(motion, inertia=False)
+    assert np.ravel(still.drives["rotor"].effort)[0] == pytest.approx(-3.2, rel=1e-14)
+    assert ck.verify(still).passed
+
+
+def test_a_lossy_rotor_in_a_linkage_with_two_drivers() -> None:
+    """The equation of motion holds at all times: drivers are left without effort, and powers add up."""
+    links = [ck.link("frame", A=0), ck.link("upper", A=0, B=1), ck.link("lower", B=0, C=0.7)]
+    masses = ck.mass("upper", 2.0, at=(0.5, 0), inertia=0.2), ck.mass("lower", 1.0, at=(0.3, 0), inertia=0.05)
+    drives = ck.drive("upper"), ck.drive("lower", on="upper")
+    motor = ck.motor("upper", stall=2.0, no_load=200.0, gear=20.0, efficiency=0.6, inertia=2e-3)
+    arm = ck.Mechanism("Arm", *links, *masses, *drives, motor, ck.gravity(0, -9.81), units=SI)
+    found = ck.simulate(arm, start={"upper": (0.2, 0.0), "lower": (0.4, 0.0)}, until=2.0)
+    efforts = [np.max(np.abs(found.forces.drives[name].effort)) for name in ("upper", "lower")]
+    assert max(efforts) < 1e-7
+    assert found.energy.worst < 1e-8
+
+
+def test_a_lossy_rotor_with_friction_is_refused() -> None:
+    motor = ck.motor("rotor", torque=0.4, efficiency=0.8, inertia=2e-4)
+    with pytest.raises(InvalidInput, match="with friction, a rotor before a gear"):
+        ck.simulate(rotor(motor, ck.friction("O", 0.1, radius=0.01)), start=0.0, until=0.1)
 
 
 def test_a_table_and_its_bounds() -> None:

@@ -29,6 +29,8 @@ from compoundkin.dynamics.simulation.driver_state import (
     first_angle,
     pair_named,
     prescribed_rates,
+    rotor_forces,
+    rotors_that_lose,
 )
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
@@ -546,6 +548,9 @@ class BodyState:
     def forces(self) -> tuple[Number, Number]:
         """The forces along all coordinates: those with a potential, and the others."""
         stored, others = (self._along(loads) for loads in self.chart.loads)
+        if motors := rotors_that_lose(self.chart.loads[1]):
+            dry = self._accelerated(self.terms.weight + stored + others)
+            others = others + rotor_forces(self.loaded, motors, dry, self.response)
         return self.terms.weight + stored, others
 
     def _along(self, loads: Iterable[Load]) -> Number:
@@ -570,7 +575,10 @@ class BodyState:
     @cached_property
     def accelerations(self) -> Number:
         """The accelerations of all coordinates."""
-        terms, push = self.terms, self.forces[0] + self.forces[1]
+        return self._accelerated(self.forces[0] + self.forces[1])
+
+    def _accelerated(self, push: Number) -> Number:
+        terms = self.terms
         led = self.chart.scales * (self.inverse @ self.equations.second)
         found: Number = led + self.response(push - terms.bias - terms.matrix @ led)
         return found

@@ -22,6 +22,7 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.laws import Law
 from compoundkin.model.loads.attachments import PairLoad
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.motor import Motor, as_motor
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.mobility_count import DrivenPair
 
@@ -135,6 +136,9 @@ class DriverState:
     def forces(self) -> tuple[Number, Number]:
         """The forces along the drivers' coordinates: those with a potential, and the others."""
         stored, others = (self.loaded.along(loads) for loads in self.chart.loads)
+        if motors := rotors_that_lose(self.chart.loads[1]):
+            dry = np.concatenate([self._dry(self.terms.weight + stored + others), self.prescribed])
+            others = others + rotor_forces(self.loaded, motors, dry, self.response)
         return self.terms.weight + stored, others
 
     @property
@@ -150,8 +154,11 @@ class DriverState:
     @property
     def dry(self) -> Number:
         """The accelerations of the free drivers without friction."""
+        return self._dry(self.push)
+
+    def _dry(self, along: Number) -> Number:
         n, (matrix, bias, _) = len(self.chart.free), self.terms
-        push = self.push[:n] - bias[:n]
+        push = along[:n] - bias[:n]
         if len(self.prescribed):
             push = push - matrix[:n, n:] @ self.prescribed
         if n == 1:
@@ -302,6 +309,44 @@ class LoadedState(LoadedBlock):
         assert self.turns is not None
         found = pair.coordinate(self._ends(pair), self._poses(pair))
         return self.turns(pair.name, float(np.ravel(found.c[0])[0]))
+
+
+# The senses in which power goes through gears of motors are found in turn, each again so often.
+TURNS_OF_SENSES = 8
+
+
+def rotors_that_lose(loads: Iterable[Load]) -> tuple[Motor, ...]:
+    """Return the motors whose effort depends on the acceleration."""
+    return tuple(one for one in map(as_motor, loads) if one is not None and one.loses_at_rotor)
+
+
+def rotor_forces(
+    at: LoadedState, motors: Sequence[Motor], accelerations: Number, response: Callable[[Number], Number]
+) -> Number:
+    """Return the forces along all coordinates by which efforts of motors differ from those at constant speed.
+
+    `accelerations` are those under efforts at constant speed, `response` those by a force along all coordinates. An
+    effort has a corner where the power through the gear changes its sense: Newton's method ends on a piece of it.
+    """
+    rates = [at.rates_of(one.pair) for one in motors]
+    rows = np.array([row for row, _ in rates])
+    answers = rows @ np.array([response(row) for row in rows]).T
+
+    def efforts(second: Number) -> tuple[Number, Number]:
+        both = [motor.effort_while(at, a) for motor, a in zip(motors, second, strict=True)]
+        return np.array([np.ravel(one)[0] for one, _ in both]), np.array([np.ravel(slope)[0] for _, slope in both])
+
+    begun = rows @ accelerations + [bias for _, bias in rates]
+    still, (here, slopes) = efforts(np.zeros(len(motors)))[0], efforts(begun)
+    second = begun
+    for _ in range(TURNS_OF_SENSES):
+        off, before = second - begun - answers @ (here - still), slopes
+        second = second - np.linalg.solve(np.eye(len(motors)) - answers * slopes, off)
+        here, slopes = efforts(second)
+        if np.array_equal(slopes, before):
+            break
+    found: Number = (here - still) @ rows
+    return found
 
 
 def loaded_state(

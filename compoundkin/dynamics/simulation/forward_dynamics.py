@@ -21,6 +21,7 @@ from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.simulation.coordinate_change import Chart, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.driver_state import rotors_that_lose
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
@@ -140,6 +141,11 @@ def _check_simulated(mechanism: Mechanism, until: float, tolerance: float, resti
     _ = mechanism.stated_units
     if not mechanism.masses:
         raise InvalidInput(Problem("masses", "nothing has a mass", 'write mass("link", 0.2, at=..., inertia=...)'))
+    if mechanism.frictions:
+        for motor in rotors_that_lose(mechanism.loads.values()):
+            what = "with friction, a rotor before a gear with losses is not simulated"
+            remedy = "leave its inertia out and give that to its link, gear squared times it, or efficiency=1"
+            raise InvalidInput(Problem(motor.where, what, remedy))
     if not 0.0 < until < np.inf:
         raise InvalidInput(Problem("until", f"{until:g} is no end", "give seconds after the start, more than 0"))
     if restitution is not None and not 0.0 <= restitution <= 1.0:

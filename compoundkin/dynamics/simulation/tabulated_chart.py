@@ -26,7 +26,13 @@ from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.driver_state import KnownCoordinate, LoadedState, Rates, loaded_state
+from compoundkin.dynamics.simulation.driver_state import (
+    KnownCoordinate,
+    LoadedState,
+    Rates,
+    loaded_state,
+    rotors_that_lose,
+)
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -76,7 +82,7 @@ class TabulatedChart(DriverChart):
         """Return the rates of a state."""
         value, speed = float(values[0]), float(speeds[0])
         piece, value = self._piece(value)
-        if piece is None:
+        if piece is None or self.rotors_lose:
             return super().rates(time, values, speeds)
         basis = piece.basis(value)
         inertia, bias, stored, other = (piece.terms @ basis).tolist()
@@ -84,6 +90,11 @@ class TabulatedChart(DriverChart):
             more = self._exact(piece, basis, time, values, speed)
             stored, other = stored + more[0], other + more[1]
         return Rates(np.array([(stored + other - bias * speed * speed) / inertia]), other * speed)
+
+    @cached_property
+    def rotors_lose(self) -> bool:
+        """Whether efforts of some motors depend on the acceleration, which the table does not have."""
+        return bool(rotors_that_lose(self.loads[1]))
 
     @cached_property
     def has_others(self) -> bool:

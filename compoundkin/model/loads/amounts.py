@@ -190,7 +190,9 @@ class LoadTable(ShortRepr, ComparedByValue, CopiesFields):
         beyond = (x < at[0] - slack) | (x > at[-1] + slack)
         outside = np.ravel(x)[np.ravel(beyond)] if self.period is None else np.empty(0)
         if outside.size:
-            what = f"{outside[0]:g} is outside its table, {at[0]:g} to {at[-1]:g}"
+            # places are tried a little beside each other: what differs from zero by so little is zero
+            shown = 0.0 if abs(outside[0]) < NEARLY_ZERO * (at[-1] - at[0]) else outside[0]
+            what = f"{shown:g} is outside its table, {at[0]:g} to {at[-1]:g}"
             raise InvalidInput(Problem(where, what, "give more of it, or its period"))
         x = np.clip(x, at[0], at[-1])
         return self._spline(x) if self.smooth else np.interp(x, at, values)
@@ -353,3 +355,5 @@ def corners_in_time(amount: Any, until: float, most: int) -> list[float]:
 
 # Places beyond an end of a table by this part of its range or less are that end: rounding of 0.1 + 0.1 + 0.1.
 SLACK = 1e-9
+# A place is written as zero in messages below this part of the range of its table: six digits are shown.
+NEARLY_ZERO = 1e-6

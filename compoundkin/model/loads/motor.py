@@ -37,7 +37,8 @@ class Motor(PairLoad):
     """A motor along the coordinate of a pair, on its second link from its first, behind a gear.
 
     Its shaft turns `gear` times as fast as the coordinate; what it gives is `gear` times its torque, times the
-    `efficiency` of the gear while it drives, over it while it is driven. The `inertia` of its rotor moves with it.
+    `efficiency` of the gear while it drives, over it while it is driven. The `inertia` of its rotor moves with it,
+    before the gear: what the rotor takes loses nothing there.
     """
 
     stall: Number | None = field(default=None, kw_only=True, metadata=_key("Direct current: the torque at rest."))
@@ -188,12 +189,31 @@ class Motor(PairLoad):
     def effort(self, at: LoadedPoses) -> Number:
         """Return what it gives behind the gear."""
         series = at.coordinate(self.pair)
+        second = 2.0 * series.c[2] if len(series.c) > 2 and self.loses_at_rotor else 0.0
+        return self.effort_while(at, second)[0]
+
+    @property
+    def loses_at_rotor(self) -> bool:
+        """Whether its effort depends on the acceleration: the gear passes on what its rotor leaves, with a loss."""
+        return bool(np.any(np.asarray(self.inertia) > 0.0) and np.any(np.asarray(self.efficiency) < 1.0))
+
+    def effort_while(self, at: LoadedPoses, second: Number) -> tuple[Number, Number]:
+        """Return its effort at an acceleration of its coordinate, and its slope by that.
+
+        Its rotor is among the masses of its link, as if the gear lost nothing of what the rotor takes.
+        """
+        series = at.coordinate(self.pair)
         gear, efficiency = at.fitted(self.gear, self.where), at.fitted(self.efficiency, self.where)
         speed = gear * rate_of(series)
         torque = self.shaft_torque(at, speed, series.c[0])
+        # the rotor takes its part before the gear loses any; behind the gear it is given back to the mass of the link
+        inertia = at.fitted(self.inertia, self.where) * gear if self.loses_at_rotor else 0.0
+        passed = torque - inertia * second
         # where it is driven the gear takes its part on top
-        found: Number = gear * torque * np.where(torque * speed >= 0.0, efficiency, 1.0 / efficiency)
-        return found
+        factor = np.where(passed * speed >= 0.0, efficiency, 1.0 / efficiency)
+        if not self.loses_at_rotor:
+            return gear * torque * factor, 0.0
+        return gear * (passed * factor + inertia * second), gear * inertia * (1.0 - factor)
 
 
 def rotors(loads: Iterable[Load]) -> Iterator[tuple[str, Number]]:
