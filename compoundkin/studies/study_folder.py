@@ -143,7 +143,12 @@ def _begin(place: Path, head: FolderHead) -> None:
         raise InvalidInput(Problem(str(place), what, "name a new folder"))
     columns = [column._asdict() for column in head.columns]
     text = json.dumps({"format": FORMAT, **head._asdict(), "columns": columns}, indent=1)
-    write_atomically(place / HEAD, lambda file: file.write(text.encode("utf-8", "surrogatepass")))
+    try:
+        write_atomically(place / HEAD, lambda file: file.write(text.encode("utf-8", "surrogatepass")))
+    except InvalidInput:
+        # another run began it meanwhile, and swept what was not yet in place at its end
+        if not os.path.exists(place / HEAD):
+            raise
 
 
 def _check_same_study(place: Path, own: FolderHead, there: FolderHead) -> None:
