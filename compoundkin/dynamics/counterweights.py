@@ -6,7 +6,7 @@ force, or a slider-crank has the classical one that takes a fraction of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Protocol
@@ -85,6 +85,8 @@ def counterweights(
     *,
     mass: Any = None,
     radius: Any = None,
+    most_mass: Any = None,
+    most_radius: Any = None,
     disc: Any = 0.0,
     fraction: float | None = None,
     about: Any = None,
@@ -97,9 +99,13 @@ def counterweights(
     radius `disc`. Where full balance does not exist, or other links are named, the squared shaking force over the
     motion is minimised; a slider-crank's crank may balance a `fraction` of the reciprocating mass instead.
 
+    `most_mass` bounds masses at given radii, `most_radius` the distances of given masses from their pins, by one number
+    or a mapping by link. Where full balance would exceed them, the squared shaking force is the least within them.
+
     A mechanism is solved over its own motion, which should be a closed cycle. Figures before and after are of masses
     alone, the shaking moment `about` a letter or a place of the frame: moment and drivers' torque usually rise. Raises
-    InvalidInput for several designs and for masses that are arrays, UnknownName for an unknown link.
+    InvalidInput for several designs, for masses that are arrays, and for bounds of what is given; UnknownName for an
+    unknown link.
 
     Source: R. S. Berkof and G. G. Lowen, J. Engineering for Industry 91, 1969, 21-26; where it does not exist, F. R.
     Tepper and G. G. Lowen, J. Engineering for Industry 94, 1972, 789-796.
@@ -116,11 +122,12 @@ def counterweights(
     _check_balanceable(motion)
     place, ways = _place(motion, about), pin_directions(motion)
     conditions = BalanceConditions(ways, bool(closed_cycles(motion)[0]))
+    sizes = CounterweightSizes(ways, mass, radius, disc, most_mass, most_radius)
     if fraction is None:
-        moments = _moments(conditions, _balanced_links(ways, links), CounterweightSizes(ways, mass, radius, disc))
+        moments = _moments(conditions, _balanced_links(ways, links), sizes)
     else:
+        _check_without_bounds(sizes)
         crank, moment = fraction_moment(ways, fraction)
-        sizes = CounterweightSizes(ways, mass, radius, disc)
         moments = tuple(sizes.counterweights((crank,), [moment]))
     balanced = with_counterweights(motion, moments)
     after = replace(motion, structure=replace(motion.structure, mechanism=balanced))
@@ -137,10 +144,18 @@ def _moments(
     if not conditions.unreached:
         chosen = links or conditions.chosen()
         found, rest = sizes.solve(conditions, chosen)
-        if rest <= BALANCED:
+        if rest <= BALANCED and sizes.hold(found):
             return found
+        if rest <= BALANCED:
+            return sizes.solve(ShakingSamples(conditions.ways, sizes.longest), chosen)[0]
     chosen = links or conditions.pinned
-    return sizes.solve(ShakingSamples(conditions.ways), chosen)[0]
+    return sizes.solve(ShakingSamples(conditions.ways, sizes.longest), chosen)[0]
+
+
+def _check_without_bounds(sizes: CounterweightSizes) -> None:
+    """Raise InvalidInput where bounds are given with a fraction."""
+    if sizes.most:
+        raise InvalidInput(Problem("fraction", "the fraction alone sizes the counterweight", "leave out its bounds"))
 
 
 def _check_balanceable(motion: Motion) -> None:
@@ -190,6 +205,10 @@ def _place(motion: Motion, about: Any) -> complex:
 CONVERGED, ROUNDS = 1e-13, 200
 # A moment of mass below this part of mass times size is zero.
 NO_MOMENT = 1e-12
+# A moment beyond its bound by this part is on it: rounding of the equations that gave it.
+WITHIN = 1e-12
+# Sweeps over bounded moments end when none changes by more than this part of the longest, or after so many.
+SETTLED, SWEEPS = 1e-14, 100_000
 
 
 @dataclass(frozen=True)
@@ -224,12 +243,38 @@ class MomentFinder(Protocol):
 class CounterweightSizes:
     """The masses of counterweights, or their distances from the pivots."""
 
-    def __init__(self, ways: PinDirections, mass: Any, radius: Any, disc: Any) -> None:
+    def __init__(
+        self, ways: PinDirections, mass: Any, radius: Any, disc: Any, most_mass: Any = None, most_radius: Any = None
+    ) -> None:
         self.ways = ways
         if mass is not None and radius is not None:
             raise InvalidInput(Problem("mass", "mass and radius are both given", "give one of them"))
         self.masses, self.radii = _by_link(ways, "mass", mass), _by_link(ways, "radius", radius)
         self.discs = _by_link(ways, "disc", disc, least_is_zero=True)
+        bounds = _by_link(ways, "most_mass", most_mass), _by_link(ways, "most_radius", most_radius)
+        self.most = bounds[0] | bounds[1]
+        if wrong := [name for name in bounds[0] if name in self.masses]:
+            raise InvalidInput(
+                Problem("most_mass", f"the mass on {wrong[0]} is given", "bound its radius: most_radius")
+            )
+        if wrong := [name for name in bounds[1] if name not in self.masses]:
+            raise InvalidInput(
+                Problem(
+                    "most_radius",
+                    f"{wrong[0]} has its counterweight at a given radius, by default the link's length",
+                    "give its mass, or bound that: most_mass",
+                )
+            )
+
+    def longest(self, link: str) -> float:
+        """Return the greatest moment of mass that the bounds of a link's counterweight allow, perhaps infinite."""
+        if link not in self.most:
+            return np.inf
+        return self.most[link] * (self.masses[link] if link in self.masses else self._radius(link))
+
+    def hold(self, found: Sequence[Counterweight]) -> bool:
+        """Return whether counterweights are within their bounds."""
+        return all(abs(one.moment) <= self.longest(one.link) * (1.0 + WITHIN) for one in found)
 
     def solve(self, solver: MomentFinder, links: tuple[str, ...]) -> tuple[tuple[Counterweight, ...], float]:
         """Return the counterweights of links, and the unbalanced rest."""
@@ -307,7 +352,8 @@ def with_counterweights(motion: Motion, counterweights: Sequence[Counterweight])
 class ShakingSamples:
     """The accelerations of masses and of links along a motion."""
 
-    def __init__(self, ways: PinDirections) -> None:
+    def __init__(self, ways: PinDirections, longest: Callable[[str], float]) -> None:
+        self.longest = longest
         designs, places, self.weights = nodes(smooth_pieces(ways.motion))
         self.ways, self.motion = ways, between(ways.motion, designs, places, 2)
         total = -sum((mass.force for mass in mass_motions(self.motion)), 0j)
@@ -327,8 +373,34 @@ class ShakingSamples:
         root = np.sqrt(self.weights)
         columns = np.array(turned).reshape(len(links), len(self.weights)).T * root[:, None]
         found = np.linalg.lstsq(columns, force * root, rcond=None)[0] if len(links) else np.empty(0, dtype=complex)
+        bounds = np.array([self.longest(name) for name in links])
+        if np.any(np.abs(found) > bounds):
+            found = bounded_moments(columns, force * root, bounds)
         whole = np.linalg.norm(self.force * root)
         return found, float(np.linalg.norm(columns @ found - force * root) / whole) if whole else 0.0
+
+
+def bounded_moments(columns: Number, force: Number, bounds: Number) -> Number:
+    """Return the complex moments no longer than their bounds with the least squared rest of ``columns @ moments``.
+
+    One moment after another is the best for the others as they are: the squares rise alike in all directions from its
+    unbounded best, so that it is cut to its length. Arrays (equations, moments), (equations,), (moments,).
+
+    Source: D. P. Bertsekas, Nonlinear Programming, 2nd ed., Athena Scientific 1999, section 2.7.
+
+    >>> bounded_moments(np.eye(2), np.array([3.0 + 4.0j, 1.0]), np.array([1.0, 2.0])).round(12).tolist()
+    [(0.6+0.8j), (1+0j)]
+    """
+    products, aims = columns.conj().T @ columns, columns.conj().T @ force
+    found = np.zeros(len(bounds), dtype=complex)
+    for _ in range(SWEEPS):
+        before = found.copy()
+        for k, bound in enumerate(bounds):
+            best = found[k] + (aims[k] - products[k] @ found) / products[k, k]
+            found[k] = best * min(1.0, bound / abs(best)) if best else 0.0
+        if np.max(np.abs(found - before)) <= SETTLED * np.max(np.abs(found)):
+            return found
+    raise InvalidInput(Problem("links", "their counterweights do much the same", "name fewer links"))
 
 
 def fraction_moment(ways: PinDirections, fraction: float) -> tuple[str, complex]:

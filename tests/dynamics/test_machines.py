@@ -531,3 +531,64 @@ def test_what_is_wrong_is_said() -> None:
         ck.figures.counterweights(ck.solve(four_bar(0j, 0j), FINE_TURN), fraction=0.5)
     with pytest.raises(ck.errors.InvalidInput, match="only one design"):
         ck.figures.counterweights(ck.solve(mechanism, np.tile(FINE_TURN, (2, 1))))
+
+
+FOUR_BAR = ck.Mechanism(
+    "Four-bar",
+    ck.link("frame", O=0, C=140),
+    ck.link("crank", O=0, A=50),
+    ck.link("coupler", A=0, B=150),
+    ck.link("rocker", C=0, B=120),
+    ck.drive("crank", speed=100),
+    ck.mass("crank", 1.0, at=20, inertia=2000),
+    ck.mass("coupler", 0.4, at=69 + 12j, inertia=1000),
+    ck.mass("rocker", 1.5, at=50, inertia=4000),
+    units={"length": "mm", "mass": "kg", "force": "N"},
+)
+
+
+@pytest.mark.parametrize("most", [{"rocker": 0.8}, 0.3, {"crank": 0.1, "rocker": 0.5}], ids=str)
+def test_bounded_counterweights_are_the_best_within_their_bounds(most: object) -> None:
+    """No smaller, turned or exchanged counterweights leave less shaking force: all neighbours within are tried."""
+    found = ck.figures.counterweights(FOUR_BAR, radius=60, most_mass=most)
+    bounds = most if isinstance(most, dict) else dict.fromkeys(("crank", "rocker"), most)
+    masses = {one.link: one.mass for one in found.counterweights}
+    assert all(masses[name] <= bound * (1.0 + 1e-12) for name, bound in bounds.items())
+    assert any(masses[name] == pytest.approx(bound, rel=1e-9) for name, bound in bounds.items())
+
+    def rest(moments: dict[str, complex]) -> float:
+        items = {one.link: one for one in FOUR_BAR.masses.values()}
+        changed = []
+        for name, moment in moments.items():
+            own, added = items[name], abs(moment) / 60.0
+            place = 60.0 * moment / abs(moment) if moment else 0.0
+            centre = (own.mass * own.at + added * place) / (own.mass + added)
+            changed.append(ck.mass(name, own.mass + added, at=centre, inertia=own.inertia))
+        motion = ck.solve(FOUR_BAR.replace(*changed), {"crank": np.linspace(0.0, 2.0 * np.pi, 721)}, speed=100)
+        return float(np.mean(np.abs(ck.force_analysis(motion).shaking.force[:-1]) ** 2))
+
+    own = {one.link: complex(one.mass * one.at) for one in found.counterweights}
+    least = rest(own)
+    for name, moment in own.items():
+        for factor in (
+            0.99,
+            np.exp(0.01j),
+            np.exp(-0.01j),
+            *([1.01] if masses[name] < bounds.get(name, 9.9) * 0.99 else []),
+        ):
+            assert rest({**own, name: moment * factor}) >= least * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"mass": 0.4, "most_mass": 1.0}, "most_mass: the mass on crank is given"),
+        ({"most_radius": 50}, "most_radius: crank has its counterweight at a given radius"),
+        ({"most_mass": -1.0}, "most_mass"),
+        ({"most_mass": {"crnk": 1.0}}, "crnk"),
+    ],
+    ids=str,
+)
+def test_bounds_that_mean_nothing_are_told(given: dict[str, object], told: str) -> None:
+    with pytest.raises(ck.errors.CompoundkinError, match=told):
+        ck.figures.counterweights(FOUR_BAR, **given)
