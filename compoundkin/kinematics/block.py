@@ -105,10 +105,15 @@ class Block:
         return replace(self, world=dict(self.world), margins={})
 
     def leading(self, names: Iterable[str] | None = None, order: int = 0) -> Block:
-        """Return the same block to an order only. What is known is of the named links only, or of all."""
-        names = self.world if names is None else names
-        world = {name: self.world[name].trimmed(order) for name in names if name in self.world}
-        local = {name: pose.trimmed(order) for name, pose in self.local.items()}
+        """Return the same block to an order only. What is known is of the named links only, or of all.
+
+        Groups name theirs: work on all links for every group would grow as the square of the links.
+        """
+        names = None if names is None else tuple(names)
+        world, local = (
+            {name: known[name].trimmed(order) for name in (known if names is None else names) if name in known}
+            for known in (self.world, self.local)
+        )
         return replace(self, world=world, local=local, order=order, margins={})
 
     def links_of(self, body: Body, pose: Pose) -> dict[str, Pose]:

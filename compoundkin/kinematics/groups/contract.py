@@ -150,7 +150,7 @@ class GroupSolver(ABC):
 
     def in_modes(self, block: Block) -> Configurations:
         """Return the configurations in all modes, for groups of one mode or two."""
-        trial = block.leading()
+        trial = block.leading((*self.group.uses, *self.group.links))
         signs = np.array([1.0, -1.0])[: self.modes].reshape(-1, *[1] * len(block.shape))
         trial.failed = 0
         self.close(trial, signs)

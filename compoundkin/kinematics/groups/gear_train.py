@@ -53,7 +53,9 @@ class GearTrainSolver(GroupSolver):
         self.slid = tuple(
             mounted for mounted in self.mounted if not mounted.lower.free_is_angle and mounted.lower.is_simple
         )
-        self.links = tuple(dict.fromkeys([*self.counted_from, *(name for pair in highers for name in pair.members)]))
+        beside = (name for pair in highers for name in pair.members)
+        own = (name for _, body in lowers for name in body.links)
+        self.links = tuple(dict.fromkeys([*self.counted_from, *beside, *own]))
 
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:

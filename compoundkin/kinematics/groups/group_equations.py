@@ -61,6 +61,7 @@ class GroupEquations:
         bars: bool = True,
     ) -> None:
         self.n, self.pairs, self.members, self.size = n, pairs, members, size
+        self.links = tuple(dict.fromkeys(member.link for sides in members for member in sides))
         self.middles = middles or (0j,) * n
         self.bars = bars_of(n, pairs, members) if bars else ()
         left_out = {bar.body for bar in self.bars}
@@ -95,7 +96,7 @@ class GroupEquations:
 
         No single correction is longer than `longest` (of the size, or radians).
         """
-        leading, weights = block.leading(), np.moveaxis(self.weights_in(block.ends), -1, 0)
+        leading, weights = block.leading(self.links), np.moveaxis(self.weights_in(block.ends), -1, 0)
         start = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
         bodies: dict[int, Pose] = {}
 
@@ -114,7 +115,7 @@ class GroupEquations:
         """Return all bodies' poses to the given order, from a closed state."""
         kept = self.kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
         if order:
-            inverse = Inverse(self._rows(kept, block.leading()), self.width)
+            inverse = Inverse(self._rows(kept, block.leading(self.links)), self.width)
             for k in range(1, order + 1):
                 kept = self.grown(kept, self.next_rates(kept, inverse, block, k))
         found = {**kept, **{bar.body: bar.pose(kept, block, order) for bar in self.bars}}
@@ -128,7 +129,7 @@ class GroupEquations:
         The side is the sign of the determinant of the equations: it changes across a singularity.
         """
         kept = self.kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
-        inverse = Inverse(self._rows(kept, block.leading()), self.width)
+        inverse = Inverse(self._rows(kept, block.leading(self.links)), self.width)
         found = []
         for k in range(1, order + 1):
             step = self.next_rates(kept, inverse, block, k)
@@ -139,7 +140,7 @@ class GroupEquations:
     def matrix(self, state: Number, block: Block) -> Number:
         """Return the matrix of all equations at a state, (..., width, width)."""
         kept = self.kept_poses(list(np.moveaxis(state, -1, 0)))
-        return stacked(self._rows(kept, block.leading()), self.width)
+        return stacked(self._rows(kept, block.leading(self.links)), self.width)
 
     def next_rates(
         self, kept: Mapping[int, Pose], inverse: Inverse | Elimination, block: Block, k: int
@@ -255,7 +256,7 @@ class NewtonSteps(NamedTuple):
 
     def closed(self, state: Sequence[Number], block: Block, leap: float) -> ClosedState:
         """Correct a state that moves no farther than a leap."""
-        equations, leading, found = self.equations, block.leading(), list(state)
+        equations, leading, found = self.equations, block.leading(self.equations.links), list(state)
         for _ in range(self.before + 1):
             bodies = equations.kept_poses(found)
             step = self._matrix(bodies, leading).times(equations.residual(bodies, leading, 0))

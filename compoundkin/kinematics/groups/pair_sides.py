@@ -75,7 +75,7 @@ class MountedBody:
 
     def leading(self, block: Block, order: int = 0) -> Block:
         """Return what it needs of a block, to an order only."""
-        return block.leading([self.side.other, *self.higher.members], order)
+        return block.leading([self.side.other, *self.higher.members, *self.body.links], order)
 
     def freedom(self, block: Block) -> Freedom:
         """Return how the body moves as the coordinate grows."""
