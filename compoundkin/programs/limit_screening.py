@@ -7,9 +7,9 @@ poses, no change point is passed. A group may also pass between its modes on the
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -102,14 +102,21 @@ class LimitScreening(ShortRepr):
         self.recording, self.approach, self.backend = recording, approach, backend
         self._ready: dict[Any, ReadyProgram[int]] = {}
 
-    def is_clear(self, values: Mapping[str, Number], least: Number) -> bool:
-        """Tell whether surely no design needs screening, as `needed` finds out of all of them."""
+    def is_clear(self, values: Mapping[str, Number], least: Number, numbers: Callable[[], CallNumbers]) -> bool:
+        """Tell whether surely no design needs screening, as `needed` finds out of all of them.
+
+        `numbers` gives those of the call, where the drivers' values are not enough to know.
+        """
         margin = least.item() if least.size == 1 else float(least.min())
         return (
             margin >= NEAR
             and margin >= self._safe_margin(values)
-            and (self.approach.is_passed(values) or not self._squares)
+            and (self.approach.is_passed(values) or not self._squares or self._clear.has(values, numbers))
         )
+
+    @cached_property
+    def _clear(self) -> ClearApproaches:
+        return ClearApproaches(self.approach)
 
     def _safe_margin(self, values: Mapping[str, Number]) -> float:
         return float(safe_margin(max(1.0, self._longest_step(values))))
@@ -147,10 +154,13 @@ class LimitScreening(ShortRepr):
             return np.zeros_like(near), near | (approach is not None)
         if approach is None:
             return near, np.zeros_like(near)
-        early = self._computed(
-            self._poses, _with_driver_values(numbers, approach, dict.fromkeys(approach, np.zeros((1, 1))))
-        )[1]
+        early = self._computed(self._poses, _resting(numbers, approach))[1]
+        self._clear.explore(numbers, partial(self._margins, numbers), min(self._spacings.values()))
         return near, np.any(early < NEAR, axis=1)
+
+    def _margins(self, numbers: CallNumbers, name: str, values: Number) -> Number:
+        """Return the least margins of groups at values of the only driver, (1 or designs, values)."""
+        return self._computed(self._poses, _resting(numbers, {name: values}))[1]
 
     def screen(self, numbers: CallNumbers, least: Number) -> ScreenedDesigns | None:
         """Screen the designs that need it; return None where none does.
@@ -251,6 +261,11 @@ def _with_driver_values(
     return replace(numbers, given=given, shape=(numbers.extent[0], poses))
 
 
+def _resting(numbers: CallNumbers, values: Mapping[str, Number]) -> CallNumbers:
+    """Return the same dimensions with drivers that rest at other values."""
+    return _with_driver_values(numbers, values, dict.fromkeys(values, np.zeros((1, 1))))
+
+
 # Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
 TOUCHING_PART = 0.25
 
@@ -271,6 +286,81 @@ def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Nu
         least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
         touches[touches] = least < TOUCHING_PART * lesser
     return touches
+
+
+# Margins at samples of an approach above which those between them are above NEAR, too: their roots may halve there.
+CLEAR = 4.0 * NEAR
+# The designs whose approaches are known.
+APPROACHES_KEPT = 64
+
+
+class ClearApproaches(ShortRepr):
+    """Ranges of the only driver, from where it is drawn on, over which designs were found clear of limits.
+
+    Who asks for one pose after another approaches over the same values each time.
+    """
+
+    def __init__(self, approach: DrawnApproach) -> None:
+        self.approach = approach
+        self._ranges: dict[tuple[float, ...] | None, tuple[float, float]] = {}
+        self._explored: dict[tuple[float, ...], tuple[float, float]] = {}
+
+    def has(self, values: Mapping[str, Number], numbers: Callable[[], CallNumbers]) -> bool:
+        """Tell whether the approach to a motion of one design is over values that are known to be clear."""
+        if not self._ranges or len(values) != 1:
+            return False
+        known, ways = self._ranges.get(_one_design(numbers())), self._ways(*values.items())
+        return known is not None and ways is not None and known[0] <= ways[0] and ways[1] <= known[1]
+
+    def explore(self, numbers: CallNumbers, margins: Callable[[str, Number], Number], spacing: float) -> None:
+        """Look how far a design is clear, once one pose of it is asked for: a whole turn, or twice as far as that pose.
+
+        `margins` gives those at values of a driver, (1, values).
+        """
+        design, values = _one_design(numbers), numbers.driver_values
+        ways = self._ways(*values.items()) if len(values) == 1 and numbers.extent == (1, 1) else None
+        if design is None or ways is None:
+            return
+        ((name, value),) = values.items()
+        way, home = ways[0], value.item() - ways[0]
+        explored = self._explored.get(design, (0.0, 0.0))
+        if explored[0] <= way <= explored[1]:
+            return
+        is_angle = self.approach.reference.structure.driven_angles[name]
+        ends = (-0.5 * TURN, 0.5 * TURN) if is_angle else (min(explored[0], 2.0 * way), max(explored[1], 2.0 * way))
+        counts = [min(int(np.ceil(2.0 * abs(end) / spacing)), MOST) for end in ends]
+        ranges = [_clear_way(np.linspace(0.0, end, n + 1), lambda way: margins(name, home + way[None])[0])
+                  for end, n in zip(ends, counts, strict=True)]  # fmt: skip
+        if len(self._ranges) >= APPROACHES_KEPT:
+            self._ranges.clear()
+            self._explored.clear()
+        self._ranges[design], self._explored[design] = (ranges[0], ranges[1]), ends
+
+    def _ways(self, driver: tuple[str, Number]) -> tuple[float, float] | None:
+        """Return the least and the greatest way of a driver from where it is drawn; None where that is not one value.
+
+        An angle is drawn in the turn nearest to its first value.
+        """
+        name, value = driver
+        drawn = self.approach.drawn(name)
+        if drawn is None or np.ndim(drawn):
+            return None
+        home = float(drawn)
+        if self.approach.reference.structure.driven_angles[name]:
+            home += TURN * round((value.item(0) - home) / TURN)
+        return (value.item() - home,) * 2 if value.size == 1 else (float(value.min()) - home, float(value.max()) - home)
+
+
+def _clear_way(ways: Number, margins: Callable[[Number], Number]) -> float:
+    """Return how far the first of some ways are clear."""
+    unclear = np.flatnonzero(~(margins(ways) >= CLEAR))
+    return float(ways[max(int(unclear[0]) - 1, 0)] if len(unclear) else ways[-1])
+
+
+def _one_design(numbers: CallNumbers) -> tuple[float, ...] | None:
+    """Return the dimensions of the only design; None where there are several, or they vary along the motion."""
+    found = [value for one, value in numbers.given.items() if one.kind == DIMENSION]
+    return tuple(value.item() for value in found) if all(value.size == 1 for value in found) else None
 
 
 class DrawnApproach(ShortRepr):

@@ -151,7 +151,7 @@ class PathPrograms(ShortRepr):
             if program is not None:
                 given = {} if out is None else output_arrays(out, self._are_vectors(program.program), read.plan.shape)
                 *arrays, least = program.run(read, threads, given)
-                if self.limits.is_clear(read.driver_values, least):
+                if self.limits.is_clear(read.driver_values, least, read.numbers):
                     return self.path_values(read.numbers, arrays, None, read.plan.shape)
                 # a full reading reports values that are not finite
                 return self.checked_values(self.numbers(call), arrays, least)

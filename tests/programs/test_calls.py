@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import pickle
 
@@ -10,6 +11,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, LikelySlip, UnknownName
+from compoundkin.programs.limit_screening import LimitScreening
 from tests.catalog import mechanism as loaded
 from tests.test_wrong_objects import WRONG
 
@@ -327,3 +329,36 @@ def test_many_poses_are_those_of_few(path, poses):
     np.testing.assert_allclose(path(far)["G.position"], motion.points["G"].position, atol=1e-11)
     assert path(far).screened is not None
     assert whole.screened is None
+
+
+def test_one_pose_after_another_is_known_to_be_clear(monkeypatch):
+    mechanism = loaded("six-bar")
+    path = ck.compile(mechanism, OUTPUTS, free=["crank.D"])
+    searched = []
+    needed = LimitScreening.needed
+    monkeypatch.setattr(LimitScreening, "needed", lambda *given: searched.append(given) or needed(*given))
+    for point in (14.0, 13.5):
+        searched.clear()
+        for value in np.linspace(0.2, 9.0, 40):
+            found = path(value, {"crank.D": point})
+            motion = ck.solve(path.mechanism({"crank.D": point}), value, modes=path.modes)
+            np.testing.assert_allclose(found["G.position"], solved(motion, "G.position").item(), atol=1e-11)
+        # the first call is read in full, and finds how far this design is clear: a whole turn
+        assert len(searched) == 1
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_poses_beyond_a_limit_are_not_taken_for_clear_ones():
+    mechanism = loaded("double-rocker")
+    (drive,) = mechanism.drives
+    path = ck.compile(mechanism, [f"{point}.position" for point in mechanism.carriers])
+    for value in [*np.linspace(-3.2, 3.2, 33), 0.5]:
+        found, assembled = path(value), False
+        with contextlib.suppress(ck.errors.NotAssembled):
+            motion = ck.solve(mechanism, {drive.name: value}, modes=path.modes)
+            assembled = bool(np.all(motion.assembled))
+        assert bool(found.assembled) == assembled
+        for name in path.names if assembled else ():
+            np.testing.assert_allclose(
+                found[name], motion.points[name.partition(".")[0]].position, atol=1e-9 * motion.size
+            )

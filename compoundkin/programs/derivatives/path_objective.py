@@ -134,7 +134,7 @@ class PathObjective(ShortRepr):
         if program is None:
             return None
         found = ObjectiveValues.of(program.program, program.run(read, threads))
-        if self.path.limits.is_clear(read.driver_values, found.least):
+        if self.path.limits.is_clear(read.driver_values, found.least, read.numbers):
             return ComputedSum(*found.shaped(read.plan.shape), True)
         return self._screened(read.numbers(), given, is_sloped, threads, found) if read.is_finite() else None
 
