@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -434,6 +435,125 @@ def test_the_table_of_several_phases() -> None:
         found.table("B.xx")
 
 
+def flight_gap(q: float, omega: float, h: float, speed: float, since: float) -> float:
+    """Return the distance of a follower that flies from a cam that turns evenly."""
+    return float(h + speed * since - G * since**2 / 2.0 - lift(q + omega * since)[0])
+
+
+def bounces(t: float, y: Any, until: float, restitution: float) -> tuple[list[float], float, Any]:
+    """Return when a follower meets the cam from its lift-off on, when that ends, and the cam's state then."""
+    from scipy.optimize import brentq
+
+    times, fastest = list[float](), 0.0
+    q, omega = y
+    h, first, _ = lift(q)
+    speed = first * omega
+    while True:
+        gap = partial(flight_gap, q, omega, h, speed)
+        # at the lift-off the gap is of the third order; a bounce is as long as the speed of parting over the weight
+        early = np.geomspace(1e-9, 1e-4, 200) if times else np.empty(0)
+        steps = np.concatenate([early, np.linspace(1e-4, until - t, 6000)[len(early) > 0 :]])
+        late = next((k for k in range(1, len(steps)) if gap(steps[k]) < 0.0 < gap(steps[k - 1])), None)
+        if late is None:
+            return times, until, None
+        since = brentq(gap, steps[late - 1], steps[late], xtol=1e-16)
+        t, q, h, speed = t + since, q + omega * since, lift(q + omega * since)[0], speed - G * since
+        times.append(t)
+        first = lift(q)[1]
+        approach = first * omega - speed
+        fastest = max(fastest, approach)
+        e = restitution if approach > 1e-6 * fastest else 0.0
+        impulse = (1.0 + e) * approach / (first**2 / INERTIA + 1.0 / MASS)
+        omega, speed = omega - first * impulse / INERTIA, speed + impulse / MASS
+        if not e:
+            return times, t, [q, omega]
+
+
+def test_a_follower_rebounds_against_another_integrator() -> None:
+    """Each flight is a parabola over a cam that turns evenly; the bounces end, and contact goes on by SciPy."""
+    from scipy.integrate import solve_ivp
+
+    until, e = 0.34, 0.3
+    found = ck.simulate(
+        eccentric_disc(ck.release("nose", restitution=e)),
+        start={"cam": (-np.pi / 2, 40.0)},
+        until=until,
+        tolerance=1e-12,
+    )
+    pressed.terminal, pressed.direction = True, -1.0  # type: ignore[attr-defined]
+    own = solve_ivp(contact_rates, (0.0, until), [-np.pi / 2, 40.0], "DOP853", rtol=1e-12, atol=1e-13, events=pressed)
+    times, last, y = bounces(float(own.t[-1]), own.y[:, -1], until, e)
+    met = [event for event in found.events if event.name in ("rebounds", "lands")]
+    assert len(times) > 4
+    assert [event.name for event in met[: len(times) - 1]] == ["rebounds"] * (len(times) - 1)
+    np.testing.assert_allclose([event.time for event in met[: len(times)]], times, atol=1e-7)
+    assert y is not None
+    landing = next(event for event in met if event.name == "lands")
+    assert landing.time == pytest.approx(last, abs=1e-6)
+    opened = [event.time for event in found.events if event.name == "opens"]
+    own = solve_ivp(contact_rates, (last, until), y, "DOP853", rtol=1e-12, atol=1e-13, events=pressed)
+    if len(opened) > 1:
+        assert opened[1] == pytest.approx(float(own.t[-1]), abs=1e-6)
+    else:
+        assert found.phases[-1].motion.drives["cam"].rate[-1] == pytest.approx(own.y[1, -1], rel=1e-6)
+    assert found.energy.work[-1] == pytest.approx(-found.losses["nose"], rel=1e-9)
+    assert found.energy.worst < 1e-9
+
+
+def two_followers(which: tuple[int, ...], restitution: float | None) -> ck.Mechanism:
+    """Followers over eccentric discs, turned against each other, on a shaft too heavy to feel them."""
+    items: list[Any] = [
+        *(ck.link("frame", A=0), ck.link("cam", A=0), ck.drive("cam"), ck.mass("cam", 2.0, at="A", inertia=1e4)),
+        ck.gravity(0, -G),
+    ]
+    for k in which:
+        point, link, profile = f"P{k}", f"follower {k}", ck.profiles.disc(0.03, ECCENTRIC * np.exp(1j * k))
+        items += [
+            ck.link(link, **{point: 0}),
+            ck.slide(link, on="frame", at=point, through="A", angle=np.pi / 2, name=f"guide {k}"),
+            ck.cam(link, on="cam", at=point, profile=profile, radius=0.008, name=f"nose {k}"),
+            *(
+                ck.mode(1, link),
+                ck.mass(link, MASS, at=point, inertia=0),
+                ck.release(f"nose {k}", restitution=restitution),
+            ),
+        ]
+    return ck.Mechanism("Two followers", *items, units=SI)
+
+
+@pytest.mark.parametrize("restitution", [None, 0.4])
+def test_contacts_that_are_open_together(restitution: float | None) -> None:
+    """The first to let go lands while the second still flies; each does what it does alone."""
+    runs = {
+        which: ck.simulate(two_followers(which, restitution), start={"cam": (-np.pi / 2, 40.0)}, until=0.24)
+        for which in ((0,), (1,), (0, 1))
+    }
+    alone = sorted((event.time, event.name) for which in ((0,), (1,)) for event in runs[which].events)
+    both = [(event.time, event.name) for event in runs[0, 1].events]
+    assert [name for _, name in both] == [name for _, name in alone]
+    np.testing.assert_allclose([time for time, _ in both], [time for time, _ in alone], atol=1e-7)
+    assert both[2][1] == ("lands" if restitution is None else "rebounds")
+    losses = {**runs[0,].losses, **runs[1,].losses}
+    for name, lost in runs[0, 1].losses.items():
+        assert lost == pytest.approx(losses[name], rel=1e-6)
+    assert all(run.energy.worst < 1e-9 for run in runs.values())
+
+
+def test_what_a_spring_along_an_opening_pair_holds_is_lost() -> None:
+    """A torsion spring at the pin of a pendulum comes off with it, wound by its angle; then the pendulum falls."""
+    stiffness = 3.0
+    found = ck.simulate(
+        pendulum(ck.spring(pair="A", stiffness=stiffness), ck.damper(pair="A", rate=0.1), ck.release("A", until=0.4)),
+        start=0.0,
+        until=1.0,
+    )
+    wound = found.phases[0].motion.drives["bar"].value[-1]
+    assert found.losses == {"A": pytest.approx(stiffness * wound**2 / 2.0, rel=1e-12)}
+    tip = found.phases[1].motion.points["B"]
+    np.testing.assert_allclose(tip.acceleration, -1j * G, atol=1e-9)
+    assert found.energy.worst < 1e-9
+
+
 def test_releases_that_cannot_be() -> None:
     """Each is named: unknown pairs, nothing that opens them, loads along what opens."""
     with pytest.raises(InvalidMechanism) as refused:
@@ -443,9 +563,10 @@ def test_releases_that_cannot_be() -> None:
         "releases[1]",
         "releases[2].over",
     ]
-    sprung = pendulum(ck.spring(pair="A", stiffness=2.0), ck.release("A", until=0.1))
-    with pytest.raises(InvalidInput, match="acts along A, which comes apart"):
-        ck.simulate(sprung, start=0.0, until=1.0)
+    with pytest.raises(InvalidMechanism, match="no contact that lands again"):
+        pendulum(ck.release("A", until=0.1, restitution=0.5))
+    with pytest.raises(InvalidMechanism, match=r"1\.2 is no coefficient of restitution"):
+        eccentric_disc(ck.release("nose", restitution=1.2))
     never = ck.simulate(pendulum(ck.release("A", strength=100.0)), start=0.0, until=0.5)
     assert [event.name for event in never.events] == ["idle"]
     assert never.motion is never.phases[0].motion
@@ -456,3 +577,5 @@ def test_releases_in_files() -> None:
     written = pendulum(ck.release("A", strength=4.0, over="bar", value=ck.deg(-30)))
     assert loads(dumps(written)) == written
     assert "value = -30" in dumps(written)
+    bouncing = eccentric_disc(ck.release("nose", restitution=0.3))
+    assert loads(dumps(bouncing)) == bouncing

@@ -141,7 +141,7 @@ class BodyChart:
     stop_contacts: tuple[StopContact, ...] = ()  # those at stops and in latches
     closed: tuple[StopContact, ...] = ()
     phase: int = 0
-    open_contacts: tuple[Any, ...] = ()  # those that have let go
+    open_pairs: tuple[Any, ...] = ()  # those that have come apart
     adds_stops: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

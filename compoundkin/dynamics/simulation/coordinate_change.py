@@ -145,7 +145,7 @@ def integrable(chart: DriverChart, time: float, state: Number) -> tuple[Chart, N
 def by_links(chart: DriverChart, state: DriverState) -> tuple[BodyChart, Number]:
     """Return the chart of the coordinates of all links, and a state of drivers in it."""
     world = {link: _still(pose) for link, pose in state.block.world.items()}
-    contacts = chart.stop_contacts, chart.closed, chart.phase, chart.open_contacts
+    contacts = chart.stop_contacts, chart.closed, chart.phase, chart.open_pairs
     kind = FrictionChart if chart.mechanism.frictions else BodyChart
     found = kind(chart.start, chart.free, chart.laws, world, *contacts)
     rates = [_rates(state.block.world[link]) for link in found.links]

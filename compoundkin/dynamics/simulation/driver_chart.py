@@ -52,7 +52,7 @@ class DriverChart:
     stop_contacts: tuple[StopContact, ...] = field(init=False, default=())  # those at stops and in latches
     closed: tuple[StopContact, ...] = field(init=False, default=())  # those of them that are closed
     phase: int = field(init=False, default=0)
-    open_contacts: tuple[Any, ...] = field(init=False, default=())  # those that have let go
+    open_pairs: tuple[Any, ...] = field(init=False, default=())  # those that have come apart
 
     # whether loads are those of the chart, so that stops are added as they are closed
     adds_stops: ClassVar[bool] = True
@@ -179,7 +179,7 @@ class DriverChart:
 
     def count_on(self, before: DriverState) -> None:
         """Count angles on from a state of another chart, at the same stops."""
-        self.phase, self.open_contacts = before.chart.phase, before.chart.open_contacts
+        self.phase, self.open_pairs = before.chart.phase, before.chart.open_pairs
         self.stop_contacts, self.closed = before.chart.stop_contacts, before.chart.closed
         angles = [name for name, (_, own) in before.chart.driven.items() if own.pair.free_is_angle]
         for name in (*before.chart.turned, *angles):

@@ -81,7 +81,7 @@ class StateChart(Protocol):
     stop_contacts: tuple[Any, ...]  # those at stops and in latches
     closed: tuple[Any, ...]  # those of them that are closed
     phase: int  # the number of the phase
-    open_contacts: tuple[Any, ...]  # the contacts that have let go
+    open_pairs: tuple[Any, ...]  # the pairs that have come apart
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the accelerations of the free drivers at a state."""
@@ -383,6 +383,10 @@ class KnownState(Protocol):
     @property
     def time(self) -> float:
         """The time, seconds."""
+
+    @property
+    def values(self) -> Number:
+        """The values of all coordinates."""
 
     @property
     def speeds(self) -> Number:

@@ -21,7 +21,7 @@ from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
-from compoundkin.dynamics.simulation.phases import OpenContact, landed, without_pair
+from compoundkin.dynamics.simulation.phases import OpenPair, landed, without_pair
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
     REST,
@@ -131,6 +131,8 @@ def _next_phase(chart: Chart, passed: _Interruption, state: Number, course: Simu
     here = chart.state(passed.time, state[:n], state[n : 2 * n])
     if passed.released is not None:
         found = without_pair(here, passed.released, float(state[-1]))
+        if found.lost:
+            course.events[-1] = replace(course.events[-1], lost=found.lost, loser=passed.released.pair)
     else:
         assert passed.landing is not None
         found = landed(here, passed.landing, float(state[-1]))
@@ -177,7 +179,7 @@ class _Interruption(NamedTuple):
     time: float
     state: Number | None
     released: Release | None = None  # the pair that comes apart there
-    landing: OpenContact | None = None  # the contact that closes there
+    landing: OpenPair | None = None  # the contact that closes there
     is_smooth: bool = False  # whether speeds and states go on as they are
 
 

@@ -23,7 +23,7 @@ from compoundkin.dynamics.simulation.body_chart import BodyChart
 from compoundkin.dynamics.simulation.coordinate_change import Chart, as_driven, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import KnownState, LinearAngle, pair_named
-from compoundkin.dynamics.simulation.stop_contacts import StopContact
+from compoundkin.dynamics.simulation.stop_contacts import ContactState, StopContact
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
@@ -72,38 +72,73 @@ class _Begun(NamedTuple):
     lost: float
 
 
+@dataclass(frozen=True)
+class _Parted:
+    """A mechanism that has come apart, without drivers of what is free, its laws, and the poses of its links."""
+
+    mechanism: Mechanism
+    laws: Mapping[str, Law]
+    poses: Mapping[str, Pose]
+
+    def without(self, pair: Pair, masses: Sequence[MovingMass], driven: str) -> _Parted:
+        """Return it without a pair, whose driver is `driven`, if it has one."""
+        items = opened_items(self.mechanism, pair)
+        items = [item for item in items if not (isinstance(item, Drive) and item.name == driven)]
+        laws = {name: law for name, law in self.laws.items() if name != driven}
+        poses, floating = self.poses, _floating(self.mechanism, items, pair)
+        if floating:
+            more, carried = _carriage(self.mechanism, items, masses, floating, poses)
+            body = more[0]
+            items = [body if isinstance(item, Link) and item.name == carried.name else item for item in items]
+            items, poses = [*items, *more[1:]], {**poses, **carried.poses}
+        return _Parted(with_items(self.mechanism, items), laws, poses)
+
+    def begun(self, state: KnownState) -> _Begun | None:
+        """Return the phase that begins with it at a state; None where no drivers of pairs are coordinates of it."""
+        known = _driven_values(state)
+        for added in _choices(self.mechanism):
+            try:
+                items = [*self.mechanism.items, *added]
+                return _begun(with_items(self.mechanism, items), state, self.poses, self.laws, known)
+            except CompoundkinError:
+                continue
+        return None
+
+
 def without_pair(state: KnownState, opened: Release, work: float) -> PhaseStart:
-    """Return the phase that follows where a pair comes apart. Raises InvalidInput where it cannot go on."""
+    """Return the phase that follows where a pair comes apart. Raises InvalidInput where it cannot go on.
+
+    Loads along the pair end there, and what its springs have stored is lost.
+    """
     chart: Chart = state.chart
     pair = pair_meant(chart, opened.pair)
-    _check_loads(chart.mechanism, pair)
-    items = opened_items(chart.mechanism, pair)
     driven = chart.start.structure.driven
     dropped = next((name for name, own in driven.items() if own.pair.name == pair.name), "")
-    items = [item for item in items if not (isinstance(item, Drive) and item.name == dropped)]
-    floating = _floating(chart.mechanism, items, pair)
-    laws = {name: law for name, law in chart.laws.items() if name != dropped}
-    poses = {name: _true(pose) for name, pose in state.block.world.items()}
-    if floating:
-        more, carried = _carriage(chart.mechanism, items, moving_masses(chart.start.structure), floating, poses)
-        body = more[0]
-        items = [body if isinstance(item, Link) and item.name == carried.name else item for item in items]
-        items, poses = [*items, *more[1:]], {**poses, **carried.poses}
-    base = with_items(chart.mechanism, items)
-    known = {name: value for name, value in _driven_values(state).items() if name != dropped}
+    whole = _Parted(chart.mechanism, chart.laws, _poses(state))
+    parted = whole.without(pair, moving_masses(chart.start.structure), dropped)
+    found = parted.begun(state)
+    if found is None:
+        what = f"without {pair.name} its links move by coordinates that no driver of a pair can have"
+        raise InvalidInput(Problem(opened.where, what, "stop the simulation there"))
     kept = tuple(one for one in chart.stop_contacts if pair_meant(chart, one.stop.pair).name != pair.name)
-    contact = as_profile_contact(pair)
-    open_contacts = chart.open_contacts
-    if contact is not None:
-        open_contacts = (*open_contacts, OpenContact(contact, chart.mechanism, chart.laws))
-    for added in _choices(base):
-        try:
-            found = _begun(with_items(chart.mechanism, [*items, *added]), state, poses, laws, known)
-        except CompoundkinError:
-            continue
-        return _continued(found, state, work, kept, open_contacts)
-    what = f"without {pair.name} its links move by coordinates that no driver of a pair can have"
-    raise InvalidInput(Problem(opened.where, what, "stop the simulation there"))
+    opening = OpenPair(pair, opened.restitution_of_landing, chart.mechanism, chart.laws, dropped)
+    stored = _stored_along(state, pair)
+    begun = _continued(found, state, work - stored, kept, (*chart.open_pairs, opening))
+    return replace(begun, lost=stored)
+
+
+def _poses(state: KnownState) -> dict[str, Pose]:
+    """Return the poses of all links with their true rates."""
+    return {name: _true(pose) for name, pose in state.block.world.items()}
+
+
+def _stored_along(state: KnownState, pair: Pair) -> float:
+    """Return the energy that springs along a pair have stored."""
+    mechanism, total = state.chart.mechanism, 0.0
+    for load in mechanism.loads.values():
+        energy = load.energy(state.loaded) if _is_of(mechanism, load, pair) else None
+        total += 0.0 if energy is None else float(np.ravel(energy)[0])
+    return total
 
 
 # A contact lands where its gap is below minus this part of the size: at the lift-off it is zero but for rounding.
@@ -111,31 +146,67 @@ LANDED = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class OpenContact:
-    """A contact that has let go, and the mechanism before with its laws."""
+class OpenPair:
+    """A pair that has come apart, and the mechanism before with its laws, and the driver that it had.
 
-    contact: ProfileContact
+    A contact closes again, after rebounds with the part `restitution` of the speed.
+    """
+
+    pair: Pair
+    restitution: float
     mechanism: Mechanism
     laws: Mapping[str, Law]
+    driven: str
 
-    def gap(self, state: KnownState) -> float:
-        """Return the distance of its two links."""
-        poses = tuple(_true(state.block.world[name]) for name in self.contact.members)
-        ends = self.contact.ends(self.mechanism.geometry)
-        return float(np.ravel(self.contact.touch(ends, poses).gap.c[0])[0])
+    @property
+    def contact(self) -> ProfileContact | None:
+        """It as a contact that may close again, or None."""
+        return as_profile_contact(self.pair)
+
+    def at(self, state: KnownState) -> ContactState:
+        """Return the gap of the contact, its rate, and the rate at unit speed of each free coordinate."""
+        chart, n = state.chart, len(state.chart.free)
+        values, none = state.values[:n], np.zeros(n)
+        gap, rate = self.gap(state)
+        rest = self.gap(chart.state(state.time, values, none))[1]
+        normal = np.zeros(len(state.speeds))
+        for k in range(n):
+            unit = none.copy()
+            unit[k] = 1.0
+            normal[k] = self.gap(chart.state(state.time, values, unit))[1] - rest
+        return ContactState(gap, rate, normal, 0.0)
+
+    def gap(self, state: KnownState) -> tuple[float, float]:
+        """Return the distance of its two links, and its rate."""
+        assert self.contact is not None
+        poses = tuple(_true(state.block.world[name]) for name in self.pair.members)
+        gap = self.contact.touch(self.pair.ends(self.mechanism.geometry), poses).gap
+        return float(np.ravel(gap.c[0])[0]), float(np.ravel(gap.c[1])[0]) if len(gap.c) > 1 else 0.0
 
 
-def landed(state: KnownState, landing: OpenContact, work: float) -> PhaseStart:
-    """Return the phase that follows where the last contact that has let go closes again, without a rebound."""
+def landed(state: KnownState, landing: OpenPair, work: float) -> PhaseStart:
+    """Return the phase that follows where a contact closes again, while what came apart after it stays open.
+
+    Raises InvalidInput where it cannot go on.
+    """
     chart: Chart = state.chart
-    poses = {name: _true(pose) for name, pose in state.block.world.items()}
-    found = _begun(landing.mechanism, state, poses, landing.laws, _driven_values(state))
-    return _continued(found, state, work, chart.stop_contacts, chart.open_contacts[:-1])
+    at = chart.open_pairs.index(landing)
+    before, after = chart.open_pairs[:at], chart.open_pairs[at + 1 :]
+    parted, opened = _Parted(landing.mechanism, landing.laws, _poses(state)), list[OpenPair]()
+    for one in after:
+        opened.append(replace(one, mechanism=parted.mechanism, laws=parted.laws))
+        parted = parted.without(one.pair, moving_masses(chart.start.structure), one.driven)
+    found = parted.begun(state)
+    if found is None:
+        what = f"when {landing.pair.name} closes its links move by coordinates that no driver of a pair can have"
+        raise InvalidInput(Problem(landing.pair.name, what, "stop the simulation there"))
+    return _continued(found, state, work, chart.stop_contacts, (*before, *opened))
 
 
-def _driven_values(state: KnownState) -> dict[str, float]:
-    """Return the values of all drivers at a state, with their turns."""
-    return {name: float(np.ravel(course[0])[0]) for name, course in state.motion.inputs.drives.items()}
+def _driven_values(state: KnownState) -> dict[tuple[str, str], float]:
+    """Return the values of all drivers at a state, with their turns, by their names and those of their pairs."""
+    driven, given = state.chart.start.structure.driven, state.motion.inputs.drives
+    return {(name, own.pair.name): float(np.ravel(given[name][0])[0]) for name, own in driven.items()}
 
 
 def _continued(
@@ -143,11 +214,11 @@ def _continued(
     state: KnownState,
     work: float,
     stop_contacts: tuple[StopContact, ...],
-    open_contacts: tuple[OpenContact, ...],
+    open_pairs: tuple[OpenPair, ...],
 ) -> PhaseStart:
     """Return the start of a phase in the coordinates in which it is integrated, with what goes on from the last."""
     chart = begun.chart
-    chart.phase, chart.open_contacts = state.chart.phase + 1, open_contacts
+    chart.phase, chart.open_pairs = state.chart.phase + 1, open_pairs
     chart.stop_contacts = stop_contacts
     chart.closed = tuple(one for one in state.chart.closed if one in stop_contacts)
     driven = [own.pair.name for own in state.chart.start.structure.driven.values() if own.pair.free_is_angle]
@@ -175,16 +246,6 @@ def pair_meant(chart: Chart, name: str) -> Pair:
         if own.letters == meant.letters and set(own.members) == set(meant.members) and own.title == meant.title:
             return own
     return meant
-
-
-def _check_loads(mechanism: Mechanism, pair: Pair) -> None:
-    """Raise InvalidInput for loads along the pair that opens, which would end there."""
-    for item in mechanism.loads.values():
-        if isinstance(item, PairLoad) and item.amounts_held and set(item.members) == set(pair.members):
-            meant = mechanism.names.coordinate(item.pair)
-            if meant is not None and meant.letters == pair.letters:
-                what = f"{item.name} acts along {pair.name}, which comes apart"
-                raise InvalidInput(Problem(item.where, what, "let it act between points of the two links"))
 
 
 def opened_items(mechanism: Mechanism, pair: Pair) -> list[Item]:
@@ -321,7 +382,7 @@ def _begun(
     state: KnownState,
     poses: Mapping[str, Pose],
     laws: Mapping[str, Law],
-    known: Mapping[str, float],
+    known: Mapping[tuple[str, str], float],
 ) -> _Begun:
     """Return the chart of the next mechanism in the poses of a state, and its speeds."""
     structure = decompose(mechanism)
@@ -331,7 +392,7 @@ def _begun(
     for name, own in structure.driven.items():
         series = own.pair.coordinate(own.pair.ends(mechanism.geometry), tuple(poses[one] for one in own.pair.members))
         sense = float(as_driven(own.pair).driven_by(own.drive.link))
-        values[name] = known.get(name, float(np.ravel(series.c[0])[0]) * sense)
+        values[name] = known.get((name, own.pair.name), float(np.ravel(series.c[0])[0]) * sense)
         rates[name] = float(np.ravel(series.c[1])[0]) * sense if len(series.c) > 1 else 0.0
     here = Configuration(structure, values, placed_at(poses, (0, 0)), {}, {}, dimensions_at(structure, 0, 0))
     with warnings.catch_warnings():

@@ -17,7 +17,7 @@ from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
-from compoundkin.dynamics.simulation.phases import LANDED, OpenContact, pair_meant
+from compoundkin.dynamics.simulation.phases import LANDED, OpenPair, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
 from compoundkin.kinematics.solving_order import AT_END
 from compoundkin.model.loads.amounts import corners_in_time, function_of_time
@@ -43,8 +43,8 @@ REVERSES = "reverses"
 STOP, RESTS, LEAVES = "stop", "rests", "leaves"
 # The names of the events of latches, the last one at the end.
 CATCHES, OPENS, TOOTH, IDLE = "catches", "opens", "tooth", "idle"
-# The name of the event at which a contact that has let go closes.
-LANDS = "lands"
+# The names of the events at which a contact that has let go closes, or is left again at once.
+LANDS, REBOUNDS = "lands", "rebounds"
 Function = Callable[[SimulatedState], Any]
 
 
@@ -178,7 +178,7 @@ class StopPassage(NamedTuple):
     state: Number
     approach: float = 0.0
     released: Release | None = None  # the pair that comes apart
-    landing: OpenContact | None = None  # the contact that closes
+    landing: OpenPair | None = None  # the contact that closes
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,20 +322,28 @@ class OpenWatch(Watch):
 class LandWatch(Watch):
     """A contact that has let go, and closes where both links meet."""
 
-    landing: OpenContact = field(kw_only=True)
+    landing: OpenPair = field(kw_only=True)
 
     def value(self, chart: Chart, time: float, state: Number) -> float:
-        """Return the gap."""
-        n = len(chart.free)
-        return self.landing.gap(chart.state(time, state[:n], state[n : 2 * n])) + LANDED * chart.order.size
+        """Return the gap; while its links part it is above zero, also where rounding is as large."""
+        n, least = len(chart.free), LANDED * chart.order.size
+        gap, rate = self.landing.gap(chart.state(time, state[:n], state[n : 2 * n]))
+        return max(gap + least, least) if rate > 0.0 else gap + least
 
     def passage(self, chart: Chart, time: float, state: Number, fastest: float) -> StopPassage:
-        """Close the contact; it goes on as before, if it is the last one that has let go."""
-        name = self.landing.contact.name
-        is_last = self.landing is chart.open_contacts[-1]
-        text = f"the contact at {name} closes" + ("" if is_last else " while another is open: it cannot go on")
-        event = SimulationEvent(time, LANDS, text, not is_last, loser=name)
-        return StopPassage(event, state, landing=self.landing)
+        """Let the contact rebound, or close it where it is slow or has no restitution."""
+        one, n, name = self.landing, len(chart.free), self.landing.pair.name
+        here = chart.state(time, state[:n], state[n : 2 * n])
+        at = one.at(here) if one.restitution else None
+        if at is not None and -at.rate > SLOW * max(fastest, float(np.abs(at.normal) @ np.abs(here.speeds))):
+            hit = impact(one, one.restitution, chart.rigid, here)
+            after = np.array([*state[:n], *hit.speeds, state[-1] - hit.lost])
+            elastic = [other for other in chart.closed if other.stop.is_elastic]
+            chart.closed = (*elastic, *hit.staying)
+            event = SimulationEvent(time, REBOUNDS, f"the contact at {name} rebounds", False, hit.lost, name)
+            return StopPassage(event, after, abs(at.rate))
+        event = SimulationEvent(time, LANDS, f"the contact at {name} closes", False, loser=name)
+        return StopPassage(event, state, landing=one)
 
 
 def stop_watches(chart: Chart) -> Iterator[ContactWatch]:
@@ -362,8 +370,8 @@ def stop_watches(chart: Chart) -> Iterator[ContactWatch]:
             name = pair_meant(chart, release.pair).name
             text = f"the contact at {name} lets go"
             yield OpenWatch(OPENS, _speed, text, False, True, item=release, margin=partial(_pressed, name))
-    for landing in chart.open_contacts:
-        yield LandWatch(LANDS, _speed, landing.contact.name, False, True, landing=landing)
+    for landing in (one for one in chart.open_pairs if one.contact is not None):
+        yield LandWatch(LANDS, _speed, landing.pair.name, False, True, landing=landing)
 
 
 def _latched(one: StopContact, chart: Chart, here: KnownState, state: Number) -> float:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -179,7 +179,14 @@ class StopImpact(NamedTuple):
     staying: tuple[StopContact, ...]
 
 
-def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact], state: KnownState) -> StopImpact:
+class Gap(Protocol):
+    """A contact at a stop, or of a pair, with a gap."""
+
+    def at(self, state: KnownState) -> ContactState:
+        """Return the gap at a state."""
+
+
+def impact(hit: Gap, restitution: float, staying: Sequence[StopContact], state: KnownState) -> StopImpact:
     """Return the result of an impact at one contact while others are closed.
 
     M (v+ - v-) = N p with n . v+ = -e n . v- at the one, n . v+ = 0 and p > 0 at those that stay.
@@ -189,7 +196,7 @@ def impact(hit: StopContact, restitution: float, staying: Sequence[StopContact],
     n, matrix, before = len(state.chart.free), state.terms.matrix, state.speeds
     kept = list(staying)
     while True:
-        here = [one.at(state) for one in (hit, *kept)]
+        here = [hit.at(state), *(one.at(state) for one in kept)]
         normals = np.array([one.normal for one in here])
         change = np.array([(1.0 + restitution) * here[0].rate, *(one.rate for one in here[1:])])
         impulses = -np.linalg.lstsq(_compliance(normals, state), change, rcond=None)[0]

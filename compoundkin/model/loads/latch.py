@@ -118,22 +118,40 @@ class Latch(OpeningLoad):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Release(OpeningLoad):
-    """A pair that comes apart: from there on its two links are joined by it no more."""
+    """A pair that comes apart: from there on its two links are joined by it no more.
+
+    A contact lands again, with the part `restitution` of the speed.
+    """
+
+    restitution: Number | None = field(
+        default=None,
+        kw_only=True,
+        metadata=value_key("length", "The part of the speed with which a contact rebounds where it lands, 0 to 1."),
+    )
 
     title: ClassVar[str] = "release"
     table: ClassVar[str] = "releases"
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find unknown pairs, numbers out of range, and a pair that nothing opens; a contact needs nothing to open."""
-        pair = written.pair(self.pair)
+        pair, e = written.pair(self.pair), self.restitution
+        if e is not None and not np.all((np.asarray(e) >= 0.0) & (np.asarray(e) <= 1.0)):
+            yield Problem(f"{where}.restitution", f"{e:.6g} is no coefficient of restitution", "0 to 1")
         if pair is not None and as_profile_contact(pair) is not None:
             if self.opens:
                 what = f"{self.pair!r} is a {pair.title}, which lets go where its force falls to zero"
                 yield Problem(where, what, "leave the conditions out")
             return
         yield from super().problems(written, where)
+        if e is not None:
+            yield Problem(f"{where}.restitution", f"{self.pair!r} is no contact that lands again", "leave it out")
         if not self.opens:
             yield Problem(where, "nothing opens it", "give until, over and value, or strength")
+
+    @property
+    def restitution_of_landing(self) -> float:
+        """The part of the speed with which its contact rebounds."""
+        return 0.0 if self.restitution is None else float(np.ravel(self.restitution)[0])
 
 
 def as_release(load: Load) -> Release | None:
@@ -180,20 +198,28 @@ def latch(
 
 @checked
 def release(
-    pair: str, *, strength: Any = None, until: Any = None, over: str = "", value: Any = None, name: str = ""
+    pair: str,
+    *,
+    strength: Any = None,
+    until: Any = None,
+    over: str = "",
+    value: Any = None,
+    restitution: Any = None,
+    name: str = "",
 ) -> Release:
     """Return a pair that comes apart in a simulation, which goes on without it.
 
     It opens as a `latch` does: at the time `until` (seconds), where the coordinate of the pair `over` comes to `value`
     (radians, with full turns counted, or a length), or where the force in it exceeds `strength`. At a pin it is the
     second of its links that leaves it. The contact of a cam or a flat face is released where its force falls to zero,
-    without any condition, and closes again where both meet.
+    without any condition, and closes again where both meet, after rebounds with the part `restitution` of the speed at
+    which they do, none if it is left out. Loads along a pair that opens end there.
 
     >>> release("S", over="sling", value=2.4).name
     'release along S'
     """
     where = f"releases.{name or pair}"
-    given = {"strength": strength, "until": until, "value": value}
+    given = {"strength": strength, "until": until, "value": value, "restitution": restitution}
     numbers: dict[str, Any] = {
         key: None if number is None else real(f"{where}.{key}", number) for key, number in given.items()
     }
