@@ -179,14 +179,14 @@ class StopImpact(NamedTuple):
     staying: tuple[StopContact, ...]
 
 
-class Gap(Protocol):
+class MeetingGap(Protocol):
     """A contact at a stop, or of a pair, with a gap."""
 
     def at(self, state: KnownState) -> ContactState:
         """Return the gap at a state."""
 
 
-def impact(hit: Gap, restitution: float, staying: Sequence[StopContact], state: KnownState) -> StopImpact:
+def impact(hit: MeetingGap, restitution: float, staying: Sequence[StopContact], state: KnownState) -> StopImpact:
     """Return the result of an impact at one contact while others are closed.
 
     M (v+ - v-) = N p with n . v+ = -e n . v- at the one, n . v+ = 0 and p > 0 at those that stay.
