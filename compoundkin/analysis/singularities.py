@@ -27,7 +27,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, degrees, wrapped
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase
 from compoundkin.base.errors import ChangePointWarning, InvalidInput, Problem, UnassembledPoses
-from compoundkin.base.linear import zeros_of_forms
+from compoundkin.base.linear import one_thread, zeros_of_forms
 from compoundkin.base.newton import StoppingRule, gauss_newton
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
@@ -262,6 +262,7 @@ class Singularities(Sequence[Singularity], DisplaysHtml, ShortRepr):
 
 
 @checked
+@one_thread
 def singularities(what: Motion | Mechanism | Structure, outputs: Sequence[str] = ()) -> Singularities:
     """Return the singular poses along a motion, between its poses too, and the branches that meet there.
 
@@ -290,6 +291,7 @@ def singularities(what: Motion | Mechanism | Structure, outputs: Sequence[str] =
 
 
 @checked
+@one_thread
 def singular_poses(motion: Motion) -> Singularities:
     """Return the singular poses along a motion without the dead points of its outputs. See `singularities`."""
     return _numbered(motion, _of_equations(motion))

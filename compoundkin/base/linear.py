@@ -1,11 +1,16 @@
 """Batches of small linear systems: Cramer's rule, LAPACK, and elimination in straight-line arithmetic.
 
 A singular system gives NaN. `Elimination` selects its pivots without branching on values, so that it can be recorded.
+`one_thread` keeps LAPACK from waking threads for what one of them does sooner.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import ContextDecorator
+from functools import cached_property
+from importlib import import_module
+from threading import Lock
 from typing import TypeAlias
 
 import numpy as np
@@ -17,6 +22,63 @@ Row: TypeAlias = dict[int, Number]
 # Up to so many unknowns each entry is an array over the batch; beyond, whole matrices are multiplied: the number of
 # calls would grow with the square of the unknowns.
 ONE_BY_ONE = 12
+
+
+# How builds of OpenBLAS and MKL name the number of their threads, read and set: NumPy's own wheels first.
+_NUMBERS_OF_THREADS = (
+    ("scipy_openblas_get_num_threads64_", "scipy_openblas_set_num_threads64_"),
+    ("scipy_openblas_get_num_threads", "scipy_openblas_set_num_threads"),
+    ("openblas_get_num_threads64_", "openblas_set_num_threads64_"),
+    ("openblas_get_num_threads", "openblas_set_num_threads"),
+    ("MKL_Get_Max_Threads", "MKL_Set_Num_Threads"),
+)
+
+
+class OneThread(ContextDecorator):
+    """Linear algebra on one thread within, in the whole process; as before once the last of those within has left.
+
+    Matrices of some hundred links are done sooner than other threads are awake: on a machine that is busy, threads that
+    wait for each other took hundreds of times as long. Where NumPy's library is another one nothing changes.
+
+    >>> with OneThread():
+    ...     bool(np.linalg.det(np.eye(3)) == 1.0)
+    True
+    """
+
+    def __init__(self) -> None:
+        self._lock, self._inside, self._before = Lock(), 0, 1
+
+    def __enter__(self) -> None:
+        """Take one thread, unless others within did so."""
+        with self._lock:
+            self._inside += 1
+            if self._inside == 1 and self._threads:
+                self._before = self._threads[0]()
+                if self._before > 1:
+                    self._threads[1](1)
+
+    def __exit__(self, *error: object) -> None:
+        """Take as many threads as before, once nobody is within."""
+        with self._lock:
+            self._inside -= 1
+            if not self._inside and self._threads and self._before > 1:
+                self._threads[1](self._before)
+
+    @cached_property
+    def _threads(self) -> tuple[Callable[[], int], Callable[[int], None]] | None:
+        """How the number of threads is read and set, None where that is not known."""
+        import ctypes
+
+        try:
+            # looked up in all that it is linked with
+            library = ctypes.CDLL(import_module("numpy.linalg._umath_linalg").__file__)
+        except (ImportError, OSError, TypeError):
+            return None
+        names = (each for each in _NUMBERS_OF_THREADS if all(hasattr(library, name) for name in each))
+        return next(((getattr(library, read), getattr(library, put)) for read, put in names), None)
+
+
+one_thread = OneThread()
 
 
 class Inverse:

@@ -13,6 +13,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, suggestion
+from compoundkin.base.linear import one_thread
 from compoundkin.configurations.circuit import (
     Branch,
     Circuit,
@@ -112,6 +113,7 @@ class Circuits(DisplaysHtml):
 
 
 @checked
+@one_thread
 def circuits(
     mechanism: Mechanism | Structure,
     driver: str | None = None,

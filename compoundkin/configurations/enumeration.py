@@ -16,6 +16,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number, degrees, first_entry
 from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
+from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import Pose
 from compoundkin.configurations.driver_range import greatest_reach
 from compoundkin.configurations.segment_poses import drawn_angle
@@ -155,6 +156,7 @@ def closed_redundant(solving_order: SolvingOrder, block: Block) -> Number:
 
 
 @checked
+@one_thread
 def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Configurations:
     """Find all configurations of a mechanism at driver values, radians or lengths, those of `solve` by default.
 

@@ -21,6 +21,7 @@ from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.display import display_function
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, suggestion
+from compoundkin.base.linear import one_thread
 from compoundkin.configurations.driver_range import starting_values
 from compoundkin.configurations.enumeration import AllModes
 from compoundkin.configurations.prescribed_point import ACROSS, ALONG, TURN_OF, ModeSigns, PrescribedPoint
@@ -140,6 +141,7 @@ class Workspace(CopiesFields):
 
 
 @checked
+@one_thread
 def workspace(
     mechanism: Mechanism | Structure,
     point: str,

@@ -17,6 +17,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, first_entry
 from compoundkin.base.display import ShortRepr, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.linear import one_thread
 from compoundkin.dynamics.balance_conditions import BALANCED, BalanceConditions, PinDirections, pin_directions
 from compoundkin.dynamics.course_quadrature import nodes, smooth_pieces
 from compoundkin.dynamics.mass_motion import mass_centre_place, mass_motions, units_of_masses
@@ -79,6 +80,7 @@ class ForceBalance(ShortRepr):
 
 
 @checked
+@one_thread
 def counterweights(
     what: Motion | Mechanism,
     links: str | Sequence[str] = (),

@@ -17,6 +17,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, degrees
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnassembledPoses
+from compoundkin.base.linear import one_thread
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.reactions.virtual_work import virtual_efforts
 from compoundkin.kinematics.driver_values import by_name
@@ -100,6 +101,7 @@ class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
 
 
 @checked
+@one_thread
 def equilibria(mechanism: Mechanism, values: Any = None) -> EquilibriumPositions:
     """Return the equilibrium positions under weights, springs and loads, with their stability.
 

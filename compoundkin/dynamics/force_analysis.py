@@ -14,6 +14,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, WedgedPoses, warn
+from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import FIXED
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
@@ -44,6 +45,7 @@ from compoundkin.model.mechanism import Mechanism
 
 
 @checked
+@one_thread
 def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -> Forces:
     """Return the forces in all pairs at every pose, and the drivers' efforts.
 

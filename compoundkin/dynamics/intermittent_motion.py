@@ -21,6 +21,7 @@ from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import TURN, Number, whole_turns
 from compoundkin.base.display import ShortRepr, count_phrase
 from compoundkin.base.errors import DrawnBeyondEnd, InvalidInput, Problem, UnassembledPoses
+from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import Pose
 from compoundkin.dynamics.simulation.phases import opened_items, with_items
 from compoundkin.kinematics import solve
@@ -115,6 +116,7 @@ class IntermittentMotion:
 
 
 @checked
+@one_thread
 def intermittent_motion(
     mechanism: Mechanism,
     values: Any = None,

@@ -28,6 +28,7 @@ from compoundkin.base.errors import (
     UnassembledPoses,
     warn,
 )
+from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at, size_in
@@ -50,6 +51,7 @@ from compoundkin.structure.redundancy.constraint_equations import ROUNDED
 
 
 @checked
+@one_thread
 def solve(
     mechanism: Mechanism | Structure,
     values: Any = None,

@@ -10,6 +10,7 @@ from typing import Any
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.linear import one_thread
 from compoundkin.kinematics.configuration import SIGNS, Configuration, named
 from compoundkin.kinematics.solution import first_configuration, solve
 from compoundkin.model.mechanism import Mechanism
@@ -34,6 +35,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 
 @checked
+@one_thread
 def compile(
     mechanism: Mechanism | Structure,
     outputs: str | Sequence[str],

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidMechanism
+from compoundkin.base.linear import one_thread
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.assur_groups import Binder, all_pairs
 from compoundkin.structure.composites import composites
@@ -38,6 +39,7 @@ from compoundkin.structure.system import System, system_of
 
 
 @checked
+@one_thread
 def decompose(mechanism: Mechanism) -> Structure:
     """Take a mechanism apart into driven links and Assur groups in solving order.
 

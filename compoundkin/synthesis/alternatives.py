@@ -10,6 +10,7 @@ from math import comb
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.linear import one_thread
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
@@ -72,6 +73,7 @@ class Alternative:
 
 
 @checked
+@one_thread
 def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None = None) -> tuple[Alternative, ...]:
     """Return every choice of frame and drivers, equivalent ones once.
 

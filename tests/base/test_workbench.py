@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Callable, Iterator
+from threading import Event, Thread
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,7 +22,7 @@ from compoundkin.base.continuation import (
     tangent,
     trace_paths,
 )
-from compoundkin.base.linear import Elimination
+from compoundkin.base.linear import Elimination, one_thread
 from compoundkin.base.newton import StoppingRule, gauss_newton, newton
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
@@ -259,3 +264,67 @@ def test_a_zero_first_pivot_is_no_pivot():
     zero = np.zeros(1)
     system = Elimination([{1: zero + 1.0}, {0: zero, 2: zero + 1.0}, {3: zero + 1.0}, {0: zero + 1.0}], 4)
     assert [float(x[0]) for x in system.times([1.0, 2.0, 3.0, 4.0])] == [4.0, 1.0, 2.0, 3.0]
+
+
+@pytest.fixture
+def threads() -> Iterator[Callable[[], int]]:
+    """How many threads NumPy's own OpenBLAS takes, two to begin with: asked of the library itself."""
+    library = ctypes.CDLL(getattr(np.linalg, "_umath_linalg").__file__)  # noqa: B009 - a private name
+    count, put = (getattr(library, f"scipy_openblas_{word}_num_threads64_", None) for word in ("get", "set"))
+    if count is None or put is None:
+        pytest.skip("NumPy is linked with another library")
+    before = count()
+    put(2)
+    yield count
+    put(before)
+
+
+def test_it_takes_one_thread_within_and_as_many_as_before_after_an_error(
+    threads: Callable[[], int],
+) -> None:
+    with one_thread:
+        assert threads() == 1
+        with pytest.raises(ValueError, match="wrong"), one_thread:
+            raise ValueError("wrong")
+        assert threads() == 1
+    assert threads() == 2
+
+
+def test_it_takes_one_thread_until_the_last_of_several_has_left(threads: Callable[[], int]) -> None:
+    entered, leave = Event(), Event()
+
+    @one_thread
+    def work() -> None:
+        entered.set()
+        leave.wait(60.0)
+
+    other = Thread(target=work)
+    with one_thread:
+        other.start()
+        assert entered.wait(60.0)
+    assert threads() == 1
+    leave.set()
+    other.join()
+    assert threads() == 2
+
+
+def test_whole_mechanisms_are_decomposed_on_one_thread(
+    threads: Callable[[], int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Matrices of all links of a mechanism are the largest: those of its mobility and its report."""
+    import compoundkin as ck
+    from tests.benchmarks.growth import chain
+
+    seen, svd = list[int](), np.linalg.svd
+
+    def noted(*given: Any, **named: Any) -> Any:
+        seen.append(threads())
+        return svd(*given, **named)
+
+    monkeypatch.setattr(np.linalg, "svd", noted)
+    plan = chain(12)
+    ck.mobility_analysis(plan)
+    ck.report(ck.solve(plan, {"crank": np.linspace(0.0, 1.0, 3)})).text()
+    assert len(seen) > len(plan.links)
+    assert set(seen) == {1}
+    assert threads() == 2

@@ -8,6 +8,7 @@ from compoundkin.analysis.checks.continuation_check import choice_findings, cont
 from compoundkin.analysis.checks.difference_check import difference_findings
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.base.arguments import checked
+from compoundkin.base.linear import one_thread
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.finding import Check, Checkable, Finding
 
@@ -15,6 +16,7 @@ __all__ = ["Check", "Finding", "verify"]
 
 
 @checked
+@one_thread
 def verify(motion: Motion | Checkable) -> Check:
     """Check a motion or its forces, without the formulas that found them.
 

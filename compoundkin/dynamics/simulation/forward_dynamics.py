@@ -16,6 +16,7 @@ import numpy as np
 from compoundkin.base.arguments import checked, is_finite_real, real_numbers
 from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.base.errors import FewDigits, InvalidInput, Problem, UnassembledPoses, UnknownName, suggestion, warn
+from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
@@ -51,6 +52,7 @@ ENERGY_TOLERANCE, WORSE = 1e-5, 1e4
 
 
 @checked
+@one_thread
 def simulate(
     mechanism: Mechanism,
     *,

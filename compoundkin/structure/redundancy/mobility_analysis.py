@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import DisplaysHtml, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import Pose
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
@@ -133,6 +134,7 @@ class MobilityAnalysis(DisplaysHtml):
 
 
 @checked
+@one_thread
 def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:
     """Find the mobility by count, for general dimensions and at the assembled pose.
 

@@ -19,6 +19,7 @@ from compoundkin.base.errors import (
     suppress_pose_warnings,
     warn,
 )
+from compoundkin.base.linear import one_thread
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solution import solve
@@ -42,6 +43,7 @@ from compoundkin.studies.samples.variations import check_kinds, variation_of
 
 
 @checked
+@one_thread
 def optimise(
     mechanism: Mechanism,
     free: Mapping[str, Any],

@@ -21,6 +21,7 @@ from compoundkin.base.errors import (
     suppress_pose_warnings,
     warn,
 )
+from compoundkin.base.linear import one_thread
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.attributes import AXES, PARTS, RADIANS
 from compoundkin.model.mechanism import Mechanism
@@ -41,6 +42,7 @@ from compoundkin.studies.tolerances.tolerance_analysis import Chances, Tolerance
 
 
 @checked
+@one_thread
 def tolerance(
     mechanism: Mechanism,
     tolerances: Mapping[str, Any],

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
+from compoundkin.base.linear import one_thread
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import motion_of_design, shape_of
 from compoundkin.model.mechanism import Mechanism, mechanism_of_design
@@ -31,6 +32,7 @@ Reported: TypeAlias = "Mechanism | Structure | Motion | Studied"
 
 
 @checked
+@one_thread
 def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Report:
     """Report a motion, a structure before it is solved, a mechanism or a study.
 
@@ -68,6 +70,7 @@ def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Repo
 
 
 @checked
+@one_thread
 def page(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Page:
     """Return the report as a page with the moving sketch. The arguments are those of `report`.
 
