@@ -445,6 +445,14 @@ def test_friction_by_tables_is_that_of_solved_poses(load: object) -> None:
         np.testing.assert_allclose(known, solved, rtol=1e-11)
 
 
+def test_a_damper_that_never_moves_changes_nothing() -> None:
+    """Its ends keep their distance, so that no speed of the crank is that at which it would jump."""
+    rubbed, last = slider_crank().replace(*RUBBED), {"start": 1.0, "until": 0.1}
+    idle = rubbed.replace(ck.damper("crank", "A", to="frame", at="O", rate=3.0))
+    one, other = (ck.simulate(one, **last).motion.drives["crank"].value[-1] for one in (rubbed, idle))
+    assert one == pytest.approx(other, rel=1e-9)
+
+
 def test_simulations_with_friction_solve_no_pose(monkeypatch: pytest.MonkeyPatch) -> None:
     """All states are in the tables, and the work is what the frictions of the motion take."""
 

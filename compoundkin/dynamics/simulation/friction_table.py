@@ -111,6 +111,9 @@ class NormalForceState:
 
         Normal forces of which a sign is `held` count by it.
         """
+        if not (self.inertia and np.isfinite(self.push)):
+            # nothing is known at speeds that are no numbers
+            return FreeMotion(np.nan, np.full(len(self.senses), np.nan))
         first = self.push / self.inertia
         if self.is_mild or PoseInfluence(self.layout, self.own, self.by, self.senses).weights is not None:
             joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
@@ -168,7 +171,7 @@ class FrictionTable(TabulatedChart):
 
     A step of the integration is smooth: senses of sliding are those of one `stretch`, which ends at a value `ahead`,
     and normal forces count by the signs, `sides`, that they had when it was entered. Where either changes is an event.
-    It `has_left` once a state beyond, or nearly so, has been met.
+    It `has_left` once a state beyond, or nearly so, has been met; it `rests` where friction holds it.
     """
 
     direction: float = 1.0
@@ -179,6 +182,7 @@ class FrictionTable(TabulatedChart):
     ahead: float | None = None
     sides: Number | None = None
     has_left: bool = False
+    rests: bool = False
 
     @cached_property
     def largest(self) -> list[float]:
@@ -233,7 +237,7 @@ class FrictionTable(TabulatedChart):
 
     def accelerations_at(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the acceleration at a state of the solution; zero where friction holds it."""
-        way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
+        way = 0.0 if self.rests else float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
         if way == 0.0:
             return np.zeros(1)
         before, self.direction = self.direction, way
@@ -276,7 +280,7 @@ class FrictionTable(TabulatedChart):
     def begin(self, time: float, values: Number, speeds: Number) -> bool:
         """Set the direction of motion; return whether it moves, which friction may prevent."""
         way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
-        self.direction = way or self.direction
+        self.direction, self.rests = way or self.direction, way == 0.0
         self._enter(time, values, speeds)
         return way != 0.0
 
@@ -321,12 +325,12 @@ class FrictionTable(TabulatedChart):
     @property
     def memory(self) -> tuple[Any, ...]:
         """The configuration, with the tables and the stretch of sliding."""
-        return (*super().memory, self.pressed, self.stretch, self.sides)
+        return (*super().memory, self.pressed, self.stretch, self.sides, self.rests)
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Restore a configuration."""
-        super().recall(memory[:-3])
-        self.pressed, self.stretch, self.sides = memory[-3:]
+        super().recall(memory[:-4])
+        self.pressed, self.stretch, self.sides, self.rests = memory[-4:]
 
     def _tabulate(self, value: float, poses: Mapping[str, Pose]) -> None:
         super()._tabulate(value, poses)
@@ -567,7 +571,8 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     assert table is not None
     layout = _layout(chart, table.motion)
     ends = table.low, table.high
-    pieces = accurate_pieces(table.motion, ends, layout.terms, layout.scales, chart.candidates)
+    sizes = dict(zip(layout.scales[len(DRIVE_SCALES) :], _fastest(layout, table.motion).tolist(), strict=False))
+    pieces = accurate_pieces(table.motion, ends, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
         return None
     edges, found = _stretches(layout, pieces, table)
@@ -590,7 +595,7 @@ def _stretches(
     layout: ForceLayout, pieces: Sequence[TablePiece], table: DriveTable
 ) -> tuple[list[float], list[Number | None]]:
     """Return the edges of the stretches between reversals of sliding, and the senses in each; None in gaps."""
-    first, least = len(DRIVE_SCALES), _slowest(layout, table.motion)
+    first, least = len(DRIVE_SCALES), AT_REST * _fastest(layout, table.motion)
     own = slice(first, first + len(layout.contacts))
     runs = [_SlidingRates(piece, piece.terms[own], least) for piece in pieces]
     edges = {table.low, pieces[0].low, pieces[-1].high, table.high}
@@ -608,14 +613,14 @@ def _stretches(
     return whole, found
 
 
-def _slowest(layout: ForceLayout, motion: Motion) -> Number:
-    """Return the power of each friction, for a unit normal force at unit rate of the driver, below which it rests."""
+def _fastest(layout: ForceLayout, motion: Motion) -> Number:
+    """Return the size of each friction's power, for a unit normal force at unit rate of the driver."""
     at = next(iter(loaded_blocks(motion)))
     fastest = max(float(np.nanmax(speed_of_fastest(one))) for one in loaded_blocks(motion))
     arms = [at.motion.size if one.friction.radius is None or not one.pair.needs_radius
             else float(np.ravel(at.fitted(one.friction.radius))[0]) for one in layout.contacts]  # fmt: skip
     coefficients = [float(np.ravel(at.fitted(one.friction.coefficient))[0]) for one in layout.contacts]
-    found: Number = AT_REST * fastest * np.array(coefficients) * np.array(arms) / at.motion.size
+    found: Number = fastest * np.array(coefficients) * np.array(arms) / at.motion.size
     return found
 
 

@@ -46,8 +46,6 @@ from compoundkin.model.loads.stop import Stop
 
 # The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
 LONGEST_MOVE = 1.0
-# The motion ends where a pair moves so many times as fast as a driver and cannot replace it.
-LIMIT = 1e4
 # The integration stalls where a step is below this part of the longest.
 STALLED = 1e-7
 # The name of the event where a load jumps.
@@ -272,18 +270,13 @@ def _by_another(
     has_table = isinstance(chart, TabulatedChart) and chart.table is not None
     if not fast and has_table and not stalls:
         return None
-    mayswitch = sum(event.name == COORDINATE for event in course.events) < MOST_CHANGES or chart.mechanism.frictions
+    mayswitch = sum(event.name == COORDINATE for event in course.events) < MOST_CHANGES
     for one in fast if mayswitch else ():
         found = driven_there(chart, here, one)
         if found is not None and found[0].is_regular(found[1][: len(chart.free)]):
             text = f"next to a limit position of {one.driver}, {one.pair.name} takes its place as the coordinate"
             course.events.append(SimulationEvent(course.last, COORDINATE, text, False))
             return found[0], np.append(found[1], solver.y[-1])
-    if chart.mechanism.frictions:
-        if stalls or (fast and fast[0].ratio > LIMIT):
-            driver = fast[0].driver if fast else chart.free[0]
-            _ended(solver, course, f"{driver} comes to a limit position, and no other pair can take its place")
-        return None
     if not np.isfinite(here.terms.matrix).all():
         here = _retraced(chart, course)
     driver = fast[0].driver if fast else chart.free[0]
@@ -508,12 +501,6 @@ def _released(chart: Chart, course: SimulatedCourse) -> Number | None:
 
 # A held speed is left at this part of the pace: well above its rounding.
 LEAVES = 1e-13
-
-
-def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
-    """Stop the simulation at its present state."""
-    solver.status = "finished"
-    _stop(course, "limit", text)
 
 
 def _behind_break(chart: Chart, solver: Any, course: SimulatedCourse) -> Any:

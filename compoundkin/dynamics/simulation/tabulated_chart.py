@@ -288,13 +288,17 @@ def accurate_pieces(
     terms: Callable[[Motion], Number],
     scales: Sequence[int],
     pairs: Sequence[Pair],
+    least: Mapping[int, float] | None = None,
 ) -> list[TablePiece]:
-    """Return the pieces of a table in which its terms hold, in order. Rows of one scale have the same number."""
+    """Return the pieces of a table in which its terms hold, in order.
+
+    Rows of one scale have the same number; `least` are sizes of scales whose rows may be rounding alone.
+    """
     edges, found = np.linspace(*ends, PIECES + 1), []
     todo = list(pairwise(edges.tolist()))
     for _ in range(HALVED + 1):
         made = _solved(motion, todo, ends, terms, pairs)
-        held = [_is_accurate(piece, scales) for piece in made]
+        held = [_is_accurate(piece, scales, least or {}) for piece in made]
         found += [piece for piece, holds in zip(made, held, strict=True) if holds]
         broken = [piece for piece, holds in zip(made, held, strict=True) if not holds]
         todo = [part for one in broken for part in pairwise([one.low, (one.low + one.high) / 2, one.high])]
@@ -302,12 +306,14 @@ def accurate_pieces(
             break
     else:
         if motion.change_points:
-            found += [piece for piece in broken if _is_accurate(piece, scales, HOLDS_NEAR)]
+            found += [piece for piece in broken if _is_accurate(piece, scales, least or {}, HOLDS_NEAR)]
     return sorted(found, key=lambda piece: piece.low)
 
 
-def _is_accurate(piece: TablePiece, scales: Sequence[int], part: float = HOLDS) -> bool:
+def _is_accurate(piece: TablePiece, scales: Sequence[int], least: Mapping[int, float], part: float = HOLDS) -> bool:
     rows, largest = np.array(scales), np.zeros(max(scales) + 1)
+    for scale, size in least.items():
+        largest[scale] = size
     np.maximum.at(largest, rows, np.max(np.abs(piece.terms), axis=1))
     return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * largest[rows, None]))
 
