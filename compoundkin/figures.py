@@ -1,8 +1,8 @@
 """Figures that engineers compute of a motion and its forces.
 
 Mechanical advantage, poles and curvature of relative motion, features of paths, types of linkages, cams, workspaces,
-equivalent linkages; equivalent inertia, balancing, flywheels, efforts over a cycle, equilibrium positions, forces
-along the bars of links.
+equivalent linkages; equivalent inertia, balancing by masses and by springs, flywheels, efforts over a cycle,
+equilibrium positions, forces along the bars of links.
 
 >>> import compoundkin as ck
 >>> motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]}, speed=1)
@@ -50,6 +50,7 @@ from compoundkin.dynamics.harmonics import harmonics
 from compoundkin.dynamics.intermittent_motion import intermittent_motion
 from compoundkin.dynamics.mass_motion import equivalent_inertia
 from compoundkin.dynamics.motor_sizing import sizing
+from compoundkin.dynamics.spring_balance import balancing_springs
 from compoundkin.dynamics.strength import strength
 
 __all__ = [
@@ -57,6 +58,7 @@ __all__ = [
     "LinkPosition",
     "TorquePort",
     "acceleration_pole",
+    "balancing_springs",
     "cam_analysis",
     "canonical_frame",
     "centrode_curvature",
