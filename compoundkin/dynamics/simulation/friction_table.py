@@ -203,6 +203,11 @@ class FrictionTable(TabulatedChart):
         links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
         return tuple(dict.fromkeys(link for link in links if link != FRAME))
 
+    def state(self, time: float, values: Number, speeds: Number) -> DriverState:
+        """Return the state at a value and a speed of the driver."""
+        self.follow_table(float(values[0]))
+        return super().state(time, values, speeds)
+
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state. The work is that of loads without a potential, and of friction."""
         value, speed = float(values[0]), float(speeds[0])
@@ -571,7 +576,7 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     assert table is not None
     layout = _layout(chart, table.motion)
     ends = table.low, table.high
-    sizes = dict(zip(layout.scales[len(DRIVE_SCALES) :], _fastest(layout, table.motion).tolist(), strict=False))
+    sizes = _sizes_of_scales(layout, table.motion)
     pieces = accurate_pieces(table.motion, ends, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
         return None
@@ -613,14 +618,30 @@ def _stretches(
     return whole, found
 
 
-def _fastest(layout: ForceLayout, motion: Motion) -> Number:
-    """Return the size of each friction's power, for a unit normal force at unit rate of the driver."""
+def _sizes_of_scales(layout: ForceLayout, motion: Motion) -> dict[int, float]:
+    """Return the sizes of the scales of a table's rows: much smaller ones are rounding alone."""
+    first = max(DRIVE_SCALES) + 1
+    causes = first + len(layout.contacts)
+    found = dict(zip(range(first, causes), _fastest(layout, motion).tolist(), strict=True))
+    found[causes + 2] = float(np.max(_units(layout, motion)))
+    # by unit forces and moments
+    return found | ({causes + 3: 1.0, causes + 4: 1.0 / motion.size} if layout.touched else {})
+
+
+def _units(layout: ForceLayout, motion: Motion) -> Number:
+    """Return the size of each friction as a force for a unit normal force, that of a couple at the mechanism's size."""
     at = next(iter(loaded_blocks(motion)))
-    fastest = max(float(np.nanmax(speed_of_fastest(one))) for one in loaded_blocks(motion))
     arms = [at.motion.size if one.friction.radius is None or not one.pair.needs_radius
             else float(np.ravel(at.fitted(one.friction.radius))[0]) for one in layout.contacts]  # fmt: skip
     coefficients = [float(np.ravel(at.fitted(one.friction.coefficient))[0]) for one in layout.contacts]
-    found: Number = fastest * np.array(coefficients) * np.array(arms) / at.motion.size
+    return np.array(coefficients) * np.array(arms) / at.motion.size
+
+
+def _fastest(layout: ForceLayout, motion: Motion) -> Number:
+    """Return the size of each friction's power, for a unit normal force at unit rate of the driver."""
+    found: Number = max(float(np.nanmax(speed_of_fastest(one))) for one in loaded_blocks(motion)) * _units(
+        layout, motion
+    )
     return found
 
 

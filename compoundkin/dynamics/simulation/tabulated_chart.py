@@ -119,6 +119,12 @@ class TabulatedChart(DriverChart):
         sign = own.pair.driven_by(own.drive.link)
         return {own.pair.name: KnownCoordinate(sign * value, sign * speed, np.array([float(sign)]))}
 
+    def follow_table(self, value: float) -> None:
+        """Take the states of groups without signs from the table: in a table they are not followed."""
+        piece, inside = self._piece(value)
+        if self.states and piece is not None:
+            self._follow(_Columns(piece, piece.basis(inside), 0.0), None)
+
     @property
     def memory(self) -> tuple[Any, ...]:
         """The configuration, with the table."""
