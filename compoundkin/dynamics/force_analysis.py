@@ -196,7 +196,7 @@ def _left_open(dry: Forces, contacts: tuple[LoadedContact, ...]) -> dict[str, An
         place = dry.motion.poses[contact.pair.members[1]].at(dry.motion.inputs.ends[contact.name][1].point).c[0]
         found = dry.self_stress.open([(contact.name, 1.0)], place)
         here = found.force | found.moment if contact.friction.length is not None else found.force
-        if np.any(here) and np.any(np.asarray(contact.friction.coefficient) > 0.0):
+        if np.any(here) and np.any(np.asarray(contact.friction.factor) > 0.0):
             names.append(contact.name)
             poses = poses | here
     return {"undetermined": tuple(names), "left_open": poses}

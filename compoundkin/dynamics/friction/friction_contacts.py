@@ -43,8 +43,11 @@ class LoadedContact:
 
     def unit(self, at: LoadedBlock) -> Wrench:
         """Return the friction for a unit normal force, toward a growing coordinate: a wrench on the second member."""
-        radius = 0.0 if self.friction.radius is None else at.fitted(self.friction.radius)
-        return self.pair.friction_wrench(*self.sides(at), radius).times(at.fitted(self.friction.coefficient))
+        return self.pair.friction_wrench(*self.sides(at), self.arm(at)).times(at.fitted(self.friction.factor))
+
+    def arm(self, at: LoadedBlock) -> Number:
+        """Return the couple for a unit normal force and coefficient, of what has a couple."""
+        return at.fitted(self.pair.arm if self.friction.radius is None else self.friction.radius)
 
     def normal_forces(self, at: LoadedBlock, wrench: Wrench) -> tuple[Number, ...]:
         """Return the normal forces of a wrench of the pair."""
@@ -53,12 +56,12 @@ class LoadedContact:
 
     def on_links(self, wrench: Wrench) -> dict[str, Wrench]:
         """Return the wrenches on both links, given that on the second member."""
-        first, second = self.pair.members[:2]
+        first, second = self.pair.rubbing
         return {first: -wrench, second: wrench}
 
     def sliding(self, at: LoadedBlock) -> Number:
         """Return the sliding speed of the second member against the first; of a pin at the mechanism's size."""
-        _, poses = self.sides(at)
+        poses = [at.block.world[name] for name in self.pair.rubbing]
         unit = self.pair.friction_wrench(*self.sides(at), at.motion.size)
         return unit.power(poses[1]) - unit.power(poses[0])
 

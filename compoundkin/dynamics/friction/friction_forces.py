@@ -121,7 +121,7 @@ class PairFriction:
     @property
     def is_moment(self) -> bool:
         """Whether it is a moment, as in a pin; else a force."""
-        return self.contact.pair.needs_radius
+        return self.contact.pair.is_couple
 
     @property
     def friction(self) -> Number:
@@ -139,7 +139,7 @@ class PairFriction:
     def power(self) -> Number:
         """Its power, never positive."""
         poses = self.forces.motion.poses
-        first, second = (poses[name] for name in self.contact.pair.members[:2])
+        first, second = (poses[name] for name in self.contact.pair.rubbing)
         return self.forces.known(self.wrench.power(second) - self.wrench.power(first))
 
     def __repr__(self) -> str:

@@ -137,7 +137,7 @@ class FrictionChart(BodyChart):
         super().__post_init__()
         first = super().state(0.0, self.first, np.zeros_like(self.first)).loaded
         found = friction_contacts_of(self.start)
-        self.contacts = tuple(one for one in found if float(np.ravel(first.fitted(one.friction.coefficient))[0]) != 0.0)
+        self.contacts = tuple(one for one in found if float(np.ravel(first.fitted(one.friction.factor))[0]) != 0.0)
         count = len(self.contacts)
         self.modes = ContactModes(np.zeros(count), np.zeros(count, dtype=bool))
         self.pace, self.fastest, self.changes = np.zeros(count), 0.0, (-np.inf, 0)
@@ -391,7 +391,7 @@ class FrictionState(BodyState):
         for row, k in zip(found, which, strict=True):
             contact = self.chart.contacts[k]
             unit = contact.unit(self.loaded)
-            for link, sense in zip(contact.pair.members[:2], (-1.0, 1.0), strict=True):
+            for link, sense in zip(contact.pair.rubbing, (-1.0, 1.0), strict=True):
                 row[3 * self.chart.index[link] : 3 * self.chart.index[link] + 3] += sense * self._parts_of(unit, link)
         return found[:, :-3]
 
@@ -437,7 +437,7 @@ class FrictionState(BodyState):
     def effort_of(self, contact: LoadedContact) -> float:
         """Return the effort of a contact's friction for a unit normal force."""
         unit = contact.unit(self.loaded)
-        return float(np.ravel(unit.moment if contact.pair.needs_radius else np.abs(unit.force))[0])
+        return float(np.ravel(unit.moment if contact.pair.is_couple else np.abs(unit.force))[0])
 
     @cached_property
     def _to_pairs(self) -> Number:
@@ -480,7 +480,7 @@ class FrictionState(BodyState):
     def _bias(self, k: int) -> float:
         """Return the acceleration of a contact's sliding without accelerations of coordinates."""
         pace = float(np.max(np.abs(self.speeds) / self.chart.scales))
-        if self.chart.contacts[k].pair.needs_radius or pace == 0.0:
+        if self.chart.contacts[k].pair.is_couple or pace == 0.0:
             return 0.0
 
         def over(step: float) -> float:

@@ -631,9 +631,8 @@ def _sizes_of_scales(layout: ForceLayout, motion: Motion) -> dict[int, float]:
 def _units(layout: ForceLayout, motion: Motion) -> Number:
     """Return the size of each friction as a force for a unit normal force, that of a couple at the mechanism's size."""
     at = next(iter(loaded_blocks(motion)))
-    arms = [at.motion.size if one.friction.radius is None or not one.pair.needs_radius
-            else float(np.ravel(at.fitted(one.friction.radius))[0]) for one in layout.contacts]  # fmt: skip
-    coefficients = [float(np.ravel(at.fitted(one.friction.coefficient))[0]) for one in layout.contacts]
+    arms = [float(np.ravel(one.arm(at))[0]) if one.pair.is_couple else at.motion.size for one in layout.contacts]
+    coefficients = [float(np.ravel(at.fitted(one.friction.factor))[0]) for one in layout.contacts]
     return np.array(coefficients) * np.array(arms) / at.motion.size
 
 

@@ -13,12 +13,12 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import constructor, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import BeltDrive, DimensionFit, Ends, Poses
-from compoundkin.model.pairs.geared import Geared, axes_of, line_of_action
+from compoundkin.model.pairs.geared import FrictionMesh, axes_of, line_of_action
 from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, known_range, strap_line
 
 
 @dataclass(frozen=True, eq=False)
-class Belt(Geared, BeltDrive):
+class Belt(FrictionMesh, BeltDrive):
     """Two pulleys or sprockets with a belt, chain or cable that does not slip.
 
     An open belt turns them alike, a `crossed` one does not. See `Geared` for the rest.
@@ -39,7 +39,7 @@ class Belt(Geared, BeltDrive):
     code: ClassVar[str] = "B"
     title: ClassVar[str] = "belt pair"
     table: ClassVar[str] = "belts"
-    takes: ClassVar[tuple[str, ...]] = ("pretension",)
+    takes: ClassVar[tuple[str, ...]] = ("pretension", "friction", "efficiency")
 
     @property
     def turns_alike(self) -> bool:

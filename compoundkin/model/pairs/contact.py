@@ -13,7 +13,7 @@ from compoundkin.base.curves import Curve
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import NORMAL
-from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, Replaceable, jacobian_of_rows
+from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, Replaceable, RollingContact, jacobian_of_rows
 
 
 class Touch(NamedTuple):
@@ -114,7 +114,17 @@ def as_contact(pair: Pair) -> Contact | None:
 class FrictionPair(Pair):
     """A pair with Coulomb friction."""
 
-    needs_radius: ClassVar[bool] = False  # whether friction takes a radius, as that of a pin
+    is_couple: ClassVar[bool] = False  # whether its friction is a couple, as that of a pin
+
+    @property
+    def rubbing(self) -> tuple[str, str]:
+        """The links between which its friction acts, on the second in the sense of its wrench."""
+        return self.members[0], self.members[1]
+
+    @property
+    def arm(self) -> Number:
+        """The couple for a unit normal force, where none is written with the friction."""
+        return 0.0
 
     @abstractmethod
     def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
@@ -139,7 +149,7 @@ def as_friction_pair(pair: Pair) -> FrictionPair | None:
 class FrictionPin(FrictionPair):
     """A pin. The friction moment is coefficient times radius times force."""
 
-    needs_radius = True
+    is_couple = True
 
     def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
         """Return a couple."""
@@ -148,6 +158,27 @@ class FrictionPin(FrictionPair):
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
         """Return the force in the pin."""
         return (wrench.force,)
+
+
+class RollingFriction(RollingContact, FrictionPair):
+    """A wheel that rolls. What resists is a moment, coefficient times the wheel's radius times the normal force."""
+
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
+    is_couple = True
+    radius: Number
+
+    @property
+    def arm(self) -> Number:
+        """The wheel's radius."""
+        return self.radius
+
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a couple."""
+        return Wrench(0j, radius)
+
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the normal force between wheel and line."""
+        return (dot(self.contact(ends, poses)[1], wrench.force),)
 
 
 class FrictionGuide(FrictionPair):

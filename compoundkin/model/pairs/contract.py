@@ -94,7 +94,9 @@ class Pair(ABC):
     held_angles: ClassVar[tuple[int, ...]] = ()  # which of these are angles (else lengths)
     free: ClassVar[tuple[str, ...]]  # the names of the others; the first is its `coordinate`
     free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
-    takes: ClassVar[tuple[str, ...]] = ()  # which of "effort", "friction", "pretension" may be written of it
+    takes: ClassVar[
+        tuple[str, ...]
+    ] = ()  # which of "effort", "friction", "efficiency", "pretension" may be written of it
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
     force_words: ClassVar[tuple[str, ...]] = ()  # what components of its force along its unit wrenches are called
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out

@@ -15,7 +15,7 @@ from compoundkin.model.attributes import TANGENTIAL
 from compoundkin.model.fields import constructor, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import DimensionFit, Ends, Poses, TransmittingPair
-from compoundkin.model.pairs.geared import Geared, axes_of, pressure_problems
+from compoundkin.model.pairs.geared import FrictionMesh, axes_of, pressure_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
 
 # The pressure angle of standard involute teeth.
@@ -25,7 +25,7 @@ UNCOUNTED = 18
 
 
 @dataclass(frozen=True, eq=False)
-class Gear(Geared, TransmittingPair):
+class Gear(FrictionMesh, TransmittingPair):
     """Two gears in mesh. `internal` where the second is an internal gear (a ring) around the first.
 
     With a `module`, or with radii, the pitch circles must fit the distance of the axes; by teeth alone they take it.
@@ -56,6 +56,7 @@ class Gear(Geared, TransmittingPair):
     title: ClassVar[str] = "gear pair"
     force_words: ClassVar[tuple[str, ...]] = (TANGENTIAL,)
     table: ClassVar[str] = "gears"
+    takes: ClassVar[tuple[str, ...]] = ("friction", "efficiency")
 
     @property
     def turns_alike(self) -> bool:

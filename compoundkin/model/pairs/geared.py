@@ -12,8 +12,10 @@ from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contact import FrictionPair
 from compoundkin.model.pairs.contract import (
     DimensionFit,
     DrawnPair,
@@ -244,6 +246,34 @@ class Geared(TurnCounting, Replaceable):
 def as_geared(pair: Pair) -> Geared | None:
     """Return a pair as a geared one, whose closure is linear in its members' angles, or None."""
     return pair if isinstance(pair, Geared) else None
+
+
+class FrictionMesh(Geared, FrictionPair):
+    """Teeth or a belt with losses: a part of the torque on the second wheel, of which the carrier takes the reaction.
+
+    It is lost by the wheel's speed against the carrier, so that a train has the efficiency of its carrier at rest.
+    Source: the basic efficiency of epicyclic trains, e.g. J. H. Glover, Machine Design 1965; F. L. Litvin et al.
+    """
+
+    is_couple: ClassVar[bool] = True
+
+    @property
+    def rubbing(self) -> tuple[str, str]:
+        """The carrier and the second wheel."""
+        return self.carrier, self.second
+
+    @property
+    def arm(self) -> Number:
+        """One: its normal force is a torque."""
+        return 1.0
+
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a couple."""
+        return Wrench(0j, radius)
+
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the torque on the second wheel about its axis."""
+        return (wrench.about(axes_of(ends, poses)[1]),)
 
 
 class LineOfAction(NamedTuple):

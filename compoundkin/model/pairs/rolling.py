@@ -14,7 +14,8 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import constructor, link_key, point_key, value_key
-from compoundkin.model.pairs.contract import Drivable, Ends, Poses, RollingContact, jacobian_of_rows
+from compoundkin.model.pairs.contact import RollingFriction
+from compoundkin.model.pairs.contract import Drivable, Ends, Poses, jacobian_of_rows
 from compoundkin.model.pairs.geared import radius_problems
 from compoundkin.model.pairs.loop_terms import (
     Auxiliary,
@@ -30,7 +31,7 @@ from compoundkin.model.pairs.pitch_line import PitchLinePair
 
 
 @dataclass(frozen=True, eq=False)
-class Rolling(RollingContact, PitchLinePair, Drivable):
+class Rolling(RollingFriction, PitchLinePair, Drivable):
     """A wheel that rolls without slip along a straight line.
 
     The wheel is the link `link`, about its point `at`; the line is one of the link `on`.
@@ -73,7 +74,6 @@ class Rolling(RollingContact, PitchLinePair, Drivable):
     title: ClassVar[str] = "rolling pair"
     held: ClassVar[int] = 2
     table: ClassVar[str] = "rollings"
-    takes: ClassVar[tuple[str, ...]] = ("effort",)
 
     @property
     def members(self) -> tuple[str, ...]:

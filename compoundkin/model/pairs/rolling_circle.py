@@ -15,13 +15,13 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import constructor, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contact import RollingFriction
 from compoundkin.model.pairs.contract import (
     DrawnPair,
     Drivable,
     Ends,
     Point,
     Poses,
-    RollingContact,
     TurnCounting,
     jacobian_of_rows,
 )
@@ -40,7 +40,7 @@ from compoundkin.model.pairs.symbols import Mark, Wheel
 
 
 @dataclass(frozen=True, eq=False)
-class RollingOnCircle(RollingContact, TurnCounting, Drivable):
+class RollingOnCircle(RollingFriction, TurnCounting, Drivable):
     """A wheel that rolls without slip on a circle.
 
     The wheel is the link `link`, about its point `at`; the circle is one of the link `on`. The circle is that of radius
@@ -77,7 +77,6 @@ class RollingOnCircle(RollingContact, TurnCounting, Drivable):
     free: ClassVar[tuple[str, ...]] = ("direction",)
     free_is_angle: ClassVar[bool] = True
     table: ClassVar[str] = "circular_rollings"
-    takes: ClassVar[tuple[str, ...]] = ("effort",)
 
     @property
     def members(self) -> tuple[str, ...]:

@@ -219,9 +219,9 @@ def _friction_clause(forces: Forces) -> str:
     for one in frictions:
         sizes = [f"{word} {number_text(_first_number(value))}" for word, value in
                  (("radius", one.radius), ("length", one.length)) if value is not None]  # fmt: skip
-        parts.append(
-            f"{one.pair} {number_text(_first_number(one.coefficient))}{f' ({listed(sizes)})' if sizes else ''}"
-        )
+        told = one.coefficient if one.efficiency is None else one.efficiency
+        word = "" if one.efficiency is None else "efficiency "
+        parts.append(f"{one.pair} {word}{number_text(_first_number(told))}{f' ({listed(sizes)})' if sizes else ''}")
     return f"Coulomb friction against the motion, coupled to the reactions: {listed(parts)}; none elsewhere"
 
 
