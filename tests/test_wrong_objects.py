@@ -176,6 +176,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "with_frame": {"mechanism": m, "link": "crank"},
         "figures.workspace": {"mechanism": h["arm"], "point": "P", "ranges": None, "orientation": None,
                                   "modes": None, "cells": 8},
+        "figures.intermittent_motion": {"mechanism": ck.load("geneva-wheel"), "values": None, "pair": "slot", "slots": 4,
+                                        "speed": 1.0, "acceleration": 0.0, "order": 2},
         "figures.sizing": {"forces": h["forces"], "motors": None, "driver": None, "gear": 2.0, "efficiency": 0.9,
                            "design": 0},
         "figures.ForcePort": {"link": "a", "point": "C", "angle": 0.0, "on": "frame"},

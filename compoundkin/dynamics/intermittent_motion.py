@@ -148,6 +148,8 @@ def intermittent_motion(
     found = _Phases(engaged, slots)
     low, high = engaged.ends
     given = np.linspace(low, low + TURN, PARTS + 1) if values is None else real_numbers("values", values).reshape(-1)
+    if not given.size or not np.isfinite(given).all():
+        raise InvalidInput(Problem("values", "they are empty or not finite", "give the driver's angles, in radians"))
     runs = _runs(given, low, high)
     rates = {"speed": speed, "acceleration": acceleration}
     phases = tuple(found.phase(number, np.array(run), rates, order) for number, run in runs)
