@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.extremes import closed_cycles
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import POSITION, motion_figure
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
@@ -75,6 +78,79 @@ def even(output: str) -> Goal:
     'crank.effort even'
     """
     return DwellGoal(output, driver_stretch(f"even.{output}", None, None))
+
+
+# Poses are equally spaced over a cycle within this part of their mean distance: rounding of what was written.
+SPACING = 1e-6
+
+
+@dataclass(frozen=True)
+class HarmonicsGoal(Goal):
+    """The amplitudes of some harmonics of an output over a closed cycle of equally spaced poses."""
+
+    output: str
+    orders: tuple[int, ...]
+
+    @property
+    def description(self) -> str:
+        """The output and the orders."""
+        return f"{self.output} without harmonics {', '.join(map(str, self.orders))}"
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return the output.
+
+        Raises InvalidInput for a figure, for a motion that is no closed cycle of equally spaced poses, and for too few
+        of these.
+        """
+        of, figure = motion_figure(self.output)
+        if figure:
+            raise InvalidInput(Problem(self.output, "it is a figure, and has no harmonics", f'take "{of}"'))
+        where, remedy = f"harmonics.{self.output}", 'values={"crank": np.linspace(0, 2 * np.pi, 73)}'
+        if motion.inputs.poses < 2 or not closed_cycles(motion).all():
+            raise InvalidInput(Problem(where, "the motion is no closed cycle", remedy))
+        along = next(iter(motion.drives.values())).value if motion.time is None else motion.time
+        steps = np.diff(np.reshape(along, (-1, np.shape(along)[-1])), axis=1)
+        if np.any(np.abs(steps - steps.mean()) > SPACING * np.abs(steps.mean())):
+            raise InvalidInput(Problem(where, "its poses are not equally spaced over the cycle", remedy))
+        if 2 * max(self.orders) >= motion.inputs.poses - 1:
+            what = f"{motion.inputs.poses - 1} poses of a cycle do not show order {max(self.orders)}"
+            raise InvalidInput(Problem(where, what, remedy))
+        return (self.output,)
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return the coefficients of cosine and sine, of a vector those of both senses."""
+        return self._coefficients(trial.values(self.output))
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of the residuals."""
+        return self._coefficients(trial.slopes(self.output))
+
+    def _coefficients(self, values: Number) -> Number:
+        count = values.shape[1] - 1
+        orders = np.array(self.orders)
+        # of a number both senses are conjugate to each other: twice one of them has its amplitude
+        senses, size = (np.concatenate([orders, -orders]), 1.0) if np.iscomplexobj(values) else (orders, 2.0)
+        waves = np.exp(-2j * np.pi / count * senses[:, None] * np.arange(count)) * (size / count)
+        found = np.moveaxis(np.tensordot(waves, values[:, :-1], axes=(1, 1)), 0, 1)
+        return np.concatenate([found.real, found.imag], axis=1)
+
+
+@checked
+def harmonics(output: str, orders: Iterable[int] | int) -> Goal:
+    """Return the goal that an output has as little as can be of some harmonics.
+
+    For example "frame.shaking_moment", orders 1 and 2. Their squared amplitudes over the motion, a closed cycle of
+    equally spaced poses, are summed: of a vector those that turn with the cycle and against it. Raises InvalidInput for
+    what are no orders.
+
+    >>> harmonics("frame.shaking_moment", [1, 2]).description
+    'frame.shaking_moment without harmonics 1, 2'
+    """
+    given = (orders,) if isinstance(orders, int) else tuple(orders)
+    if not given or any(isinstance(one, bool) or not isinstance(one, int | np.integer) or one < 1 for one in given):
+        problem = Problem(f"harmonics.{output}", f"{short_repr(orders)} are no orders", "whole numbers from 1: [1, 2]")
+        raise InvalidInput(problem)
+    return HarmonicsGoal(output, tuple(dict.fromkeys(int(one) for one in given)))
 
 
 @dataclass(frozen=True)
