@@ -111,6 +111,19 @@ def test_the_run_up_of_a_motor_behind_a_lossy_gear_is_an_exponential() -> None:
     )
 
 
+def test_a_lossy_rotor_is_in_the_units_of_its_mechanism() -> None:
+    """Millimetres, newtons and kilograms: a moment is a thousandth of what kg mm^2 / s^2 is."""
+    motor = ck.motor("rotor", stall=400.0, no_load=1000.0, gear=10.0, efficiency=0.8, inertia=200.0)
+    mechanism = rotor(motor).replace(
+        ck.mass("rotor", 2.0, inertia=50e3, at=0.0), units={"length": "mm", "mass": "kg", "force": "N"}
+    )
+    found = ck.simulate(mechanism, start=0.0, until=3.0)
+    lag = (50.0 + 0.8 * 100.0 * 0.2) * 100.0 / (0.8 * 4000.0)
+    np.testing.assert_allclose(
+        found.motion.drives["rotor"].rate, 100.0 * (1.0 - np.exp(-found.times / lag)), rtol=0, atol=1e-8 * 100.0
+    )
+
+
 def test_what_sizing_asks_of_a_motor_is_what_it_gives_in_the_run_up() -> None:
     """Torques at the shaft over the simulated motion, of the same rotor behind the same gear with the same losses."""
     motor = ck.motor("rotor", stall=0.4, no_load=1000.0, gear=10.0, efficiency=0.8, inertia=2e-4)

@@ -207,7 +207,7 @@ class Motor(PairLoad):
         speed = gear * rate_of(series)
         torque = self.shaft_torque(at, speed, series.c[0])
         # the rotor takes its part before the gear loses any; behind the gear it is given back to the mass of the link
-        inertia = at.fitted(self.inertia, self.where) * gear if self.loses_at_rotor else 0.0
+        inertia = at.units.inertia * at.fitted(self.inertia, self.where) * gear if self.loses_at_rotor else 0.0
         passed = torque - inertia * second
         # where it is driven the gear takes its part on top
         factor = np.where(passed * speed >= 0.0, efficiency, 1.0 / efficiency)
