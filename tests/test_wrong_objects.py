@@ -28,8 +28,10 @@ def at_hand() -> dict[str, Any]:
     arm = ck.Mechanism("arm", ck.link("frame", A=0), upper, fore, ck.drive("upper"), ck.drive("fore", on="upper"))
     heavy = arm.replace(ck.mass("fore", 2.0, at=(0.5, 0)), units={"length": "m", "mass": "kg", "force": "N"})
     turned = bar.replace(ck.mass("crank", 2.0, at="B"), ck.gravity(0, -9.81), unit="", units=heavy.units)
+    balancer = ck.spring("rocker", "C", at="A", stiffness=1.0, name="balancer")
     return {
         "forces": ck.force_analysis(ck.solve(turned, ck.deg(range(0, 361, 30)), speed=2)),
+        "sprung": ck.force_analysis(ck.solve(turned.replace(balancer), ck.deg(range(0, 361, 30)))),
         "arm": arm,
         "heavy": heavy,
         "moved": ck.solve(heavy, {"upper": [0.1, 0.2], "fore": [1.0, 1.1]}),
@@ -176,8 +178,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "with_frame": {"mechanism": m, "link": "crank"},
         "figures.workspace": {"mechanism": h["arm"], "point": "P", "ranges": None, "orientation": None,
                                   "modes": None, "cells": 8},
-        "figures.intermittent_motion": {"mechanism": ck.load("geneva-wheel"), "values": None, "pair": "slot", "slots": 4,
-                                        "speed": 1.0, "acceleration": 0.0, "order": 2},
+        "figures.intermittent_motion": {"mechanism": ck.load("geneva-wheel"), "values": None, "pair": "slot",
+                                        "slots": 4, "speed": 1.0, "acceleration": 0.0, "order": 2},
         "figures.sizing": {"forces": h["forces"], "motors": None, "driver": None, "gear": 2.0, "efficiency": 0.9,
                            "design": 0},
         "figures.ForcePort": {"link": "a", "point": "C", "angle": 0.0, "on": "frame"},
@@ -250,6 +252,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "goals.full_turn": {"driver": None, "margin": 0.05},
         "goals.function": {"output": "rocker.angle", "wanted": [(0, 1)], "driver": None, "free_zero": False},
         "goals.greatest": {"name": "rocker.angle.stroke"},
+        "goals.harmonics": {"output": "frame.shaking_force", "orders": [1, 2]},
         "goals.least": {"name": "rocker.angle.stroke"},
         "goals.path": {"point": "C", "through": [(1, 2), (3, 4)]},
         "goals.poses": {"link": "coupler", "point": "C", "wanted": [(1, 2, 0.3)], "arm": None, "timed": True,
@@ -275,6 +278,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                       "jerk": None},
         "laws.synchronised": {},
         "laws.time_table": {"times": range(9), "values": range(9), "degree": 5, "repeat": False},
+        "figures.balancing_springs": {"forces": h["sprung"], "springs": "balancer", "even": False, "most": None,
+                                      "within": 0.01},
         "figures.counterweights": {"what": h["forces"].motion, "links": "crank", "mass": None, "radius": 1.0,
                                    "disc": 0.0, "fraction": None, "about": None},
         "figures.drive_figures": {"forces": h["forces"], "driver": "crank"},

@@ -121,7 +121,8 @@ def warn(text: str, category: type[Warning]) -> None:
     import warnings
 
     own, frame, depth = __name__.partition(".")[0], inspect.currentframe(), 1
-    while frame is not None and str(frame.f_globals.get("__name__")).startswith(f"{own}."):
+    # context managers used as decorators stand between the package's own calls
+    while frame is not None and f"{frame.f_globals.get('__name__')}.".startswith((f"{own}.", "contextlib.")):
         frame, depth = frame.f_back, depth + 1
     warnings.warn(text, category, stacklevel=depth)
 

@@ -76,7 +76,7 @@ def numbers(view: Any) -> dict[str, float]:
 def test_what_is_copied_is_the_changed_mechanism_to_the_last_digit(whole: Any, name: str) -> None:
     motion = catalog.motion(name)
     stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
-    free = [one for one in stated.known.values() if not one.is_vector and not one.is_of_law]
+    free = [one for one in stated.known.values() if not one.is_vector and one.is_read]
     names = [one.name for one in free if not np.ndim(stated.own(one))]
     own = [float(stated.own(stated.known[one])) for one in names]
     pieces = mechanism_template(stated, names)
