@@ -12,7 +12,7 @@ from compoundkin.studies.goals.clearance_constraint import clearance
 from compoundkin.studies.goals.constraints import assembles, at_least, at_most, box, distance, full_turn, transmits
 from compoundkin.studies.goals.function_goal import function
 from compoundkin.studies.goals.path_goals import path, poses, trace
-from compoundkin.studies.goals.range_goals import dwell, even, harmonics, straight_line
+from compoundkin.studies.goals.range_goals import dwell, even, straight_line, without_harmonics
 from compoundkin.studies.goals.value_goals import greatest, least, target
 
 __all__ = [
@@ -27,7 +27,6 @@ __all__ = [
     "full_turn",
     "function",
     "greatest",
-    "harmonics",
     "least",
     "path",
     "poses",
@@ -35,4 +34,5 @@ __all__ = [
     "target",
     "trace",
     "transmits",
+    "without_harmonics",
 ]

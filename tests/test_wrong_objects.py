@@ -252,7 +252,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "goals.full_turn": {"driver": None, "margin": 0.05},
         "goals.function": {"output": "rocker.angle", "wanted": [(0, 1)], "driver": None, "free_zero": False},
         "goals.greatest": {"name": "rocker.angle.stroke"},
-        "goals.harmonics": {"output": "frame.shaking_force", "orders": [1, 2]},
+        "goals.without_harmonics": {"output": "frame.shaking_force", "orders": [1, 2]},
         "goals.least": {"name": "rocker.angle.stroke"},
         "goals.path": {"point": "C", "through": [(1, 2), (3, 4)]},
         "goals.poses": {"link": "coupler", "point": "C", "wanted": [(1, 2, 0.3)], "arm": None, "timed": True,

@@ -105,7 +105,7 @@ class HarmonicsGoal(Goal):
         of, figure = motion_figure(self.output)
         if figure:
             raise InvalidInput(Problem(self.output, "it is a figure, and has no harmonics", f'take "{of}"'))
-        where, remedy = f"harmonics.{self.output}", 'values={"crank": np.linspace(0, 2 * np.pi, 73)}'
+        where, remedy = f"without_harmonics.{self.output}", 'values={"crank": np.linspace(0, 2 * np.pi, 73)}'
         if motion.inputs.poses < 2 or not closed_cycles(motion).all():
             raise InvalidInput(Problem(where, "the motion is no closed cycle", remedy))
         along = next(iter(motion.drives.values())).value if motion.time is None else motion.time
@@ -136,19 +136,21 @@ class HarmonicsGoal(Goal):
 
 
 @checked
-def harmonics(output: str, orders: Iterable[int] | int) -> Goal:
+def without_harmonics(output: str, orders: Iterable[int] | int) -> Goal:
     """Return the goal that an output has as little as can be of some harmonics.
 
     For example "frame.shaking_moment", orders 1 and 2. Their squared amplitudes over the motion, a closed cycle of
     equally spaced poses, are summed: of a vector those that turn with the cycle and against it. Raises InvalidInput for
     what are no orders.
 
-    >>> harmonics("frame.shaking_moment", [1, 2]).description
+    >>> without_harmonics("frame.shaking_moment", [1, 2]).description
     'frame.shaking_moment without harmonics 1, 2'
     """
     given = (orders,) if isinstance(orders, int) else tuple(orders)
     if not given or any(isinstance(one, bool) or not isinstance(one, int | np.integer) or one < 1 for one in given):
-        problem = Problem(f"harmonics.{output}", f"{short_repr(orders)} are no orders", "whole numbers from 1: [1, 2]")
+        problem = Problem(
+            f"without_harmonics.{output}", f"{short_repr(orders)} are no orders", "whole numbers from 1: [1, 2]"
+        )
         raise InvalidInput(problem)
     return HarmonicsGoal(output, tuple(dict.fromkeys(int(one) for one in given)))
 
