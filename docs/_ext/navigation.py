@@ -24,7 +24,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     "Understand it": ("theory", "friction", "notation", "words"),
     "Examples": ("gallery/index", "catalog"),
     "Refer to it": ("api/index",),
-    "Add to it": ("adding", "architecture"),
+    "Add to it": ("adding", "architecture", "benchmarks"),
 }
 
 
