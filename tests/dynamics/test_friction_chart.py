@@ -9,6 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.arrays import Number
+from compoundkin.chains import random_mechanism
 from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.forward_dynamics import simulation_start
 from compoundkin.results import Simulation
@@ -268,3 +269,43 @@ def test_an_arm_throws_its_ball_and_turns_on_in_its_rubbing_pin() -> None:
         speed /= 1.0 + part / np.sqrt(1.0 - part**2) * speed * (phase.last - phase.first)
         assert phase.motion.links["arm"].angular_velocity[-1] == pytest.approx(speed, rel=1e-9)
     assert found.energy.worst < 1e-10
+
+
+@pytest.mark.parametrize("speed", [3.0, -3.0])
+def test_where_friction_has_no_motion_the_simulation_ends_and_keeps_what_was(speed: float) -> None:
+    """A rod so short that it wedges the slider: there tan f is (1 + m x'^2 / J) over the coefficient."""
+    rod, coefficient, mass, inertia = 1.05, 0.5, 2.0, 50.0
+    wedging = ck.Mechanism(
+        "Short rod",
+        ck.link("frame", O=0),
+        ck.link("crank", O=0, A=1),
+        ck.link("rod", A=0, B=rod),
+        ck.link("slider", B=0),
+        ck.slide("slider", on="frame", at="B", through="O", angle=0, name="guide"),
+        ck.drive("crank"),
+        ck.mass("crank", 1.0, at="O", inertia=inertia),
+        ck.mass("slider", mass, at="B", inertia=0.0),
+        ck.friction("guide", coefficient),
+        units=SI,
+    )
+    found = ck.simulate(wedging, start={"crank": (0.1, speed)}, until=2.0)
+    (event,) = found.events
+    assert (event.name, event.stops) == ("wedges", True)
+    assert found.times[-1] == event.time < 0.5
+    assert found.energy.worst < 1e-9
+    q = found.motion.drives["crank"].value[-1]
+    tangent = abs(np.sin(q)) / np.sqrt(rod**2 - np.sin(q) ** 2)
+    moved = np.sin(q) + np.cos(q) * np.sin(q) / np.sqrt(rod**2 - np.sin(q) ** 2)  # the slider's rate by the crank's
+    # found to 1e-7 of two seconds, at which the tangent changes by 15 a second
+    assert coefficient * tangent == pytest.approx(1.0 + mass * moved**2 / inertia, rel=1e-5)
+
+
+def test_speeds_are_kept_where_the_coordinates_of_all_links_take_over() -> None:
+    """With friction they were lost there: contacts that were not known to slide yet counted as at rest."""
+    drawn = random_mechanism(1, seed=489604)
+    masses = [ck.mass(link, 1.0, inertia=0.5) for link in drawn.links if link != "frame"]
+    pins = [ck.friction("A", 0.1, radius=0.2), ck.friction("B", 0.1, radius=0.2)]
+    turned = drawn.replace(*masses, *pins, ck.motor("crank", stall=200.0, no_load=7.0), units=SI)
+    found = ck.simulate(turned, until=2.0)
+    assert "coordinate" in [event.name for event in found.events]
+    assert found.energy.worst < 1e-8

@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import solve
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact, in_one_row, senses
@@ -40,6 +41,14 @@ ALL_DIRECTIONS, PATTERNS = 6, 96
 # strongly one of two solutions is then missed in one to four of a thousand; of one pin, or of contacts, in none.
 TURNS = 16
 ONE, NONE, SEVERAL, UNKNOWN = range(4)
+
+
+class NotUniqueMotion(InvalidInput):
+    """A simulation comes where Coulomb's law has no motion, or several."""
+
+    def __init__(self, time: float) -> None:
+        what = f"friction has no or several solutions at {time:g} s: the mechanism wedges or jumps"
+        super().__init__(Problem("frictions", what, "less friction, or another start"))
 
 
 class Frictions(NamedTuple):

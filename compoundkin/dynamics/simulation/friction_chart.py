@@ -27,6 +27,7 @@ from compoundkin.dynamics.friction.coulomb_friction import (
     TINY,
     FrictionInfluence,
     NormalForceComponents,
+    NotUniqueMotion,
     PoseInfluence,
     solve_coulomb,
 )
@@ -255,7 +256,7 @@ class FrictionChart(BodyChart):
         changes = self.changes[1] + 1 if time <= self.changes[0] else 1
         self.changes = max(time, self.changes[0]), changes
         if changes > MOST_CHANGES:
-            raise _wedged(time)
+            raise NotUniqueMotion(time)
         at_rest, turned = here.at_rest, None
         leaving = np.zeros(len(self.contacts))
         if self.begun:
@@ -295,6 +296,8 @@ class FrictionChart(BodyChart):
     def settled(self, time: float, state: Number) -> Number:
         """Return a state projected on the equations of the pairs, with contacts that stick at rest."""
         found = super().settled(time, state)
+        if not self.begun:  # which contacts stick is not known yet
+            return found
         n = len(self.free)
         here = self.state(time, found[:n], found[n : 2 * n])
         stuck = self.modes.stuck
@@ -360,11 +363,6 @@ class FrictionChart(BodyChart):
         """Restore them."""
         super().recall(memory)
         self.modes = memory[1]
-
-
-def _wedged(time: float) -> InvalidInput:
-    what = f"friction has no or several solutions at {time:g} s: the mechanism wedges or jumps"
-    return InvalidInput(Problem("frictions", what, "less friction, or another start"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -577,7 +575,7 @@ class FrictionState(BodyState):
 
     @cached_property
     def solution(self) -> FrictionSolution:
-        """The motion under friction. Raises InvalidInput where it is not unique."""
+        """The motion under friction. Raises NotUniqueMotion where it is not."""
         slides, senses = self._slides, self.chart.modes.senses
         stuck = self.chart.modes.stuck
         affine = self._affine(stuck, slides)
@@ -608,7 +606,7 @@ class FrictionState(BodyState):
         return sizes, normal @ with_one
 
     def _by_coulomb(self, normal: Number, slides: Number, senses: Number) -> Number:
-        """Return the frictions of contacts that slide. Raises InvalidInput where they are not unique."""
+        """Return the frictions of contacts that slide. Raises NotUniqueMotion where they are not."""
         own, part = self.chart.sliding_part(slides)
         sides, signs = self.chart.modes.sides, senses[slides]
         held = None if sides is None else np.concatenate([sides[own], np.zeros(len(part.vectors))])
@@ -620,7 +618,7 @@ class FrictionState(BodyState):
         starts = np.searchsorted(part.owners, np.arange(len(signs)))
         several = solve_coulomb(FrictionInfluence(frictionless[:, None], by[..., None], starts), signs[:, None])
         if several.state[0] != ONE:
-            raise _wedged(self.time)
+            raise NotUniqueMotion(self.time)
         return several.sizes[:, 0]
 
     @cached_property

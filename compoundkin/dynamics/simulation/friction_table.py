@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
@@ -26,6 +25,7 @@ from compoundkin.dynamics.friction.coulomb_friction import (
     TINY,
     FrictionInfluence,
     NormalForceComponents,
+    NotUniqueMotion,
     PoseInfluence,
     block_with_friction,
     normal_forces_of,
@@ -56,10 +56,6 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.contract import Load
 
-# Iterations for the acceleration: secant steps, each from two efforts that are nearly affine in it.
-STEPS = 30
-# Iterations end where a step changes the acceleration by this part.
-STEP_TOLERANCE = 1e-13
 # The release of a driver is searched at so many times, and found to this part of the time.
 RELEASE_SAMPLES, RELEASED = 200, 1e-12
 # Reversals of sliding are looked for at so many places of each piece, and found by so many halvings.
@@ -115,44 +111,26 @@ class NormalForceState:
             # nothing is known at speeds that are no numbers
             return FreeMotion(np.nan, np.full(len(self.senses), np.nan))
         first = self.push / self.inertia
-        if self.is_mild or PoseInfluence(self.layout, self.own, self.by, self.senses).weights is not None:
-            joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
-            weights = None if self.is_mild else joint.weights
-            found = joint.solution(weights) if self.is_mild or weights is not None else None
-            if found is not None:
-                a = first + float(self.along.dot(found.sizes)) / self.inertia
-                return FreeMotion(a, found.sizes, found.components)
-        return self._by_secants(first)
+        joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
+        weights = None if self.is_mild else joint.weights
+        found = joint.solution(weights) if self.is_mild or weights is not None else None
+        if found is not None:
+            a = first + float(self.along.dot(found.sizes)) / self.inertia
+            return FreeMotion(a, found.sizes, found.components)
+        sizes = self._searched(joint)
+        return None if sizes is None else FreeMotion(first + float(self.along.dot(sizes)) / self.inertia, sizes)
 
-    def _by_secants(self, first: float) -> FreeMotion | None:
-        a, last, step = first, 0.0, 0.0
-        for k in range(STEPS):
-            effort = self.effort(a)
-            if effort is None:
-                return None
-            # without friction the effort grows by the inertia
-            slope = (effort - last) / step if k else self.inertia
-            last, step = effort, -effort / slope if effort else 0.0
-            a += step
-            if abs(step) <= STEP_TOLERANCE * abs(a):
-                break
-        sizes = self._sizes(a)
-        return None if sizes is None else FreeMotion(a, sizes)
-
-    def _sizes(self, a: float) -> Number | None:
-        """Return the frictions at an acceleration, None where they are not unique."""
-        here = PoseInfluence(self.layout, self.own + a * self.second, self.by, self.senses)
+    @property
+    def effort_at_rest(self) -> float | None:
+        """The driver's effort without acceleration, None where it is not unique."""
+        here = PoseInfluence(self.layout, self.own, self.by, self.senses)
         found = None if here.weights is None else here.solution(here.weights)
-        return self._searched(here) if found is None else found.sizes
-
-    def effort(self, a: float) -> float | None:
-        """Return the driver's effort at an acceleration, None where it is not unique."""
-        sizes = self._sizes(a)
-        return None if sizes is None else self.inertia * a - self.push - float(self.along.dot(sizes))
+        sizes = self._searched(here) if found is None else found.sizes
+        return None if sizes is None else -self.push - float(self.along.dot(sizes))
 
     def _searched(self, here: PoseInfluence) -> Number | None:
         """Return the frictions where their influences do not contract, None where they are not unique."""
-        own, by = self.layout.joined(here.own), self.layout.joined(self.by)
+        own, by = self.layout.joined(here.own), self.layout.joined(here.by)
         starts = np.searchsorted(self.layout.owners, np.arange(len(self.senses)))
         found = solve_coulomb(FrictionInfluence(own[:, None], by[..., None], starts), self.senses[:, None])
         return found.sizes[:, 0] if found.state[0] == ONE else None
@@ -275,11 +253,10 @@ class FrictionTable(TabulatedChart):
         return found.normal.along * self._free(found.normal, time).sizes * speed
 
     def _free(self, normal: NormalForceState, time: float, held: Number | None = None) -> FreeMotion:
-        """Return the motion without effort. Raises InvalidInput where it is not unique."""
+        """Return the motion without effort. Raises NotUniqueMotion where it is not."""
         found = normal.free(held)
         if found is None:
-            what = f"friction has no or several solutions at {time:g} s: the mechanism wedges or jumps"
-            raise InvalidInput(Problem("frictions", what, "less friction, or another start"))
+            raise NotUniqueMotion(time)
         return found
 
     def begin(self, time: float, values: Number, speeds: Number) -> bool:
@@ -304,7 +281,7 @@ class FrictionTable(TabulatedChart):
     def direction_from_rest(self, time: float, values: Number) -> float:
         """Return the direction in which the driver starts from rest, zero where friction holds it."""
         # the effort that would sustain motion in each direction; None where it is wedged
-        efforts = [self._at_rest(time, values, way).effort(0.0) for way in (-1.0, 1.0)]
+        efforts = [self._at_rest(time, values, way).effort_at_rest for way in (-1.0, 1.0)]
         if efforts[1] is not None and efforts[1] < 0.0:
             return 1.0
         return -1.0 if efforts[0] is not None and efforts[0] > 0.0 else 0.0

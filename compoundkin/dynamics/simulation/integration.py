@@ -15,6 +15,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.dynamics.friction.coulomb_friction import NotUniqueMotion
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
@@ -54,6 +55,8 @@ JUMP = "jump"
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
 SLOWEST = 1e-3
+# The name of the event where friction has no motion, or several.
+WEDGES = "wedges"
 # The name of the event where other coordinates take a driver's place, and how often one pair follows another as such.
 COORDINATE, MOST_CHANGES = "coordinate", 2
 # The name of the event where loads are stiff.
@@ -66,7 +69,20 @@ Progress = Callable[[int, int], None]
 
 
 def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
-    """Add the steps and events that follow from a state of a chart."""
+    """Add the steps and events that follow from a state of a chart.
+
+    Raises NotUniqueMotion where friction has no motion, or several, at the start; later the course ends there.
+    """
+    try:
+        _integrate(chart, state, course, progress)
+    except NotUniqueMotion:
+        if not course.steps:
+            raise
+        text = "friction has no or several motions from there on: the mechanism wedges, or jumps"
+        _stop(course, WEDGES, text)
+
+
+def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
         n = len(chart.free)
@@ -77,7 +93,7 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
         loosened = max(1.0, min(chart.digits_lost(solver.t, solver.y), LOOSEST) / course.tolerance)
         solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
         before = _Begin(solver.t, solver.y, solver.f)
-        solver.step()
+        _step(solver, course)
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
             if changed is None:
@@ -119,6 +135,18 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
         if progress is not None:
             progress(int(PARTS * course.last / course.until), PARTS)
     return None
+
+
+def _step(solver: Any, course: SimulatedCourse) -> None:
+    """Make a step, a shorter one where friction has no motion, or several, within it."""
+    while True:
+        try:
+            solver.step()
+            return
+        except NotUniqueMotion:
+            solver.h_abs = min(solver.h_abs, solver.max_step) / 2.0
+            if solver.h_abs < STALLED * course.until:
+                raise
 
 
 def _next_phase(chart: Chart, passed: _Interruption, state: Number, course: SimulatedCourse) -> tuple[Chart, Number]:
