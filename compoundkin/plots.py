@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from compoundkin.view.plot import (
     bands,
+    bar_diagrams,
     bearing_loads,
     centrodes,
     circuits,
@@ -29,6 +30,7 @@ from compoundkin.view.plot import (
 
 __all__ = [
     "bands",
+    "bar_diagrams",
     "bearing_loads",
     "centrodes",
     "circuits",

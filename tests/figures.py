@@ -116,6 +116,7 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "conjugate-cams": lambda: ck.draw(load("conjugate-cams"), ck.deg(60)),
     "constant-breadth-yoke": lambda: ck.draw(load("constant-breadth-yoke"), ck.deg(60)),
     "free-bodies": lambda: ck.draw(load("engine-gas-pressure"), ck.deg(30), kind="free-bodies"),
+    "along-bars": lambda: ck.draw(load("engine-gas-pressure"), ck.deg(75), kind="bending-moment"),
     "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 

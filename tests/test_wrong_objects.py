@@ -293,6 +293,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
                            "size": None},
+        "plots.bar_diagrams": {"found": ck.figures.strength(h["forces"]), "pose": None, "design": 0, "title": None,
+                               "size": None},
         "plots.bearing_loads": {"motion": motion, "every": None, "designs": (), "title": None, "size": None},
         "plots.hodograph": {"motion": motion, "every": None, "designs": (), "title": None, "size": None},
         "plots.paths": {"motion": motion, "on": "frame", "every": None, "designs": (), "title": None, "size": None},
@@ -332,6 +334,7 @@ MORE = {
     "Mechanism": "items", "link": "letters", "mode": "links", "plot": "names", "chains.mechanism_from": "drivers",
     "laws.program": "segments", "laws.synchronised": "programs", "plots.circuits": "names",
     "plots.scatter_matrix": "names", "plots.bands": "names", "plots.improvement": "names",
+    "plots.bar_diagrams": "bars",
     "plots.bearing_loads": "pairs", "plots.hodograph": "names", "plots.paths": "points", "plots.polar": "names",
 }  # fmt: skip
 

@@ -59,6 +59,7 @@ Examples:
   compoundkin draw parallelogram --singularities -o branches.svg
   compoundkin draw loaded.toml --at 35 --forces -o forces.svg
   compoundkin draw loaded.toml --at 35 --free-body plate -o plate.svg
+  compoundkin draw loaded.toml --at 35 --along-bars bending-moment -o bars.svg
 """
 )
 @mechanism_argument

@@ -56,13 +56,21 @@ FORCE_PICTURES = {
     "free-body": "free_body",
     "force-polygons": "force_polygons",
     "force-polygon": "force_polygon",
+    "along-bars": "along_bars",
 }
+# What is drawn along the bars of links.
+ALONG_BARS = ("normal-force", "shear", "bending-moment")
 FORCE_OPTIONS: tuple[Any, ...] = (
     click.option("--forces", is_flag=True, help="Draw the forces in pairs, of drivers, loads and inertia."),
     click.option("--free-bodies", is_flag=True, help="Draw every link on its own with all that acts on it."),
     click.option("--free-body", metavar="LINK", help="The same of one link."),
     click.option("--force-polygons", is_flag=True, help="Draw the forces on every link head to tail."),
     click.option("--force-polygon", metavar="LINK", help="The same of one link."),
+    click.option(
+        "--along-bars",
+        type=click.Choice(ALONG_BARS),
+        help="Draw it along the bars of links, with its envelope over all poses.",
+    ),
     STATICS,
     HOLDING,
 )
@@ -84,7 +92,7 @@ LOAD_OPTIONS: tuple[Any, ...] = (
 
 def load_options(command: F) -> F:
     """Add the options of masses and loads beside those of the file."""
-    return _with_options(command, LOAD_OPTIONS)
+    return with_options(command, LOAD_OPTIONS)
 
 
 def names_option(flag: str, name: str, metavar: str, text: str) -> Callable[[F], F]:
@@ -130,20 +138,21 @@ def drive_options(command: F) -> F:
 
 def motion_options(command: F) -> F:
     """Add the options of a motion without its order, which follows from the outputs."""
-    return _with_options(command, OPTIONS)
+    return with_options(command, OPTIONS)
 
 
 def pose_options(command: F) -> F:
     """Add the options of a command that shows one pose: rates, modes, which design."""
-    return _with_options(command, (SPEED, MODE, DESIGN))
+    return with_options(command, (SPEED, MODE, DESIGN))
 
 
 def force_options(command: F) -> F:
     """Add the options of pictures with forces."""
-    return _with_options(command, FORCE_OPTIONS)
+    return with_options(command, FORCE_OPTIONS)
 
 
-def _with_options(command: F, options: Sequence[Any]) -> F:
+def with_options(command: F, options: Sequence[Any]) -> F:
+    """Add options to a command, in their order."""
     for option in reversed(options):
         command = option(command)
     return command
@@ -273,6 +282,8 @@ def force_picture(
     forces = find_forces(motion, options["statics"], options["holding"])
     if options["forces"]:
         return draw(forces, at, labels=options["labels"], **words)
+    if options["along_bars"]:
+        return draw(forces, at, kind=options["along_bars"], labels=options["labels"], **words)
     kind = "free-bodies" if options["free_bodies"] or options["free_body"] else "force-polygon"
     return draw(forces, at, kind=kind, link=options["free_body"] or options["force_polygon"], **words)
 

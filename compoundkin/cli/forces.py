@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import click
@@ -16,11 +17,13 @@ from compoundkin.cli.drive_options import (
     find_forces,
     load_options,
     solve_motion,
+    with_options,
 )
 from compoundkin.cli.file_options import (
     exit_code,
     is_table,
     mechanism_argument,
+    put_picture,
     put_report,
     put_table,
     report_or_table_options,
@@ -33,9 +36,24 @@ SHEET = click.option(
 )
 ON = click.option("--on", "on", default="", metavar="LINK", help="Print all that acts on a link: its free body.")
 
-STRENGTH = click.option(
-    "--strength", is_flag=True, help="Print forces along the bars of links; with -o PATH.csv all loads on each link."
-)
+# Options of the forces along bars, and the names of those that need --strength.
+OF_STRENGTH = ("bars", "sections", "elasticity", "pins")
+STRENGTH_OPTIONS: tuple[Any, ...] = (
+    click.option("--strength", is_flag=True, help="Print forces along the bars of links; with -o PATH.svg their "
+                 "diagrams, with -o PATH.csv all loads on each link."),
+    click.option("--bar", "bars", multiple=True, metavar="LINK", help="Of this link alone; may be repeated."),
+    click.option("--section", "sections", multiple=True, metavar="LINK=SIZE", help="Its section, for stresses: "
+                 "rod=8x20, width and height in the plane, rod=12, a diameter, rod=12/2, a tube with its wall."),
+    click.option("--elasticity", multiple=True, metavar="LINK=NUMBER", help="Its modulus of elasticity, for "
+                 "buckling; with --section."),
+    click.option("--pin", "pins", multiple=True, metavar="PIN=DIAMETER,WIDTH", help="The diameter of a pin and the "
+                 "width in its bearing, for shear and pressure; a third number: how many sections are sheared."),
+)  # fmt: skip
+
+
+def strength_options(command: Any) -> Any:
+    """Add the options of the forces along bars to a command."""
+    return with_options(command, STRENGTH_OPTIONS)
 
 
 @click.command(
@@ -47,6 +65,8 @@ Examples:
   compoundkin forces linkage.toml --at 35 --on rod
   compoundkin forces linkage.toml --at 35 --statics --sheet -o sheet.html
   compoundkin forces linkage.toml --speed 300rpm --strength
+  compoundkin forces linkage.toml --speed 300rpm --strength --bar rod -o rod.svg
+  compoundkin forces linkage.toml --strength --section rod=8x20 --elasticity rod=210000 --pin B=12,20
   compoundkin forces scissor-lift --at 1.6 --statics --load T=0,-3000
   compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
   compoundkin forces linkage.toml -o forces.md
@@ -60,7 +80,7 @@ Examples:
 @load_options
 @ON
 @SHEET
-@STRENGTH
+@strength_options
 @report_or_table_options
 def command(
     file: str, design: int, statics: bool, holding: str, on: str, sheet: bool, strength: bool, form: str | None,
@@ -80,6 +100,8 @@ def command(
         if excluded := next((name for name, given in others.items() if given), ""):
             raise InvalidInput(Problem("--strength", f"it does not go with {excluded}", "leave one of them out"))
         return _strength(file, path, statics, holding, options)
+    if unused := next((name for name in OF_STRENGTH if options[name]), ""):
+        raise InvalidInput(Problem(f"--{unused.removesuffix('s')}", "it concerns bars", "give --strength too"))
     if on and sheet:
         raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))
     report = "--sheet" if sheet else f"--on {on}" if on else ""
@@ -138,16 +160,59 @@ def size_command(
 
 def _strength(file: str, path: str | None, statics: bool, holding: str, options: dict[str, Any]) -> int:
     """Print forces along the bars of links, or write the loads on them; return the exit code."""
-    from compoundkin.base.suffixes import file_format
+    from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_of
     from compoundkin.cli import typed_values
     from compoundkin.dynamics.strength import strength
 
-    if path is not None:
+    is_plot = path is not None and suffix_of(path) in SUFFIXES["plot"]
+    if path is not None and not is_plot:
         file_format("table", path)
+    own = _sizes(options)
     structure = solvable_structure(file, None, None, lambda own: typed_values.with_loads(own, options))
-    found = strength(find_forces(solve_motion(structure, options), statics, holding))
+    found = strength(find_forces(solve_motion(structure, options), statics, holding), *options["bars"], **own)
     if path is None:
         put(f"{found.text()}\n")
+    elif is_plot:
+        from compoundkin.view.plot import bar_diagrams
+
+        put_picture(bar_diagrams(found), path)
     else:
         put_table(found.table(), path)
     return explain_gaps(found.forces.motion)
+
+
+def _sizes(options: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return sections, moduli and pins as `strength` takes them."""
+    sections, moduli, pins = (_named(name, options[key]) for name, key in
+                              (("section", "sections"), ("elasticity", "elasticity"), ("pin", "pins")))  # fmt: skip
+    return {
+        "sections": {link: _size_of_section(where, text) for where, link, text in sections},
+        "elasticity": {link: _numbers(where, text, ",")[0] for where, link, text in moduli},
+        "pins": {letter: _numbers(where, text, ",") for where, letter, text in pins},
+    }
+
+
+def _named(option: str, given: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+    """Yield option, name and text of each NAME=TEXT. Raises InvalidInput for another."""
+    for text in given:
+        name, sign, value = text.partition("=")
+        if not (name and sign and value):
+            raise InvalidInput(
+                Problem(f"--{option} {text}", "it is no name with a value", f"write --{option} NAME=...")
+            )
+        yield f"--{option} {name}", name, value
+
+
+def _numbers(where: str, text: str, sign: str) -> tuple[float, ...]:
+    from compoundkin.cli.typed_values import read_number
+
+    return tuple(read_number(part, where, f"write numbers with {sign!r} between") for part in text.split(sign))
+
+
+def _size_of_section(where: str, text: str) -> dict[str, float]:
+    """Return the section that a text means: 8x20, 12 or 12/2."""
+    names, sign = (("width", "height"), "x") if "x" in text else (("diameter", "wall"), "/")
+    numbers = _numbers(where, text, sign)
+    if len(numbers) > 2 or (sign == "x" and len(numbers) < 2):
+        raise InvalidInput(Problem(where, f"{text!r} is no section", "write 8x20, a diameter, or a diameter/wall"))
+    return dict(zip(names, numbers, strict=False))

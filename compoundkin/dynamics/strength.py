@@ -29,6 +29,10 @@ from compoundkin.model.units import Units
 IN_LINE = 1e-9
 # Every bar has so many stations at equal distances, beside those at its points, its loads and where the shear is zero.
 EVEN_STATIONS = 21
+# Diagrams have so many stations at equal distances, and others beside what acts by this part of the bar's length.
+DRAWN, ASIDE = 161, 1e-9
+# Places are told apart by so many digits of the bar's length.
+JUMPS = 12
 # A bar is pinned where the moment at its ends is below this part of the largest, the rounding of forces.
 PINNED = 1e-9
 # How a mass that is not assumed to be a uniform bar's acts.
@@ -78,9 +82,7 @@ class BarForces(ShortRepr):
 
         NaN where no pose is known. Raises UnknownName for another quantity.
         """
-        known = (NORMAL, SHEAR, BENDING)
-        if what not in known:
-            raise UnknownName(Problem(str(what), "a bar has no such quantity", suggestion(str(what), known)))
+        self._check(what)
         places = self._of_designs[STATION][design]
         values = np.where(_within(places, float(self.length[design])), self._of_designs[what][design], np.nan)
         if not np.isfinite(values).any():
@@ -88,6 +90,63 @@ class BarForces(ShortRepr):
         found = (np.unravel_index(find(values), values.shape) for find in (np.nanargmin, np.nanargmax))
         least, greatest = (BarExtreme(float(values[at]), float(places[at]), int(at[0])) for at in found)
         return least, greatest
+
+    def stations(self, design: int = 0) -> Number:
+        """Return distances from the first point for diagrams: even ones, and both sides of where something acts.
+
+        The first is behind what acts at the first point, the last before what acts at the last.
+        """
+        length = float(self.length[design])
+        aside = ASIDE * length
+        own = self._of_designs[STATION][design]
+        twice = np.unique(np.round(own[:, 1:][np.diff(own, axis=-1) == 0.0] / length, JUMPS)) * length
+        # a load that moves along the bar has other places at every pose: there they are drawn as they come
+        jumps = twice if len(twice) <= DRAWN else np.array(list(self.places(design).values()))
+        beside = (np.array([place - aside, place + aside]) for place in jumps)
+        found = [np.linspace(0.0, length, DRAWN), *beside]
+        return np.unique(np.clip(np.concatenate(found), aside, length - aside))
+
+    def places(self, design: int = 0) -> dict[str, float]:
+        """Return the distances of its letters from the first one."""
+        own = self.motion.mechanism.geometry.points[self.link]
+        known = {letter: complex(_of_design(self.motion, own[letter], design)) for letter in self.letters}
+        return {letter: abs(z - known[self.letters[0]]) for letter, z in known.items()}
+
+    def envelope(self, what: str, design: int = 0) -> tuple[Number, Number, Number]:
+        """Return the `stations` of a quantity, and its least and greatest value there over all poses, NaN if unknown.
+
+        Raises UnknownName for another quantity.
+        """
+        places = self.stations(design)
+        values = self.along(what, places, design)
+        known = np.isfinite(values).any(axis=0)
+        least, greatest = np.where(np.isnan(values), np.inf, values), np.where(np.isnan(values), -np.inf, values)
+        return places, np.where(known, least.min(axis=0), np.nan), np.where(known, greatest.max(axis=0), np.nan)
+
+    def along(self, what: str, places: Number, design: int = 0) -> Number:
+        """Return "normal force", "shear" or "bending moment" at distances from the first point, (poses, places).
+
+        Behind what acts where something does. Raises UnknownName for another quantity.
+        """
+        self._check(what)
+        own, values = self._of_designs[STATION][design], self._of_designs[what][design]
+        at = np.count_nonzero(own[:, :, None] <= np.asarray(places, dtype=float), axis=1)
+        behind = np.clip(at, 1, own.shape[-1] - 1)
+        low, high = (np.take_along_axis(own, behind - k, axis=-1) for k in (1, 0))
+        start, end = (np.take_along_axis(values, behind - k, axis=-1) for k in (1, 0))
+        part = np.divide(places - low, high - low, out=np.zeros(start.shape), where=high > low)
+        part = np.clip(part, 0.0, 1.0)
+        found: Number = start + part * (end - start)
+        if what == BENDING:  # it grows as the shear: a cubic, by values and rates at both ends
+            rates = (np.take_along_axis(self._of_designs[SHEAR][design], behind - k, axis=-1) for k in (1, 0))
+            first, last = (rate * (high - low) - (end - start) for rate in rates)
+            found = found + part * (1.0 - part) * ((1.0 - part) * first - part * last)
+        return found
+
+    def _check(self, what: str) -> None:
+        known = (NORMAL, SHEAR, BENDING)
+        if what not in known:
+            raise UnknownName(Problem(str(what), "a bar has no such quantity", suggestion(str(what), known)))
 
     @property
     def is_clamped(self) -> bool:
@@ -105,7 +164,7 @@ class BarForces(ShortRepr):
             for word, one in zip(("least", "greatest"), self.extremes(what, design), strict=True):
                 own = in_units(f"{word} {what}", _shown(one.value, self._largest(what, design)), unit)
                 yield (*own, *[""] * (5 - len(own)), f"{one.position:.6g} {units.length} from {self.letters[0]}",
-                       f"at {_pose_text(self.motion, design, one.pose)}")  # fmt: skip
+                       f"at {pose_text(self.motion, design, one.pose)}")  # fmt: skip
         if self.assumed:
             yield (f"assumed: {self.assumed}" if "uniform" in self.assumed else self.assumed,)
 
@@ -114,6 +173,11 @@ class BarForces(ShortRepr):
         size = max(max(abs(end.value) for end in self.extremes(name, design)) for name in (NORMAL, SHEAR))
         own = max(abs(end.value) for end in self.extremes(what, design))
         return max(own, size * float(self.length[design])) if what == BENDING else size
+
+
+def _of_design(motion: Motion, value: Number, design: int) -> Any:
+    """Return a value of the first pose of a design."""
+    return np.broadcast_to(extended_to(motion, value), motion.failed.shape)[design, 0]
 
 
 def _within(places: Number, length: float) -> Number:
@@ -132,7 +196,7 @@ def _shown(value: float, largest: float) -> float:
     return 0.0 if abs(value) <= ROUNDING * largest else value
 
 
-def _pose_text(motion: Motion, design: int, pose: int) -> str:
+def pose_text(motion: Motion, design: int, pose: int) -> str:
     """Return "crank 35 deg", the drivers at a pose."""
     shape, texts = motion.failed.shape, []
     for name, drive in motion.drives.items():
@@ -248,7 +312,7 @@ class PinStress(NamedTuple):
     def lines(self, letter: str, forces: Forces, design: int) -> Iterator[Line]:
         """Yield its lines of text."""
         units = forces.units
-        at = f"at {_pose_text(forces.motion, design, int(self.pose[design]))}"
+        at = f"at {pose_text(forces.motion, design, int(self.pose[design]))}"
         where = f"on {self.link[design]}"
         yield f"pin {letter}: greatest force", float(self.force[design]), units.force, "", "", where, at
         yield "shear", float(self.shear[design]), _pressure(units)

@@ -228,3 +228,28 @@ def test_strength_is_printed_and_its_loads_are_a_table(run: Run, tmp_path: Path)
     assert "arm.pair A.force.y [N]" in (tmp_path / "loads.csv").read_text()
     refused = run("forces", "pendulum", "--strength", "--sheet")
     assert "does not go with --sheet" in refused.stderr
+
+
+def test_diagrams_of_bars(run: Run, tmp_path: Path) -> None:
+    assert run("forces", "engine-gas-pressure", "--strength", "--bar", "rod", "-o", "rod.svg").exit_code == 0
+    assert (tmp_path / "rod.svg").stat().st_size > 5000
+    assert run("draw", "engine-gas-pressure", "--at", "75", "--along-bars", "shear", "-o", "bars.svg").exit_code == 0
+    assert "ck-area" in (tmp_path / "bars.svg").read_text(encoding="utf-8")
+    sizes = "--section", "rod=0.02x0.03", "--elasticity", "rod=2.1e11", "--pin", "A=0.02,0.03"
+    text = run("forces", "engine-gas-pressure", "--strength", *sizes).stdout
+    # pi^2 E b h^3 / 12 / l^2
+    load = np.pi**2 * 2.1e11 * 0.02 * 0.03**3 / 12 / 0.2**2
+    assert f"{load:.6g}" in text
+    assert "bearing pressure" in text
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (("--bar", "rod"), "--strength"), (("--strength", "--section", "rod"), "NAME="),
+    (("--strength", "--section", "rod=1x2x3"), "8x20"), (("--strength", "--pin", "A=3"), "diameter"),
+    (("--strength", "--bar", "rodd"), "'rod'"), (("--strength", "-o", "a.gif"), "gif"),
+])  # fmt: skip
+def test_wrong_words_for_bars(run: Run, words: tuple[str, ...], said: str) -> None:
+    result = run("forces", "engine-gas-pressure", *words)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert "Traceback" not in result.stderr

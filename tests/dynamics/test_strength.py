@@ -295,3 +295,45 @@ def test_what_is_refused() -> None:
         ck.figures.strength(forces, "frame")
     with pytest.raises(ck.errors.UnknownName, match="bending"):
         ck.figures.strength(forces).bars["arm"].extremes("bending")
+
+
+def test_values_between_the_stations() -> None:
+    """An arm under its weight: M = -q (l - x)^2 / 2, V = q (l - x), anywhere; all of it at either end."""
+    mechanism = arm(ck.mass("arm", 3.0), ck.gravity(0, -10))
+    motion = ck.solve(mechanism, {"arm": [0.0, np.pi]})
+    bar = ck.figures.strength(ck.force_analysis(motion, inertia=False)).bars["arm"]
+    places = np.array([0.0, 0.013, 0.777, 1.4142, 1.999])
+    load, sides = 15.0, np.array([[1.0], [-1.0]])
+    np.testing.assert_allclose(bar.along(BENDING, places), -sides * load * (2 - places) ** 2 / 2, atol=1e-12)
+    np.testing.assert_allclose(bar.along(SHEAR, places), sides * load * (2 - places), atol=1e-12)
+    found, least, greatest = bar.envelope(BENDING)
+    np.testing.assert_allclose(greatest, load * (2 - found) ** 2 / 2, atol=1e-12)
+    np.testing.assert_allclose(least, -greatest, atol=1e-12)
+    with pytest.raises(ck.errors.UnknownName, match="torsion"):
+        bar.along("torsion", places)
+
+
+def test_a_force_within_the_bar_is_on_both_of_its_sides() -> None:
+    mechanism = arm(ck.force("arm", (0, -8), at="P"), P=0.7)
+    bar = ck.figures.strength(ck.force_analysis(ck.solve(mechanism, {"arm": [0.0]}), inertia=False)).bars["arm"]
+    places = bar.stations()
+    before, behind = places[places < 0.7].max(), places[places > 0.7].min()
+    assert behind - before < 1e-8
+    np.testing.assert_allclose(bar.along(SHEAR, np.array([before, behind])), [[8.0, 0.0]], atol=1e-12)
+    assert bar.places() == {"A": 0.0, "P": 0.7, "B": 2.0}
+
+
+def test_diagrams_have_the_three_quantities_and_their_envelope() -> None:
+    turn = np.deg2rad(np.arange(0.0, 360.0, 15.0))
+    found = ck.figures.strength(ck.force_analysis(ck.solve(slider_crank(), turn, speed=80)))
+    axes = ck.plots.bar_diagrams(found, "rod", pose=5).figure.axes
+    assert [one.get_ylabel() for one in axes] == ["normal force [N]", "shear [N]", "bending moment [N m]"]
+    for one, what in zip(axes, (NORMAL, SHEAR, BENDING), strict=True):
+        drawn = [line.get_ydata() for line in one.get_lines() if len(line.get_ydata()) > 2]
+        places, least, greatest = found.bars["rod"].envelope(what)
+        for curve, wanted in zip(drawn, (least, greatest, found.bars["rod"].along(what, places)[5]), strict=True):
+            np.testing.assert_array_equal(curve, wanted)
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'rod'"):
+        ck.plots.bar_diagrams(found, "rodd")
+    with pytest.raises(ck.errors.InvalidInput, match="there is no pose 24"):
+        ck.plots.bar_diagrams(found, "rod", pose=24)

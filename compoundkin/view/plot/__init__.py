@@ -1,5 +1,6 @@
 """Plots of motions and studies, drawn with Matplotlib, which is loaded when the first one is drawn."""
 
+from compoundkin.view.plot.bar_diagrams import bar_diagrams
 from compoundkin.view.plot.circuit_plot import circuits
 from compoundkin.view.plot.optimisation_plots import improvement, starts
 from compoundkin.view.plot.plane_plots import bearing_loads, centrodes, hodograph, paths, phase, polar
@@ -13,6 +14,7 @@ from compoundkin.view.plot.workspace_plot import workspace
 __all__ = [
     "Plot",
     "bands",
+    "bar_diagrams",
     "bearing_loads",
     "centrodes",
     "circuits",

@@ -54,6 +54,11 @@ KINDS: Mapping[str, PictureKind] = {
     "singularities": PictureKind("configuration_pictures:singularities_picture", ("design", "labels", "size")),
     "free-bodies": PictureKind("force_pictures:free_bodies", (*POSE, "link", "size"), of_forces=True),
     "force-polygon": PictureKind("force_pictures:force_polygons", (*POSE, "link", "size"), of_forces=True),
+    "normal-force": PictureKind("along_bars:normal_force_picture", (*POSE, "labels", "link", "size"), of_forces=True),
+    "shear": PictureKind("along_bars:shear_picture", (*POSE, "labels", "link", "size"), of_forces=True),
+    "bending-moment": PictureKind(
+        "along_bars:bending_moment_picture", (*POSE, "labels", "link", "size"), of_forces=True
+    ),
 }
 SKETCH_OF_FORCES = PictureKind("force_pictures:force_sketch", (*POSE, "labels", "link", "size"), of_forces=True)
 
@@ -85,9 +90,10 @@ def draw(
     with circles and lines, its other mode dashed; "configurations", all of them at the pose, or "circuits", all those
     of the driver that `at` leaves out, side by side on one scale; "singularities", the singular poses of a motion with
     the velocities along each branch that meets there, as one of `singularities` is drawn too; "free-bodies", each link
-    or one `link` alone with all that acts on it; or "force-polygon", the forces on each link or one head to tail. The
-    last two are of forces, or find them; the sketch of forces has them as arrows, that in each pair on its second link,
-    or all those on one `link`.
+    or one `link` alone with all that acts on it; "force-polygon", the forces on each link or one head to tail; or
+    "normal-force", "shear", "bending-moment" along the bars of links or of one, with the envelope of all poses. The
+    last five are of forces, or find them; the sketch of forces has them as arrows, that in each pair on its second
+    link, or all those on one `link`.
 
     The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
     the index `pose`; else the one nearest to the mechanism's drawing. Graph and circle diagram have none. In a sketch,

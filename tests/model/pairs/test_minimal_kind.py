@@ -103,7 +103,7 @@ def test_it_is_drawn(mechanism: ck.Mechanism, kind: str) -> None:
         with pytest.raises(InvalidInput, match="no pose along the motion is singular"):
             ck.draw(ck.solve(mechanism), kind=kind)
         return
-    if kind in ("forces", "free-bodies", "force-polygon"):
+    if kind in ("forces", "free-bodies", "force-polygon", "normal-force", "shear", "bending-moment"):
         units = {"length": "m", "mass": "kg", "force": "N"}
         mechanism = mechanism.replace(ck.mass(mechanism.drives[0].link, 2.0), units=units)
     assert ck.draw(ck.solve(mechanism), kind=kind).svg.startswith("<svg")

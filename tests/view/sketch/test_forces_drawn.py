@@ -105,3 +105,30 @@ def test_wrong_wishes() -> None:
         ck.draw(ck.load("six-bar"), kind="free-bodies")
     with pytest.raises(InvalidInput, match="ghosts"):
         ck.draw(six_bar_forces(), ghosts=3)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0, 4.0])
+def test_ordinates_on_a_bar_are_to_scale_and_on_their_side(angle: float) -> None:
+    """A cantilever turned by any angle under a force across it: M = -F l at its root, to the right of its axis."""
+    across = -50j * np.exp(1j * angle)
+    mechanism = ck.Mechanism(
+        "Arm",
+        ck.link("frame", A=0),
+        ck.link("arm", A=0, B=2),
+        ck.drive("arm"),
+        ck.force("arm", (across.real, across.imag), at="B"),
+        units={"length": "m", "mass": "kg", "force": "N"},
+    )
+    forces = ck.force_analysis(ck.solve(mechanism, {"arm": [angle]}), inertia=False)
+    picture = ck.draw(forces, kind="bending-moment")
+    (line,) = (one for one in picture.shapes if isinstance(one, Polyline) and len(one.points) > 100)
+    foot, tip, end = line.points[0], line.points[1], line.points[-1]
+    (text,) = (one for one in picture.shapes if isinstance(one, Text) and one.text == "100 N m")
+    start, head = (
+        next(one.points[0] for one in picture.shapes if isinstance(one, kind) and one.points[0].imag == text.at.imag)
+        for kind in (Polyline, Polygon)
+    )
+    assert abs(tip - foot) == pytest.approx(abs(head - start))
+    aside = (tip - foot) / (end - foot)
+    assert abs(aside.real) < 1e-6
+    assert aside.imag > 0.0  # on paper y points down: to the right of the axis
