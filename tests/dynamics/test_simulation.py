@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.forward_dynamics import simulation_start
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
+from compoundkin.dynamics.simulation.integration import SimulatedCourse, integrate
+from compoundkin.dynamics.simulation.simulation_events import begin_at_stops
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.errors import FewDigits, InvalidInput, UnknownName
 from tests.dynamics.cases import SI
@@ -821,3 +825,65 @@ def test_springs_at_pins_do_not_depend_on_the_order_of_links(order: tuple[int, .
     found = ck.simulate(sprung, start={"crank": (1.0, 12.0)}, until=1.0)
     assert found.energy.worst < 1e-9
     assert np.max(np.abs(found.motion.pairs["C"].value)) > np.pi / 2
+
+
+def rocker_under(*loads: object) -> ck.Mechanism:
+    """A crank-rocker driven at its rocker, which has two limit positions, under gravity."""
+    return ck.Mechanism(
+        "Driven rocker",
+        ck.link("frame", A=0, D=0.5),
+        ck.link("crank", A=0, B=0.12),
+        ck.link("coupler", B=0, C=0.45),
+        ck.link("rocker", D=0, C=0.3),
+        ck.drive("rocker"),
+        ck.drawn(A=0, D=0.5, B=0.12j, C=(0.419, 0.289)),
+        ck.mass("crank", 6.0, at="B", inertia=0.02),
+        ck.mass("coupler", 1.0, inertia=0.01),
+        ck.mass("rocker", 2.0, inertia=0.02),
+        ck.gravity(0, -9.81),
+        *loads,
+        units=SI,
+    )
+
+
+@pytest.mark.parametrize("load", [
+    lambda name: ck.motor(name, stall=4.0, no_load=40.0), lambda name: ck.damper(pair=name, rate=0.02),
+    lambda name: ck.stop(name, high=4.0, stiffness=1e3), lambda name: ck.effort(name, lambda q, w: -0.1 * w - q),
+])  # fmt: skip
+def test_loads_of_a_driver_follow_it_where_another_pair_takes_its_place(load: Any) -> None:
+    """They named a driver that was no more, so that the coordinates of all links had to take over."""
+    named, of_pair = (ck.simulate(rocker_under(load(name)), until=1.5, tolerance=1e-12) for name in ("rocker", "D"))
+    changes = [event.text for event in named.events if event.name == "coordinate"]
+    assert changes
+    assert all("takes its place as the coordinate" in text for text in changes)
+    assert named.energy.worst < 1e-9
+    angles = [one.motion.links["rocker"].angle for one in (named, of_pair)]
+    assert np.ptp(angles[0]) > 0.1
+    np.testing.assert_array_equal(*angles)
+    # by the coordinates of all links
+    chart = chart_of((begun := simulation_start(rocker_under(load("D")), None, {}, None)).motion, ("rocker",), {})
+    links, state = by_links(chart, chart.state(0.0, np.array([begun.values["rocker"]]), np.zeros(1)))
+    course = SimulatedCourse(1.5, 1e-12)
+    begin_at_stops(chart, np.array([begun.values["rocker"], 0.0, 0.0]))
+    links.stop_contacts = chart.stop_contacts
+    integrate(links, np.append(state, 0.0), course, None)
+    last = links.courses(np.array([1.5]), course.steps[-1].between(np.array([1.5])), np.zeros((len(links.free), 1)))
+    assert float(last["rocker"][0][0]) == pytest.approx(angles[0][-1], abs=1e-8)
+
+
+def test_the_explicit_method_comes_back_where_motions_no_longer_die_away_fast() -> None:
+    """J w' = T - c(t) w, c = C exp(-b t): stiff at first, then a rotor under a torque; work by quadrature."""
+    rate, fades, torque = 1e4, 40.0, 5.0
+    rotor = rotor_under(
+        ck.effort("rotor", lambda w, t: torque - rate * np.exp(-fades * t) * w),
+    )
+    found = ck.simulate(rotor, start=(0.0, 3.0), until=1.0)
+    texts = [event.text for event in found.events if event.name == "stiff"]
+    assert "implicit" in texts[0]
+    assert "explicit" in texts[1]
+    assert len(texts) == 2
+    # from where the damping is nothing it is a constant acceleration
+    times, speed = found.times, found.motion.drives["rotor"].rate
+    late = times > 0.75
+    np.testing.assert_allclose(np.diff(speed[late]), torque / 0.05 * np.diff(times[late]), rtol=1e-7)
+    assert found.energy.worst < 1e-7

@@ -226,6 +226,10 @@ class BodyChart:
         """Return the state at the coordinates of all links and their rates."""
         return BodyState(self, time, values, speeds)
 
+    def seen(self, time: float, values: Number, speeds: Number) -> BodyState:
+        """Return a state as contacts see it."""
+        return self.state(time, values, speeds)
+
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state."""
         return self._projected(time, values, speeds).rates

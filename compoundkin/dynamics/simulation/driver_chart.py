@@ -16,6 +16,7 @@ from compoundkin.dynamics.simulation.driver_state import (
     DriverState,
     LinearAngle,
     Rates,
+    SeenState,
     by_drivers,
     first_angle,
     prescribed_rates,
@@ -96,6 +97,10 @@ class DriverChart:
         given = self.prescribed(time) if self.laws else (np.empty(0),) * 3
         whole, rates = np.concatenate([values, given[0]]), np.concatenate([speeds, given[1]])
         return DriverState(self, time, whole, rates, given[2], self._block(whole, rates))
+
+    def seen(self, time: float, values: Number, speeds: Number) -> SeenState:
+        """Return a state as contacts see it."""
+        return self.state(time, values, speeds)
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state."""

@@ -219,11 +219,15 @@ class TrueRates(dict[str, Pose]):
 
 
 class KnownCoordinate(NamedTuple):
-    """A pair's coordinate with its rate, and its rates at unit rate of each coordinate of a state."""
+    """A pair's coordinate with its rate, its rates at unit rate of each coordinate of a state, and its acceleration.
+
+    That is the one at no accelerations of these.
+    """
 
     value: float
     rate: float
     slopes: Number
+    bias: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +236,7 @@ class LoadedState(LoadedBlock):
 
     The rates of each pose of `columns` are those at unit rate of every coordinate, and last the true ones; the block
     has the true ones alone. `turns` adds to an angle of a pair its full turns; `driven` are coordinates of pairs that
-    are known with their rates, the drivers' own.
+    are known with their rates, the drivers' own and those of a table.
     """
 
     columns: dict[str, Pose] | None = None
@@ -278,7 +282,7 @@ class LoadedState(LoadedBlock):
         assert self.columns is not None
         pair, sign = self._meant(name)
         if pair.name in self.driven:
-            return sign * self.driven[pair.name].slopes, 0.0
+            return sign * self.driven[pair.name].slopes, sign * self.driven[pair.name].bias
         moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members)).c
         bias = 2.0 * float(np.ravel(moved[2])[-1]) if len(moved) > 2 else 0.0
         return sign * self._slopes(moved), sign * bias
@@ -365,16 +369,24 @@ def _number(value: Number, at: int = 0) -> Number:
     return value.item(at) if isinstance(value, np.ndarray) else value
 
 
-class KnownState(Protocol):
+class SeenState(Protocol):
+    """The part of a state that gaps of contacts need."""
+
+    @property
+    def loaded(self) -> LoadedState:
+        """The state as loads see it."""
+
+    @property
+    def speeds(self) -> Number:
+        """The rates of all coordinates."""
+
+
+class KnownState(SeenState, Protocol):
     """The part of a state that events and stops need, whichever coordinates it is in."""
 
     @property
     def chart(self) -> Any:
         """What it is a state of."""
-
-    @property
-    def loaded(self) -> LoadedState:
-        """The state as loads see it."""
 
     @property
     def prescribed(self) -> Number:
@@ -387,10 +399,6 @@ class KnownState(Protocol):
     @property
     def values(self) -> Number:
         """The values of all coordinates."""
-
-    @property
-    def speeds(self) -> Number:
-        """The rates of all coordinates."""
 
     @property
     def block(self) -> Block:

@@ -37,6 +37,7 @@ from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solving_order_of
+from compoundkin.model.definition import driver_independent_name
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law, as_law, constant_speed, motion_table
@@ -97,6 +98,7 @@ def simulate(
     """
     _check_simulated(mechanism, until, tolerance, restitution)
     _check_progress(progress)
+    mechanism = _by_pairs(mechanism)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
@@ -114,6 +116,12 @@ def simulate(
     _warn(energy, tolerance)
     counts = len(course.steps), course.evaluations
     return Simulation(phases, energy, tuple(course.events), course.tolerance, *counts, course)
+
+
+def _by_pairs(mechanism: Mechanism) -> Mechanism:
+    """Return a mechanism whose loads name the pairs of drivers: another pair may take a driver's place."""
+    names = {own.name: driver_independent_name(mechanism, own.name) for own in mechanism.drives}
+    return mechanism.replace(*(load.renamed({}, names) for load in mechanism.loads.values()))
 
 
 def _phases(course: SimulatedCourse, times: Number) -> Iterator[tuple[SimulationPhase, SimulatedEnergy]]:

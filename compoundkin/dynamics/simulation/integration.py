@@ -121,7 +121,7 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
                 solver = _begun(chart, course.last, state, course)
             elif solver.status == "finished" and course.last < course.until and not course.ended:
                 solver = _behind_break(chart, solver, course)
-            elif solver.status == "running" and course.turns_stiff(chart, solver):
+            elif solver.status == "running" and course.changes_method(chart, solver):
                 solver = _begun(chart, course.last, solver.y, course)
         else:
             assert passed.state is not None
@@ -601,6 +601,8 @@ def _between(solver: Any, begin: _Begin, n: int) -> Callable[[Number], Number]:
 # Steps are checked for stiffness so often; they are short for stability alone where they are longer than this over the
 # rate at which speeds die away, and the method is changed where that is so at as many checks in a row.
 CHECKED, STIFF, IN_A_ROW = 10, 2.0, 5
+# The implicit method that was left takes over again where they die away so many times as fast.
+STIFFER = 4.0
 # A step as long as this part of the time in which speeds die away has collapsed for that, and nothing else.
 DYING = 1e-2
 # The rate at which speeds die away is found by so many steps of the power method, with this part of the pace.
@@ -756,18 +758,31 @@ class SimulatedCourse:
     restarts: list[float] = field(default_factory=list)  # times of restarts behind steps that collapsed
     ended: bool = False
     implicit: bool = False  # whether an implicit method has taken over
-    short: int = 0  # checks in a row at which steps were short for stability alone
+    short: int = 0  # checks in a row at which another method would do better
+    left: float = 0.0  # the rate of decay at which the implicit method was last left
 
-    def turns_stiff(self, chart: Chart, solver: Any) -> bool:
-        """Return whether steps have become so short for stability alone that an implicit method takes over."""
-        if self.implicit or len(self.steps) % CHECKED:
+    def changes_method(self, chart: Chart, solver: Any) -> bool:
+        """Return whether another method takes over.
+
+        That is an implicit one where steps have become so short for stability alone, and the explicit one again where
+        its steps would not be shorter than those of the implicit one, which has a lower order.
+        """
+        if len(self.steps) % CHECKED:
             return False
-        self.short = self.short + 1 if solver.step_size * _decay(chart, solver) > STIFF else 0
-        self.implicit = self.short == IN_A_ROW
+        decay = _decay(chart, solver)
         if self.implicit:
-            text = "motions die away so fast that an implicit method (Radau IIA of order 5) takes over"
-            self.events.append(SimulationEvent(self.last, STIFFNESS, text, False))
-        return self.implicit
+            fits = solver.step_size * decay < STIFF / 2.0
+        else:
+            fits = solver.step_size * decay > STIFF and decay > STIFFER * self.left
+        self.short = self.short + 1 if fits else 0
+        if self.short < IN_A_ROW:
+            return False
+        self.implicit, self.short = not self.implicit, 0
+        text = "motions die away so fast that an implicit method (Radau IIA of order 5) takes over"
+        if not self.implicit:
+            self.left, text = decay, "motions no longer die away so fast: the explicit method takes over"
+        self.events.append(SimulationEvent(self.last, STIFFNESS, text, False))
+        return True
 
     def at(self, times: Number) -> list[ChartStretch]:
         """Return the states at times in order, chart by chart."""

@@ -190,11 +190,12 @@ class StopWatch(Watch):
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the gap of an open contact, the depth or the force of a closed one."""
         n, one = len(chart.free), self.contact
-        here = chart.state(time, state[:n], state[n : 2 * n])
         if one.stop.is_elastic:
-            return one.indentation(here) * (1.0 if one in chart.closed else -1.0)
+            seen = chart.seen(time, state[:n], state[n : 2 * n])
+            return one.indentation(seen) * (1.0 if one in chart.closed else -1.0)
         if one not in chart.closed:
-            return one.at(here).gap
+            return one.at(chart.seen(time, state[:n], state[n : 2 * n])).gap
+        here = chart.state(time, state[:n], state[n : 2 * n])
         found = margins(chart.rigid, here, chart.pressing_rates(time, state[:n], state[n : 2 * n]))
         return float(found[chart.rigid.index(one)])
 

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.dynamics.simulation.driver_state import KnownState, Rates
+from compoundkin.dynamics.simulation.driver_state import KnownState, Rates, SeenState
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.latch import Latch, as_latch, as_release
 from compoundkin.model.loads.stop import HIGH, LOW, Stop, as_stop
@@ -57,20 +57,20 @@ class StopContact:
         assert found is not None
         return found
 
-    def at(self, state: KnownState) -> ContactState:
+    def at(self, state: SeenState) -> ContactState:
         """Return its gap and the derivatives of that at a state."""
         slopes, bias = state.loaded.rates_of(self.stop.pair)
         gap = self.side * (float(np.ravel(state.loaded.coordinate(self.stop.pair).c[0])[0]) - self.end)
         normal = self.side * slopes
         return ContactState(gap, float(normal @ state.speeds), normal, self.side * bias)
 
-    def push(self, state: KnownState) -> float:
+    def push(self, state: SeenState) -> float:
         """Return the force of an elastic end at a state, negative where it would have to pull."""
         series = state.loaded.coordinate(self.stop.pair)
         depth = self.elastic.depth(self.side, self.end, series, state.loaded)
         return float(np.ravel(self.elastic.push(self.side, depth, series, state.loaded))[0])
 
-    def indentation(self, state: KnownState) -> float:
+    def indentation(self, state: SeenState) -> float:
         """Return the depth in an elastic end, negative where it does not push."""
         stiffness = float(np.ravel(state.loaded.fitted(self.elastic.stiffness))[0])
         return min(-self.at(state).gap, self.push(state) / stiffness)

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from compoundkin.dynamics.simulation.driver_state import (
     KnownCoordinate,
     LoadedState,
     Rates,
+    SeenState,
     loaded_state,
     rotors_that_lose,
 )
@@ -38,8 +39,10 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.loads.attachments import PairLoad
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
 
 # A pair that moves so many times as fast as a driver, by their scales, is the better coordinate: the equation of motion
 # has squares of this ratio and loses twice as many digits.
@@ -111,7 +114,28 @@ class TabulatedChart(DriverChart):
         columns = _Columns(piece, basis, speed)
         block = Block((2, 1), self.ends, columns, {}, 1)
         at = loaded_state(self.start, block, time, 1, lambda pair, angle: self.turns_of(pair, angle, values))
-        return replace(at, driven=self._driven(float(values[0]), speed))
+        known = self._driven(float(values[0]), speed)
+        for pair in () if isinstance(piece, BridgePiece) else self.loaded_pairs:
+            free, rate, second = (piece.coordinate(pair, self.ends[pair.name]) @ basis).tolist()
+            value = self.turns_of(pair.name, free, values) if pair.free_is_angle else free
+            known[pair.name] = KnownCoordinate(value, rate * speed, np.array([rate]), second * speed * speed)
+        return replace(at, driven=known)
+
+    @cached_property
+    def loaded_pairs(self) -> tuple[Pair, ...]:
+        """The pairs but the driver's along whose coordinates loads, stops and latches act."""
+        named = (load.pair for load in self.mechanism.loads.values() if isinstance(load, PairLoad))
+        meant = (self.order.pair_meant(name) for name in named)
+        found = {one[0].name: one[0] for one in meant if one is not None}
+        return tuple(pair for name, pair in found.items() if name in self.ends and name not in self.driven)
+
+    def seen(self, time: float, values: Number, speeds: Number) -> SeenState:
+        """Return a state as contacts see it, from the table where that has it."""
+        piece, value = self._piece(float(values[0]))
+        if piece is None or self.laws:
+            return super().seen(time, values, speeds)
+        loaded = self.loaded_at(piece, piece.basis(value), time, values, float(speeds[0]))
+        return TableState(loaded, speeds)
 
     def _driven(self, value: float, speed: float) -> dict[str, KnownCoordinate]:
         """Return the coordinate of the driver's pair."""
@@ -216,6 +240,13 @@ class _UnknownAngles(dict[str, Number]):
     def __missing__(self, name: str) -> Number:
         self[name] = np.full((1, 1), np.nan)
         return self[name]
+
+
+class TableState(NamedTuple):
+    """A state in a table as contacts see it."""
+
+    loaded: LoadedState
+    speeds: Number
 
 
 class _Columns(dict[str, Pose]):
@@ -399,6 +430,7 @@ class TablePiece:
     nodes: Mapping[str, Pose]
     place: slice
     known: dict[str, Number] = field(default_factory=dict)
+    pairs: dict[str, Number] = field(default_factory=dict)
 
     def basis(self, value: float) -> Number:
         """Return Chebyshev's polynomials at a value."""
@@ -419,6 +451,17 @@ class TablePiece:
         if link not in self.known:
             self.known[link] = self.polynomials(link)
         return self.known[link]
+
+    def coordinate(self, pair: Pair, ends: Ends) -> Number:
+        """Return the polynomials of a pair's coordinate, its rate and its acceleration at unit rate; angles go on."""
+        if pair.name not in self.pairs:
+            poses = tuple(self.nodes[link] for link in pair.members)
+            found = pair.coordinate(ends, poses)
+            rows = np.array([self._row(Series((found.derivative(k),)), 0) for k in range(3)])
+            if pair.free_is_angle:
+                rows[0] = np.unwrap(rows[0])
+            self.pairs[pair.name] = rows @ TO_COEFFICIENTS.T
+        return self.pairs[pair.name]
 
     def polynomials(self, link: str) -> Number:
         """Make these polynomials."""
