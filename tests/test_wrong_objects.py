@@ -295,6 +295,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                            "size": None},
         "plots.bar_diagrams": {"found": ck.figures.strength(h["forces"]), "pose": None, "design": 0, "title": None,
                                "size": None},
+        "plots.motor_curves": {"sized": ck.figures.sizing(h["forces"]), "motor": None, "title": None, "size": None},
         "plots.bearing_loads": {"motion": motion, "every": None, "designs": (), "title": None, "size": None},
         "plots.hodograph": {"motion": motion, "every": None, "designs": (), "title": None, "size": None},
         "plots.paths": {"motion": motion, "on": "frame", "every": None, "designs": (), "title": None, "size": None},

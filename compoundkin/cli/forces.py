@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.suffixes import SUFFIXES, alternatives, file_format, suffix_of
 from compoundkin.cli.drive_options import (
     DESIGN,
     HOLDING,
@@ -28,6 +29,7 @@ from compoundkin.cli.file_options import (
     put_table,
     report_or_table_options,
     solvable_structure,
+    to_file,
 )
 from compoundkin.cli.shell import put, working
 
@@ -130,6 +132,7 @@ Examples:
   compoundkin size shaper-cutting-force
   compoundkin size press.toml --speed 60rpm --motors mine.toml
   compoundkin size press.toml --speed 60rpm --gear 12 > motors.txt
+  compoundkin size shaper-cutting-force --motor "servo 100 W" -o servo.svg
 """
 )
 @mechanism_argument
@@ -140,9 +143,11 @@ Examples:
 @click.option("--gear", type=float, help="The speed of the shaft over that of the driver; the best one without it.")
 @click.option("--efficiency", type=float, default=1.0, show_default=True, help="The efficiency of the gear.")
 @click.option("--driver", metavar="NAME", help="The driver to size; may be left out where there is one.")
+@click.option("--motor", metavar="NAME", help="The motor to draw; the smallest that does without it.")
+@to_file(f"Draw the torque over the speed at the motor's shaft: {alternatives('plot')}.")
 def size_command(
     file: str, design: int, motors: str | None, gear: float | None, efficiency: float, driver: str | None,
-    **options: Any,
+    motor: str | None, path: str | None, **options: Any,
 ) -> int:  # fmt: skip
     """Print what a driver needs over the motion, and which motors give it, each behind its best gear.
 
@@ -151,16 +156,24 @@ def size_command(
     from compoundkin.cli import typed_values
     from compoundkin.dynamics.motor_sizing import sizing
 
+    if path is not None:
+        file_format("plot", path)
+    elif motor is not None:
+        raise InvalidInput(Problem("--motor", "it is of the plot", "give -o PATH.svg too"))
     structure = solvable_structure(file, None, None, lambda own: typed_values.with_loads(own, options))
     forces = find_forces(solve_motion(structure, options), False, "")
     found = sizing(forces, motors, driver=driver, gear=gear, efficiency=efficiency, design=design)
-    put(found.text() + "\n")
+    if path is None:
+        put(found.text() + "\n")
+    else:
+        from compoundkin.view.plot import motor_curves
+
+        put_picture(motor_curves(found, motor), path)
     return 0 if found.chosen else 1
 
 
 def _strength(file: str, path: str | None, statics: bool, holding: str, options: dict[str, Any]) -> int:
     """Print forces along the bars of links, or write the loads on them; return the exit code."""
-    from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_of
     from compoundkin.cli import typed_values
     from compoundkin.dynamics.strength import strength
 

@@ -56,6 +56,8 @@ class SizedMotor:
     """A motor behind its best gear on a machine: torques at its shaft, N m, speeds in rad/s, powers in W.
 
     `use` is the effective torque over the rated one, `reserve` the least of greatest torque over what is needed.
+    `beyond_rated` and `beyond_curve` are the parts of the time in which more is asked than it gives for ever, and than
+    it gives at all.
     `reflected` is the inertia of the load over that of the rotor. `reasons` say why it does not do.
     """
 
@@ -68,6 +70,8 @@ class SizedMotor:
     reflected: float
     use: float
     reserve: float
+    beyond_rated: float
+    beyond_curve: float
     reasons: tuple[str, ...]
 
     @property
@@ -351,6 +355,14 @@ def _rms(values: Number, times: Number) -> float:
     return float(np.sqrt(np.trapezoid(np.square(values), times) / (times[-1] - times[0])))
 
 
+def _part_of_time(above: Number, times: Number) -> float:
+    """Return the part of the time in which a function, straight between its samples, is above zero."""
+    first, last = above[:-1], above[1:]
+    size = np.maximum(np.abs(first) + np.abs(last), np.finfo(float).tiny)
+    part = (np.maximum(first, 0.0) + np.maximum(last, 0.0)) / size
+    return float(np.sum(part * np.diff(times)) / (times[-1] - times[0]))
+
+
 def _at_shaft(needed: Sizing, inertia: float, gear: float) -> tuple[Number, Number]:
     speeds = gear * needed.speeds
     load = needed.torques / gear
@@ -383,17 +395,18 @@ def _sized(needed: Sizing, motor: ListedMotor, gear: float | None) -> SizedMotor
     greatest = motor.greatest(speeds)
     with np.errstate(divide="ignore", invalid="ignore"):
         reserve = float(np.nanmin(np.where(torques == 0.0, np.inf, greatest / np.abs(torques))))
-    reasons = tuple(_against(motor, rms, speed, reserve))
+    warm, low = (_part_of_time(np.abs(torques) - most, needed.times) for most in (motor.rated, greatest))
+    reasons = tuple(_against(motor, rms, speed, reserve, low))
     reflected = needed.inertia / (own * own * motor.inertia)
     power = float(np.max(torques * speeds))
-    return SizedMotor(motor, own, rms, peak, speed, power, reflected, rms / motor.rated, reserve, reasons)
+    return SizedMotor(motor, own, rms, peak, speed, power, reflected, rms / motor.rated, reserve, warm, low, reasons)
 
 
-def _against(motor: ListedMotor, rms: float, speed: float, reserve: float) -> Iterator[str]:
+def _against(motor: ListedMotor, rms: float, speed: float, reserve: float, low: float) -> Iterator[str]:
     # the top speed by a gear that was chosen for it is not above it but for rounding
     if speed > motor.top_speed * (1.0 + 1e-9):
         yield f"{speed / RPM:.4g} rpm is above {motor.top_speed / RPM:.4g}"
     if rms > motor.rated:
         yield f"too warm: {rms:.3g} N m for ever, {motor.rated:.3g} rated"
     if reserve < 1.0:
-        yield "its curve is too low"
+        yield f"its curve is too low for {100.0 * low:.2g} % of the time"

@@ -253,3 +253,17 @@ def test_wrong_words_for_bars(run: Run, words: tuple[str, ...], said: str) -> No
     assert result.exit_code == 2
     assert said in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_the_motor_at_its_shaft_is_drawn(run: Run, tmp_path: Path) -> None:
+    assert run("size", "shaper-cutting-force", "-o", "servo.svg").exit_code == 0
+    assert (tmp_path / "servo.svg").stat().st_size > 5000
+    weak = run("size", "shaper-cutting-force", "--motor", "gearmotor 24 V 20 W", "-o", "weak.png")
+    assert weak.exit_code == 0
+    assert (tmp_path / "weak.png").exists()
+    for words, said in ((("--motor", "servo 100 W"), "-o PATH.svg"), (("--motor", "serv", "-o", "a.svg"), "servo"),
+                        (("-o", "a.csv"), "plot")):  # fmt: skip
+        wrong = run("size", "shaper-cutting-force", *words)
+        assert wrong.exit_code == 2
+        assert said in wrong.stderr
+    assert not (tmp_path / "a.svg").exists()

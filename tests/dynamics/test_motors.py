@@ -316,3 +316,30 @@ def test_the_command() -> None:
     said = CliRunner().invoke(cli, ["size", "shaper-cutting-force"], catch_exceptions=False)
     assert said.exit_code == 0
     assert "The smallest that does" in said.output
+
+
+def test_how_long_more_is_asked_than_a_motor_gives() -> None:
+    """A sine is above c times its peak for 1 - 2 arcsin(c) / pi of the time, at a curve that does not fall too."""
+    peak = 0.5 * 0.4 * 25.0
+    flat = ListedMotor("flat", 2.0, 4.0, 100.0, 100.0, 1e-12, ((0.0, 100.0), (4.0, 4.0)))
+    (one,) = ck.figures.sizing(swung(PERIOD), [flat], gear=1.0).motors
+    assert one.beyond_rated == pytest.approx(1.0 - 2.0 * np.arcsin(2.0 / peak) / np.pi, abs=1e-4)
+    assert one.beyond_curve == pytest.approx(1.0 - 2.0 * np.arcsin(4.0 / peak) / np.pi, abs=1e-4)
+    assert "for 41 % of the time" in one.reasons[-1]
+
+
+def test_the_plot_has_the_motion_at_the_shaft_and_the_curves_of_the_motor() -> None:
+    found = ck.figures.sizing(swung(PERIOD, ck.damper(pair="O", rate=3.0)))
+    chosen = found.chosen
+    assert chosen is not None
+    (axes,) = ck.plots.motor_curves(found).figure.axes
+    lines = {line.get_label(): line for line in axes.get_lines()}
+    torques, speeds = found.at_shaft(chosen.motor, chosen.gear)
+    course = lines["over the motion"]
+    np.testing.assert_allclose(course.get_xdata()[:-1], speeds / (2.0 * np.pi / 60.0))
+    np.testing.assert_allclose(course.get_ydata()[:-1], torques)
+    limit = lines["greatest"]
+    paces = np.abs(limit.get_xdata()) * 2.0 * np.pi / 60.0
+    np.testing.assert_allclose(np.abs(limit.get_ydata()), np.interp(paces, *chosen.motor.curve))
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'servo 100 W'"):
+        ck.plots.motor_curves(found, "servo 10 W")

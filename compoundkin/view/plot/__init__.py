@@ -2,6 +2,7 @@
 
 from compoundkin.view.plot.bar_diagrams import bar_diagrams
 from compoundkin.view.plot.circuit_plot import circuits
+from compoundkin.view.plot.motor_plot import motor_curves
 from compoundkin.view.plot.optimisation_plots import improvement, starts
 from compoundkin.view.plot.plane_plots import bearing_loads, centrodes, hodograph, paths, phase, polar
 from compoundkin.view.plot.plot_style import Plot
@@ -22,6 +23,7 @@ __all__ = [
     "histogram",
     "hodograph",
     "improvement",
+    "motor_curves",
     "pareto",
     "paths",
     "phase",

@@ -47,7 +47,8 @@ def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, *
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     if title:
-        figure.suptitle(textwrap.fill(title, TITLE), x=0.01, ha="left")
+        lines = (textwrap.fill(line, TITLE) for line in title.splitlines())
+        figure.suptitle("\n".join(lines), x=0.01, ha="left")
     grid = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(grid.ravel())
 
