@@ -68,7 +68,7 @@ Examples:
   compoundkin forces linkage.toml --at 35 --statics --sheet -o sheet.html
   compoundkin forces linkage.toml --speed 300rpm --strength
   compoundkin forces linkage.toml --speed 300rpm --strength --bar rod -o rod.svg
-  compoundkin forces linkage.toml --strength --section rod=8x20 --elasticity rod=210000 --pin B=12,20
+  compoundkin forces linkage.toml --strength --section rod=8x20 --pin B=12,20
   compoundkin forces scissor-lift --at 1.6 --statics --load T=0,-3000
   compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
   compoundkin forces linkage.toml -o forces.md
