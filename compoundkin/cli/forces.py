@@ -67,7 +67,7 @@ Examples:
   compoundkin forces linkage.toml --at 35 --on rod
   compoundkin forces linkage.toml --at 35 --statics --sheet -o sheet.html
   compoundkin forces linkage.toml --speed 300rpm --strength
-  compoundkin forces linkage.toml --speed 300rpm --strength --bar rod -o rod.svg
+  compoundkin forces linkage.toml --speed 300rpm --strength -o bars.svg
   compoundkin forces linkage.toml --strength --section rod=8x20 --pin B=12,20
   compoundkin forces scissor-lift --at 1.6 --statics --load T=0,-3000
   compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
