@@ -26,7 +26,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law
 from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
-from compoundkin.model.loads.amounts import LoadFunction, LoadTable
+from compoundkin.model.loads.amounts import RATE, LoadFunction, LoadTable
 from compoundkin.model.loads.attachments import COORDINATE
 from compoundkin.model.loads.gravity import Gravity, warn_of_unit
 from compoundkin.model.mechanism import Mechanism
@@ -284,7 +284,7 @@ def amount(log: Recovery, raw: Any, where: str, angle: bool | None, over: str = 
     """Return an amount of a load: a number, an array or a table. Zero where it is broken, which is reported."""
     if isinstance(raw, dict):
         told = raw.get("over", over)
-        known = {TIME: False, "": angle}
+        known = {TIME: False, RATE: False, "": angle}
         is_angle = known[told] if isinstance(told, str) and told in known else log.is_angle(str(told))
         table = made(log, LoadTable, {"over": over, **raw}, where, is_angle)
         return 0.0 if table is None else table
@@ -380,7 +380,9 @@ def _amount(mechanism: Mechanism, where: str, held: Any, own: bool) -> Any:
     if isinstance(held, tuple):
         return [_amount(mechanism, where, part, own) for part in held]
     if isinstance(held, LoadTable):
-        return _table(held, {"": own, TIME: False}.get(held.over, bool(doc.name_is_angle(mechanism, held.over))))
+        return _table(
+            held, {"": own, TIME: False, RATE: False}.get(held.over, bool(doc.name_is_angle(mechanism, held.over)))
+        )
     return (exact_numbers.point if np.iscomplexobj(held) else exact_numbers.plain)(held)
 
 

@@ -16,7 +16,7 @@ from compoundkin.model.definition import CYLINDERS, DRIVES, MechanismDefinition
 from compoundkin.model.elements import Drive, Item, Link
 from compoundkin.model.fields import Key, NameWording, name_problems
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.amounts import tables_of
+from compoundkin.model.loads.amounts import RATE, tables_of
 from compoundkin.model.loads.contract import Load, NamedParts
 from compoundkin.model.loads.friction import Friction
 from compoundkin.model.loads.gravity import Gravity
@@ -521,10 +521,11 @@ def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
 def _unknown_tables(where: str, item: MassOrLoad, names: NamedParts) -> Iterator[Problem]:
     """Find tables over unknown coordinates."""
     for key in item.amounts if isinstance(item, Load) else ():
+        own = (TIME, RATE) if isinstance(item, Load) and item.has_rate else (TIME,)
         for table in tables_of(getattr(item, key)):
-            if table.over not in ("", TIME) and names.coordinate(table.over) is None:
+            if table.over not in ("", *own) and names.coordinate(table.over) is None:
                 what = f"there is no pair, pin or driver {table.over!r}"
-                yield Problem(f"{where}.{key}.over", what, suggestion(table.over, [TIME, *names.pairs]))
+                yield Problem(f"{where}.{key}.over", what, suggestion(table.over, [*own, *names.pairs]))
 
 
 def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -343,3 +346,28 @@ def test_the_plot_has_the_motion_at_the_shaft_and_the_curves_of_the_motor() -> N
     np.testing.assert_allclose(np.abs(limit.get_ydata()), np.interp(paces, *chosen.motor.curve))
     with pytest.raises(ck.errors.UnknownName, match="did you mean 'servo 100 W'"):
         ck.plots.motor_curves(found, "servo 10 W")
+
+
+# --- tables over a rate ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("load", [ck.effort, ck.torque])
+def test_a_table_over_the_rate_runs_a_rotor_up(load: Any, tmp_path: Path) -> None:
+    """T = 5 (1 - w / 100): w = 100 (1 - exp(-T0 t / (100 J))), the same from a file, and the torque in a motion."""
+    table = {"over": "rate", "at": [-50.0, 100.0, 120.0], "values": [7.5, 0.0, -1.0]}
+    driven = rotor(load("rotor", table))
+    ck.save(driven, tmp_path / "rotor.toml")
+    for one in (driven, ck.load(tmp_path / "rotor.toml")):
+        found = ck.simulate(one, start=(0.0, 0.0), until=1.0)
+        np.testing.assert_allclose(found.motion.drives["rotor"].rate, 100.0 * (1.0 - np.exp(-found.times)), atol=1e-8)
+        held = ck.force_analysis(ck.solve(one, [0.0, 1.0], speed=40.0)).drives["rotor"].effort
+        np.testing.assert_allclose(held, -3.0)
+
+
+def test_tables_over_a_rate_belong_to_efforts_and_torques() -> None:
+    table = {"over": "rate", "at": [0.0, 1.0], "values": [0.0, 1.0]}
+    with pytest.raises(ck.errors.InvalidMechanism, match="no pair, pin or driver 'rate'"):
+        rotor(ck.force("rotor", (0, table), at="P"))
+    brake = rotor(ck.effort("rotor", table))
+    with pytest.raises(ck.errors.InvalidInput, match="2 is outside its table, 0 to 1"):
+        _ = ck.force_analysis(ck.solve(brake, [0.0, 1.0], speed=2.0)).drives["rotor"].effort

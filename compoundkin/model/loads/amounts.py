@@ -22,6 +22,8 @@ from compoundkin.model.geometry import real, vector
 from compoundkin.model.laws.constant_laws import ComparedByValue
 from compoundkin.model.loads.contract import LoadedPoses
 
+# What tables of loads that know a rate of their own are over: that of an effort's coordinate, of a torque's link.
+RATE = "rate"
 # The variables of an amount by name, each evaluated only where it is needed.
 Variables: TypeAlias = Mapping[str, Callable[[], Number]]
 
@@ -91,8 +93,18 @@ class LoadTable(ShortRepr, ComparedByValue, CopiesFields):
     smooth: bool = False
 
     keys: ClassVar[tuple[Key, ...]] = (
-        Key("over", "text", 'What it is over: "time", a driver or a pair; its own coordinate where it is left out.'),
-        Key("at", "coordinate", "Where its entries are, increasing; degrees of an angle.", required=True),
+        Key(
+            "over",
+            "text",
+            'What it is over: "time", a driver or a pair; of efforts and torques also "rate", their '
+            "own; its own coordinate where it is left out.",
+        ),
+        Key(
+            "at",
+            "coordinate",
+            "Where its entries are, increasing; degrees of an angle, rad/s of a rate.",
+            required=True,
+        ),
         Key("values", "length", "The amount at each of these places.", required=True),
         Key("period", "coordinate", "After what it repeats, such as 360 of a crank."),
         Key("smooth", "flag", "Whether it is a cubic spline, not straight lines between its entries.", default=False),
@@ -137,7 +149,7 @@ class LoadTable(ShortRepr, ComparedByValue, CopiesFields):
     def _problem(self) -> Problem | None:
         shapes = np.shape(self.at), np.shape(self.values)
         if not isinstance(self.over, str):
-            return Problem("table.over", f"{self.over!r} is no name", 'write "time", a driver or a pair')
+            return Problem("table.over", f"{self.over!r} is no name", 'write "time", "rate", a driver or a pair')
         if len(shapes[0]) != 1 or shapes[0] != shapes[1]:
             return Problem(
                 "table.values", f"places and values have shapes {shapes[0]} and {shapes[1]}", "give as many of each"
@@ -283,7 +295,7 @@ def _numbers(where: str, made: Any) -> Any:
 def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables = MappingProxyType({})) -> Number:
     """Return an amount at the poses of a block, a real number.
 
-    `variables` are those that a function takes before the time; the first is the default variable of tables. Raises
+    `variables` are those that a function takes before the time; the default variable of tables is the first. Raises
     InvalidInput naming `where`.
     """
     found = _value_of(where, amount, at, variables)
@@ -299,6 +311,8 @@ def _value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables 
     if isinstance(amount, LoadTable):
         if amount.over == TIME or not (amount.over or variables):
             return amount.value(where, time_of(where, at))
+        if amount.over == RATE and RATE in variables:
+            return amount.value(where, variables[RATE]())
         if amount.over:
             return amount.value(where, at.coordinate(amount.over).c[0])
         return amount.value(where, next(iter(variables.values()))())
@@ -321,8 +335,10 @@ def time_of(where: str, at: LoadedPoses) -> Number:
 
 
 def needs_rates(amount: Any) -> bool:
-    """Return whether an amount is a function of a rate."""
-    return isinstance(amount, LoadFunction) and "rate" in amount.takes
+    """Return whether an amount is a function or a table of a rate."""
+    if isinstance(amount, LoadTable):
+        return amount.over == RATE
+    return isinstance(amount, LoadFunction) and RATE in amount.takes
 
 
 def tables_of(amount: Any) -> Iterator[LoadTable]:

@@ -124,6 +124,7 @@ class Effort(PairLoad):
     table: ClassVar[str] = "efforts"
     amounts: ClassVar[tuple[str, ...]] = ("amount",)
     own_variable: ClassVar[str] = COORDINATE
+    has_rate: ClassVar[bool] = True
 
     @property
     def needs_rates(self) -> bool:
@@ -157,8 +158,8 @@ def effort(pair: str, amount: Any, *, only: str | None = None, name: str = "") -
     It acts on the pair's second link, its opposite on the first, and is positive where it drives the coordinate up:
     that of ``motion.pairs[pair]``, or of the driver. `amount` is a number, an array whose last axis is the motion, a
     function of coordinate ``q``, rate ``w``, time ``t``, as its arguments name them, or a table as of `force`, over the
-    coordinate where it does not say what it is over. It acts ``only="forward"`` while the coordinate grows, ``"back"``
-    while it shrinks.
+    coordinate where it does not say what it is over, or over its ``"rate"`` in rad/s or lengths a second. It acts
+    ``only="forward"`` while the coordinate grows, ``"back"`` while it shrinks.
 
     >>> effort("stroke", lambda s: -400.0 / (0.1 + s)).name
     'effort along stroke'

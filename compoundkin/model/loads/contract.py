@@ -98,6 +98,7 @@ class Load(ShortRepr, ABC):
     keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
     amounts: ClassVar[tuple[str, ...]] = ()  # the fields that hold amounts
     own_variable: ClassVar[str] = TIME  # the default variable of their tables
+    has_rate: ClassVar[bool] = False  # whether their tables may be over a rate of its own
 
     def __post_init__(self) -> None:
         """A load without a name is named after what it acts on."""

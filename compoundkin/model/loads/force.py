@@ -111,6 +111,7 @@ class Torque(Load):
     title: ClassVar[str] = "torque"
     table: ClassVar[str] = "torques"
     amounts: ClassVar[tuple[str, ...]] = ("torque",)
+    has_rate: ClassVar[bool] = True
 
     @property
     def called(self) -> str:
@@ -164,7 +165,8 @@ def torque(link: str, torque: Any, *, name: str = "") -> Torque:
     """Return a torque on a link, counterclockwise positive, in units of force times length.
 
     It is a number, an array whose last axis is the motion, a function of the time ``t`` and the link's angular velocity
-    ``w``, as its arguments name them, or a table as of `force`.
+    ``w``, as its arguments name them, or a table as of `force`, which may be over the angular velocity, ``"over":
+    "rate"`` in rad/s.
 
     >>> torque("rocker", 0.02).torque
     0.02
