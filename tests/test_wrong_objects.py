@@ -159,6 +159,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                   "jerk": 0.0, "order": 2, "modes": None, "hint": None},
         "spring": {"link": "a", "point": "A", "to": "frame", "at": "S", "pair": "", "stiffness": 4.0,
                    "free_length": 1.0, "free": 0.0, "preload": 0.0, "only": "tension", "name": "n"},
+        "pressure": {"pair": "slide", "pressure": 2.0, "bore": 5.0, "area": None, "rod": 1.0, "back": 0.0, "name": ""},
         "motor": {"pair": "A", "stall": 2.0, "no_load": 100.0, "breakdown": None, "synchronous": None, "slip": None,
                   "torque": None, "speed": None, "gain": None, "limit": 1.0, "power": 1.0, "gear": 1.0,
                   "efficiency": 1.0, "inertia": 0.0, "name": ""},

@@ -371,3 +371,65 @@ def test_tables_over_a_rate_belong_to_efforts_and_torques() -> None:
     brake = rotor(ck.effort("rotor", table))
     with pytest.raises(ck.errors.InvalidInput, match="2 is outside its table, 0 to 1"):
         _ = ck.force_analysis(ck.solve(brake, [0.0, 1.0], speed=2.0)).drives["rotor"].effort
+
+
+# --- pressure on pistons --------------------------------------------------------------------------------------
+
+
+def piston(*more: object) -> ck.Mechanism:
+    """A piston of 3 kg that slides along x, lengths in mm."""
+    return ck.Mechanism(
+        "Piston",
+        ck.link("frame", O=0),
+        ck.link("piston", P=0),
+        ck.slide("piston", on="frame", at="P", through="O", angle=0, name="stroke"),
+        ck.drive("piston"),
+        ck.mass("piston", 3.0, at="P", inertia=0.0),
+        *more,
+        units={"length": "mm", "mass": "kg", "force": "N"},
+    )
+
+
+def test_a_piston_under_two_pressures_accelerates() -> None:
+    """(p A - b (A - a)) / m from rest, and its effort held at a speed is that thrust the other way."""
+    area, rod = np.pi * 50.0**2 / 4.0, np.pi * 28.0**2 / 4.0
+    thrust = 0.8 * area - 0.1 * (area - rod)
+    for size in ({"bore": 50}, {"area": area}):
+        pushed = piston(ck.pressure("stroke", 0.8, **size, rod=28, back=0.1))
+        found = ck.simulate(pushed, start=(0.0, 0.0), until=0.05)
+        np.testing.assert_allclose(found.motion.drives["piston"].rate, thrust / 3.0 * 1e3 * found.times, rtol=1e-9)
+        held = ck.force_analysis(ck.solve(pushed, [0.0, 10.0], speed=5.0)).drives["piston"]
+        np.testing.assert_allclose(held.effort, -thrust)
+        assert found.energy.work[-1] == pytest.approx(thrust * found.motion.drives["piston"].value[-1], rel=1e-9)
+
+
+def test_gas_that_is_pressed_swings_as_an_adiabatic_spring(tmp_path: Path) -> None:
+    """p V^n is constant: the energy of a piston let go, p0 V0 ((V0 / V)^(n - 1) - 1) / (n - 1), and the kinetic one."""
+    bore, length, first, n = 40.0, 100.0, 0.3, 1.4
+    gas = piston(ck.pressure("stroke", lambda q: first * (length / (length + q)) ** n, bore=bore))
+    found = ck.simulate(gas, start=(-20.0, 0.0), until=0.02)
+    q, v = found.motion.drives["piston"].value, found.motion.drives["piston"].rate
+    volume = np.pi * bore**2 / 4.0 * length
+    stored = first * volume / (n - 1.0) * (length / (length + q)) ** (n - 1.0)
+    whole = stored + 3.0 * v**2 / 2e3
+    np.testing.assert_allclose(whole, whole[0], rtol=1e-9)
+    table = {"at": [-50.0, 0.0, 50.0], "values": [0.8, 0.3, 0.2]}
+    written = piston(
+        ck.pressure("stroke", table, bore=bore, rod=10, back={"over": "rate", "at": [-1, 1], "values": [0, 1]})
+    )
+    ck.save(written, tmp_path / "gas.toml")
+    again = ck.load(tmp_path / "gas.toml")
+    efforts = [ck.force_analysis(ck.solve(one, [-10.0, 20.0], speed=0.5)).drives["piston"].effort
+               for one in (written, again)]  # fmt: skip
+    np.testing.assert_array_equal(*efforts)
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ({}, "bore or the area"), ({"bore": 5, "area": 3}, "bore or the area"), ({"bore": 0}, "not above zero"),
+    ({"bore": 5, "rod": 5}, "not thinner"), ({"area": -3}, "not above zero"),
+])  # fmt: skip
+def test_pistons_that_are_none(words: dict[str, float], said: str) -> None:
+    with pytest.raises(InvalidMechanism, match=said):
+        piston(ck.pressure("stroke", 1.0, **words))
+    with pytest.raises(InvalidMechanism, match="a piston slides"):
+        rotor(ck.pressure("O", 1.0, bore=3))

@@ -13,6 +13,7 @@ from compoundkin.model.loads.gravity import Gravity, gravity
 from compoundkin.model.loads.latch import Latch, Release, latch, release
 from compoundkin.model.loads.mass import Mass, mass
 from compoundkin.model.loads.motor import Motor, motor
+from compoundkin.model.loads.pressure import Pressure, pressure
 from compoundkin.model.loads.pretension import Pretension, pretension
 from compoundkin.model.loads.spring import PairSpring, Spring, spring
 from compoundkin.model.loads.stop import Stop, stop
@@ -33,6 +34,7 @@ __all__ = [
     "PairDamper",
     "PairLoad",
     "PairSpring",
+    "Pressure",
     "Pretension",
     "Release",
     "Spring",
@@ -46,6 +48,7 @@ __all__ = [
     "latch",
     "mass",
     "motor",
+    "pressure",
     "pretension",
     "release",
     "spring",
@@ -62,6 +65,7 @@ KINDS: tuple[type[Load], ...] = (
     Damper,
     PairDamper,
     Motor,
+    Pressure,
     Stop,
     Latch,
     Release,
