@@ -19,8 +19,10 @@ from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.intermittent_motion import IntermittentMotion
+from compoundkin.dynamics.motor_sizing import Sizing
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulation import Simulation
+from compoundkin.dynamics.strength import Strength
 from compoundkin.files.exchange.contract import Exported, Imported
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.configuration import Configuration, Configurations
@@ -71,6 +73,8 @@ __all__ = [
     "SimulationPhase",
     "Singularities",
     "Singularity",
+    "Sizing",
+    "Strength",
     "Structure",
     "Study",
     "StudyResult",
