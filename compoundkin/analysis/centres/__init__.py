@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.analysis.centres.derivation_steps import DerivationStep
+from compoundkin.analysis.centres.derivation import DerivationStep
 from compoundkin.analysis.centres.instant_centres import Centre, Centres, Status, instant_centres
 
 __all__ = ["Centre", "Centres", "DerivationStep", "Status", "instant_centres"]

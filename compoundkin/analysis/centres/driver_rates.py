@@ -16,8 +16,16 @@ from itertools import combinations
 import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
-from compoundkin.analysis.centres.derivation import Derivation, attach, pair_amplitudes, ring_amplitudes
-from compoundkin.analysis.centres.derivation_steps import Bridge, Join, Move, Turn
+from compoundkin.analysis.centres.derivation import (
+    Bridge,
+    Derivation,
+    Join,
+    Move,
+    Turn,
+    attach,
+    pair_amplitudes,
+    ring_amplitudes,
+)
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.base.arrays import Number
 

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
-from compoundkin.analysis.centres.derivation import Derivation
-from compoundkin.analysis.centres.derivation_steps import BY_RATES, LineCrossing, PairCentre, SolvedCentre, Trial
+from compoundkin.analysis.centres.derivation import BY_RATES, Derivation, LineCrossing, PairCentre, SolvedCentre, Trial
 from compoundkin.analysis.centres.driver_rates import (
     LINEAR,
     MOVED,

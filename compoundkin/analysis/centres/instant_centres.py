@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, Diagram, couple, diagram_of
-from compoundkin.analysis.centres.derivation import Derivation, derive
-from compoundkin.analysis.centres.derivation_steps import DerivationStep, SolvedCentre, crossing_text
+from compoundkin.analysis.centres.derivation import Derivation, DerivationStep, SolvedCentre, crossing_text, derive
 from compoundkin.analysis.centres.driver_rates import DriverRates
 from compoundkin.analysis.centres.evaluation import Evaluation, recompute
 from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, cross, dot, norm

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from compoundkin.analysis.centres import instant_centres
-from compoundkin.analysis.centres.derivation import derive
-from compoundkin.analysis.centres.derivation_steps import Trial
+from compoundkin.analysis.centres.derivation import Trial, derive
 from compoundkin.analysis.centres.evaluation import Evaluation, recompute
 from compoundkin.analysis.centres.homogeneous import sine_between
 from compoundkin.analysis.centres.known_centres import null_twists

@@ -10,8 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.centres import Status, derivation, instant_centres
-from compoundkin.analysis.centres.derivation import RateSets, derive
-from compoundkin.analysis.centres.derivation_steps import Trial
+from compoundkin.analysis.centres.derivation import RateSets, Trial, derive
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import sine_between
 from compoundkin.analysis.centres.known_centres import null_twists

@@ -7,9 +7,8 @@ import pytest
 from scipy.optimize import linprog
 
 import compoundkin as ck
-from compoundkin.analysis.characteristics.dwells import Sampled, dwells
-from compoundkin.analysis.characteristics.path_features import path_features, straightness
-from compoundkin.analysis.characteristics.path_fits import fitted_circles, fitted_lines
+from compoundkin.analysis.characteristics.output_figures import Sampled, dwells
+from compoundkin.analysis.characteristics.path_features import fitted_circles, fitted_lines, path_features, straightness
 from compoundkin.analysis.characteristics.traced_path import monotonic_stretches
 from tests import catalog
 

@@ -17,8 +17,7 @@ from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 import compoundkin as ck
 from compoundkin.files import load
-from compoundkin.files.exchange.dxf.dxf_format import FORMAT
-from compoundkin.files.exchange.dxf.dxf_pen import whole_motion
+from compoundkin.files.exchange.dxf.dxf_format import FORMAT, whole_motion
 from compoundkin.files.exchange.dxf.link_contours import ContourEdge, contours
 from compoundkin.files.exchange.known_formats import write
 from compoundkin.files.exchange.posed_mechanism import posed_mechanism

@@ -14,9 +14,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.geogebra.dragged_construction import Construction, ObjectNames
-from compoundkin.files.exchange.geogebra.geogebra_format import COMMANDS
+from compoundkin.files.exchange.geogebra.geogebra_format import COMMANDS, construction_of
 from compoundkin.files.exchange.geogebra.geogebra_format import FORMAT as FILE
-from compoundkin.files.exchange.geogebra.mechanism_construction import construction_of
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from tests import catalog
 from tests.files.exchange.geogebra_evaluator import Shape, evaluated
