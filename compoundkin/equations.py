@@ -16,9 +16,9 @@ np.float64(-0.8)
 
 from __future__ import annotations
 
+from compoundkin.analysis.equations.expressions import latex, text
 from compoundkin.analysis.equations.freudenstein import freudenstein
 from compoundkin.analysis.equations.newton_iterations import newton_iterations
-from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.kinematics.groups.textbook_dyads import (
     MovingLine,
     MovingPoint,

@@ -114,7 +114,7 @@ def equations_of(mechanism: Any) -> Any:
 
 def equation_texts(equation: Any) -> dict[str, str]:
     """An equation as text and as LaTeX."""
-    from compoundkin.analysis.equations.notation import latex, text
+    from compoundkin.analysis.equations.expressions import latex, text
 
     return {"text": text(equation), "latex": latex(equation)}
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.analysis.equations.expressions import LATEX, TEXT, EquationNotation, six_digits, sum_written
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.notation import LATEX, TEXT, EquationNotation, six_digits, sum_written
 from compoundkin.analysis.equations.reduced_system import substituted
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, wrapped

@@ -15,9 +15,9 @@ from compoundkin.files.exchange.contract import Exported, Imported, Readable, Wr
 from compoundkin.files.exchange.drawing import drawing_of
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
 from compoundkin.files.exchange.foreign_texts import shortest
+from compoundkin.files.exchange.pmks_format import TextReader, is_short
 from compoundkin.files.exchange.pmks_joints import PMKS, drawing_of_joints, drawn_degrees, pmks_joints
 from compoundkin.files.exchange.pmks_records import MOST_JOINTS, kind_of
-from compoundkin.files.exchange.pmks_text import TextReader, is_short
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism
 from compoundkin.model.units import LENGTHS
 

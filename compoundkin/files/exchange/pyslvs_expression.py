@@ -12,9 +12,9 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.content import Problems
 from compoundkin.files.exchange.drawing import Drawing
 from compoundkin.files.exchange.foreign_texts import shortest
+from compoundkin.files.exchange.pmks_format import is_short, number_of
 from compoundkin.files.exchange.pmks_joints import Notation, joints_of
 from compoundkin.files.exchange.pmks_records import MOST_JOINTS, JointKind, JointList, JointRecord, own_key
-from compoundkin.files.exchange.pmks_text import is_short, number_of
 from compoundkin.model.geometry import FRAME
 
 GROUND = "ground"

@@ -13,9 +13,9 @@ from compoundkin.files.exchange.content import Content, Problems
 from compoundkin.files.exchange.contract import Exported, Imported, Readable, Writable
 from compoundkin.files.exchange.drawing import Drawing, drawing_of
 from compoundkin.files.exchange.drawn_mechanism import mechanism_of
+from compoundkin.files.exchange.pmks_format import is_short
 from compoundkin.files.exchange.pmks_joints import constrained, drawing_of_joints, point_keys
 from compoundkin.files.exchange.pmks_records import MOST_JOINTS, JointDriver, JointList, JointRecord, note_faults
-from compoundkin.files.exchange.pmks_text import is_short
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism
 from compoundkin.files.exchange.pyslvs_expression import (
     GROUND,

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.analysis.equations.expressions import LATEX, TEXT, latex, six_digits, sum_written, text
 from compoundkin.analysis.equations.freudenstein import FourBarConstants, constants_of
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations
-from compoundkin.analysis.equations.notation import LATEX, TEXT, latex, six_digits, sum_written, text
 from compoundkin.analysis.equations.rate_equations import RateEquations, RateSolution
 from compoundkin.analysis.equations.reduced_system import pose_values, prescribed_values
 from compoundkin.base.arrays import degrees

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.analysis.equations.expressions import latex, text
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.analysis.equations.vector_loops import pair_terms
 from compoundkin.files import load
 from compoundkin.model.pairs.loop_terms import Vector

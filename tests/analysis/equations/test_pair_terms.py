@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.analysis.equations.expressions import latex, text
 from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
-from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.structure import assur_groups
 from compoundkin.view.page.mathml import mathml
 from compoundkin.view.report.equations_sections import IMPLICIT_FUNCTIONS, equations_section

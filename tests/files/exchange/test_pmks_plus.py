@@ -14,7 +14,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.files.exchange.content import Content
 from compoundkin.files.exchange.contract import Exported, Imported
 from compoundkin.files.exchange.drawing import drawing_of
-from compoundkin.files.exchange.pmks_plus_format import FORMAT
+from compoundkin.files.exchange.pmks_plus_format import FORMAT, share_scale
 from compoundkin.files.exchange.pmks_plus_text import (
     check_character,
     hash_of,
@@ -24,7 +24,6 @@ from compoundkin.files.exchange.pmks_plus_text import (
     unpacked_flags,
     unpacked_integer,
 )
-from compoundkin.files.exchange.pmks_plus_writer import share_scale
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.model.loads.force import Force
 from tests.files.exchange.pmks_plus_links import check_link

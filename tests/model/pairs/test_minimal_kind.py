@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import compoundkin as ck
-from compoundkin.analysis.equations.notation import latex, text
+from compoundkin.analysis.equations.expressions import latex, text
 from compoundkin.analysis.equivalents import equivalent_linkage
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, UnassembledPoses
 from compoundkin.cli import cli

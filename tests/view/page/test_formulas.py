@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import pytest
 
 import compoundkin as ck
+from compoundkin.analysis.equations.expressions import latex, text
 from compoundkin.analysis.equations.loop_equations import loop_equations
-from compoundkin.analysis.equations.notation import latex, text
 from compoundkin.view.page.mathml import UnknownLatex, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
