@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from compoundkin import plots as plots
     from compoundkin import profiles as profiles
     from compoundkin import results as results
+    from compoundkin import tasks as tasks
     from compoundkin.analysis.centres import instant_centres
     from compoundkin.analysis.characteristics.characteristics import characteristics
     from compoundkin.analysis.checks import verify
@@ -59,6 +60,8 @@ if TYPE_CHECKING:
     from compoundkin.analysis.singularities import singularities
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
+    from compoundkin.dimensional.dyads import dyads
+    from compoundkin.dimensional.synthesis import synthesise
     from compoundkin.dynamics.force_analysis import force_analysis
     from compoundkin.dynamics.simulation.forward_dynamics import simulate
     from compoundkin.files import load, save
@@ -101,6 +104,7 @@ __all__ = [
     "draw",
     "drawn",
     "drive",
+    "dyads",
     "effort",
     "expect",
     "face",
@@ -143,6 +147,7 @@ __all__ = [
     "spring",
     "stop",
     "study",
+    "synthesise",
     "tolerance",
     "torque",
     "verify",
@@ -166,6 +171,7 @@ _LATE = {
     "configurations": "configurations.enumeration",
     "decompose": "structure",
     "draw": "view.sketch",
+    "dyads": "dimensional.dyads",
     "force_analysis": "dynamics.force_analysis",
     "gaps": "kinematics.gaps",
     "instant_centres": "analysis.centres.instant_centres",
@@ -184,6 +190,7 @@ _LATE = {
     "singularities": "analysis.singularities",
     "solve": "kinematics",
     "study": "studies.study",
+    "synthesise": "dimensional.synthesis",
     "tolerance": "studies.tolerances.tolerance",
     "verify": "analysis.checks",
     "with_driver": "synthesis.inversion",
@@ -193,7 +200,7 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("chains", "equations", "errors", "exchange", "figures"),
-    *("goals", "laws", "plots", "profiles", "results"),
+    *("goals", "laws", "plots", "profiles", "results", "tasks"),
 )
 
 

@@ -17,6 +17,8 @@ from compoundkin.analysis.interference import Interference
 from compoundkin.analysis.singularities import Singularities, Singularity
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
+from compoundkin.dimensional.dyads import Dyads
+from compoundkin.dimensional.synthesis import Answer
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.intermittent_motion import IntermittentMotion
 from compoundkin.dynamics.motor_sizing import Sizing
@@ -43,6 +45,7 @@ from compoundkin.view.sketch import Picture
 
 __all__ = [
     "Animation",
+    "Answer",
     "CamAnalysis",
     "Centres",
     "Characteristics",
@@ -51,6 +54,7 @@ __all__ = [
     "CompiledPath",
     "Configuration",
     "Configurations",
+    "Dyads",
     "Exported",
     "Finding",
     "Forces",

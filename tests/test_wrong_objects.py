@@ -17,6 +17,7 @@ import compoundkin as ck
 from tests.catalog import mechanism as loaded
 
 GIVEN = dict[str, Any]
+FIVE_POSES = [(0, 0, 0), (1, 0.1, 0.3), (2, 0.4, 0.5), (2.5, 1, 0.9), (3, 2, 1)]
 
 
 @cache
@@ -107,6 +108,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                   "jerk": 0.0, "law": None, "name": "n"},
         "effort": {"pair": "stroke", "amount": 3.0, "only": "back", "name": "n"},
         "expect": {"quantity": "a.angle", "value": 0.5, "tolerance": 1e-3, "crank": 1.0},
+        "dyads": {"poses": FIVE_POSES, "velocities": None, "accelerations": None},
         "face": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "angle": 0.0, "side": 1},
         "force": {"link": "a", "force": (1, 2), "at": "A", "fixed_in": "frame", "while_moving": (1, 0), "name": "n"},
         "force_analysis": {"motion": h["loaded"], "inertia": True, "holding": ""},
@@ -168,6 +170,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "study": {"mechanism": m, "dimensions": {"crank.B.x": (0.9, 1.1)}, "outputs": ["C"], "sample": "sobol",
                   "count": 2, "seed": 1, "values": None, "speed": None, "acceleration": None, "jerk": None,
                   "time": None, "modes": None, "given": None},
+        "synthesise": {"task": ck.tasks.poses("plate", FIVE_POSES), "region": None, "lengths": (0.1, 9.0),
+                       "ground": None, "transmission": 0.0, "turning": False, "prefer": "transmission"},
         "tolerance": {"mechanism": h["arm"], "tolerances": {"fore.P.x": 0.1}, "outputs": "P.x", "clearance": {"B": 0.1},
                       "values": {"upper": 1.0, "fore": 1.0}, "speed": None, "acceleration": None, "jerk": None,
                       "time": None, "modes": None, "count": 800, "seed": 0, "sigmas": 3.0,
@@ -291,6 +295,14 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "figures.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},
         "figures.strength": {"forces": h["forces"], "sections": {"coupler": {"diameter": 1.0}}, "elasticity": None,
                              "pins": {"B": (1.0, 2.0)}},
+        "tasks.poses": {"link": "plate", "poses": FIVE_POSES[:3], "velocities": {0: (1, 0, 0.5)},
+                        "accelerations": {0: (0, 1, 0.5)}, "tolerance": 0.0},
+        "tasks.points": {"points": [(0, 0), (1, 0), (2, 1)], "at": (0.0, 0.5, 1.0), "tolerance": 0.0},
+        "tasks.mixed": {"poses": FIVE_POSES[:2], "points": [(4, 4)], "link": "coupler", "tolerance": 0.0},
+        "tasks.function": {"pairs": [(0, 0), (0.5, 0.3), (1, 0.8)], "linkage": "four-bar", "absolute": False,
+                           "tolerance": 0.0},
+        "tasks.swing": {"angle": 0.7, "time_ratio": 1.2},
+        "tasks.stroke": {"length": 100.0, "time_ratio": 1.25, "linkage": "slider-crank", "offset": 40.0},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
                            "size": None},

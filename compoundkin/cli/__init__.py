@@ -48,6 +48,7 @@ VERBS = {
 
 # Verbs that are not `command` of the file of their name, as `import` is a word of Python.
 _COMMANDS = {
+    "atlas": ("catalog", "atlas_command"),
     "import": ("import_command", "command"),
     "open": ("report", "open_command"),
     "size": ("forces", "size_command"),

@@ -12,7 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.studies.responses import Designs, Response, studied_path
-from compoundkin.studies.responses.solved_response import SolvedResponse
+from compoundkin.studies.responses.figure_response import SolvedResponse
 from compoundkin.studies.samples import sample_of
 from compoundkin.studies.samples.variations import variation_of
 

@@ -13,8 +13,7 @@ from compoundkin.model.pairs.gear import Gear, gear
 from compoundkin.model.pairs.prismatic import Prismatic, slide
 from compoundkin.model.pairs.rack import Rack, rack
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.rolling import Rolling, roll
-from compoundkin.model.pairs.rolling_circle import RollingOnCircle, roll_around
+from compoundkin.model.pairs.rolling import Rolling, RollingOnCircle, roll, roll_around
 from compoundkin.model.pairs.slot import Slot, slot
 
 # In the order in which the letters of a group are written: RRP, not PRR.

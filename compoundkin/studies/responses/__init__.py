@@ -16,9 +16,8 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.compiled_path import compile
 from compoundkin.programs.recording.recorded_motion import output_of
 from compoundkin.studies.responses.designs import Designs, StudiedPath
-from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse, StrokeRatioResponse
+from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse, SolvedResponse, StrokeRatioResponse
 from compoundkin.studies.responses.response import CourseResponse, Response, SummedResponse, summed_response
-from compoundkin.studies.responses.solved_response import SolvedResponse
 
 __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
 

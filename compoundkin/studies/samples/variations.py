@@ -1,18 +1,97 @@
-"""The kinds of variations of a dimension: the first of this registry that fits is taken."""
+"""The kinds of variations of a dimension: the first of this registry that fits is taken. Designs in a table's file."""
 
 from __future__ import annotations
 
+import csv
 import os
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
+from compoundkin.base.arguments import real_numbers
+from compoundkin.base.arrays import Number
 from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.base.suffixes import file_format
+from compoundkin.files.parquet_library import parquet
+from compoundkin.model.attributes import DEGREES
 from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.studies.samples.distribution import Distribution
-from compoundkin.studies.samples.table_columns import table_columns
 from compoundkin.studies.samples.value_ranges import AroundCentre, Levels, ValueRange
 from compoundkin.studies.samples.variation import Variation
+
+# Headers of CSV files, as `save` writes them: a name, and perhaps its unit.
+_HEAD = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?")
+
+
+def table_columns(path: str | os.PathLike[str]) -> dict[str, Number]:
+    """Return the columns of a table by their names.
+
+    Coordinates of points are columns of their own, "plate.C.x". Columns in degrees say so, as tables that `save`
+    writes do: "slot.angle [deg]" in the head of a CSV file, the unit of a field in Parquet; they are returned in
+    radians. Raises InvalidInput for an invalid table.
+    """
+    form = file_format("table", path)
+    if form not in _READERS:
+        raise InvalidInput(Problem(str(path), "designs are not read from such a file", "write a .csv or .parquet"))
+    try:
+        columns = _READERS[form](path)
+    except (OSError, UnicodeDecodeError) as error:
+        what = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise InvalidInput(Problem(str(path), f"it cannot be read: {what}")) from None
+    names = [name for name, _, _ in columns]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InvalidInput(Problem(str(path), f"there are two columns {twice!r}", "one for each dimension"))
+    return {name: np.deg2rad(values) if unit == DEGREES else values for name, unit, values in columns}
+
+
+def _csv_columns(path: str | os.PathLike[str]) -> list[tuple[str, str, Number]]:
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        heads = [_HEAD.fullmatch(head.strip()) for head in next(csv.reader([file.readline()]), [])]
+        lines = file.readlines() or [""]
+        try:
+            # without rows it would warn
+            rows = np.loadtxt(lines, delimiter=",", ndmin=2, comments=None) if lines[0] else np.empty((0, 0))
+        except ValueError as error:
+            raise InvalidInput(
+                Problem(str(path), _csv_message(str(error)), "write numbers alone, apart by commas")
+            ) from None
+    if not rows.size or rows.shape[1] != len(heads):
+        what = f"it has {len(heads)} names in its first line and {rows.shape[1]} columns of numbers"
+        raise InvalidInput(Problem(str(path), what, "a name for each column, and a line for each design"))
+    return [(head["name"], head["unit"] or "", rows[:, k]) for k, head in enumerate(heads) if head]
+
+
+def _csv_message(error: str) -> str:
+    """Return NumPy's message with lines of the file instead of rows."""
+    shorter = error.partition(";")[0].replace(" to float64", "").rstrip(".")
+    # it counts rows from 1 where their lengths differ, else from 0
+    before = 1 if "changed" in shorter else 2
+    return re.sub(r"at row (\d+)", lambda found: f"in line {int(found[1]) + before}", shorter)
+
+
+def _parquet_columns(path: str | os.PathLike[str]) -> list[tuple[str, str, Number]]:
+    read_table, broken = parquet(str(path)).read_table, import_module("pyarrow").ArrowInvalid
+    try:
+        whole = read_table(path)
+    except broken:
+        raise InvalidInput(Problem(str(path), "it is no Parquet file")) from None
+    found = []
+    for field in whole.schema:
+        values = real_numbers(f"{path}: {field.name}", whole[field.name].to_numpy())
+        found.append((field.name, (field.metadata or {}).get(b"unit", b"").decode(), values))
+    return found
+
+
+_READERS: Mapping[str, Callable[[str | os.PathLike[str]], list[tuple[str, str, Number]]]] = MappingProxyType(
+    {"csv": _csv_columns, "parquet": _parquet_columns}
+)
+
 
 VARIATIONS: tuple[type[Variation], ...] = (ValueRange, Distribution, AroundCentre, Levels)
 _REMEDY = "give a range (40, 60), a distribution scipy.stats.norm(40, 0.1), compoundkin.around(40, 0.1), or a list"

@@ -1,0 +1,225 @@
+"""What is wrong with a candidate, found along its motion: order, branch, circuit, full turn, transmission, region.
+
+A candidate's mechanism is followed through all its circuits, and the precision positions are placed on them as
+configurations. They must lie on one circuit (else it would have to be taken apart), on one branch of the driver (else
+the driver would have to stop and turn back), and in order along it. What passes is solved over that branch and
+compared with the positions. The words are those of T. R. Chase and J. A. Mirth, Circuits and branches of
+single-degree-of-freedom planar linkages, J. Mech. Des. 115 (1993) 223-230.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from compoundkin.analysis.checks import verify
+from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.poses import Pose
+from compoundkin.configurations.circuit_search import Circuits, circuits
+from compoundkin.dimensional.linkages import Linkage
+from compoundkin.dimensional.tasks import Conditions, extent
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.configuration import Configuration, dimensions_at
+from compoundkin.kinematics.quantities import owner_of, quantity
+from compoundkin.model.attributes import TRANSMISSION_ANGLE
+from compoundkin.model.mechanism import Mechanism
+
+ORDER, BRANCH, CIRCUIT, TURNING, TRANSMISSION, REGION, LENGTH, ASSEMBLY, ACCURACY = (
+    "order", "branch", "circuit", "no full turn", "transmission", "region", "length", "assembly", "accuracy",
+)  # fmt: skip
+# The least of defects first: of several drivers the one whose defect is least tells.
+SEVERITY = (TRANSMISSION, TURNING, ORDER, BRANCH, CIRCUIT, LENGTH, REGION, ACCURACY, ASSEMBLY)
+# A solved position may miss its place by so much, in parts of the linkage: next to limit positions rounding grows to
+# its root.
+MISSED = 1e-6
+# A given ground point is met within this part of the linkage.
+GROUNDED = 1e-6
+# Poses of a motion over a branch.
+POSES = 181
+# Driver values nearer to each other than this part of a turn or a stroke are one.
+STANDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rejection(ShortRepr):
+    """A candidate that has a defect: `reason` is its word, `text` says what exactly."""
+
+    reason: str
+    text: str
+    candidate: Linkage
+    driver: str = ""
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism all the same, drawn at the first position."""
+        return self.candidate.mechanism(self.driver or next(iter(self.candidate.drivers)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolvedLinkage(ShortRepr):
+    """A mechanism without a defect: solved over the branch that has all positions, verified.
+
+    `values` are the driver's at the precision positions, `error` by how much the motion misses the task (lengths and
+    radians, the greatest), `transmission` the least transmission angle of the motion (radians), NaN where there is
+    none, `turns` whether the driver turns fully.
+    """
+
+    mechanism: Mechanism
+    motion: Motion
+    driver: str
+    values: Number
+    turns: bool
+    error: float
+    transmission: float
+    candidate: Linkage = field(repr=False)
+
+    @property
+    def size(self) -> float:
+        """The sum of all lengths."""
+        return self.candidate.span
+
+
+def judged(candidate: Linkage, conditions: Conditions, tolerance: float = 0.0) -> SolvedLinkage | Rejection:
+    """Return the solution with the best driver of a candidate, or what is wrong with it."""
+    wrong = _unfulfilled(candidate, conditions)
+    if wrong is not None:
+        return wrong
+    found = [_driven(candidate, driver, conditions, tolerance) for driver in candidate.drivers]
+    good = [one for one in found if isinstance(one, SolvedLinkage)]
+    if good:
+        return max(good, key=lambda one: (one.turns, np.nan_to_num(one.transmission)))
+    bad = [one for one in found if isinstance(one, Rejection)]
+    return min(bad, key=lambda one: SEVERITY.index(one.reason))
+
+
+def _unfulfilled(candidate: Linkage, conditions: Conditions) -> Rejection | None:
+    """Return what conditions on places and lengths a candidate misses."""
+    for pivot in candidate.pivots:
+        if not conditions.holds(pivot):
+            return Rejection(REGION, f"a fixed pivot is at ({pivot.real:.6g}, {pivot.imag:.6g})", candidate)
+    span = max(extent(np.array(candidate.pivots)), max(candidate.lengths, default=0.0))
+    for place in conditions.ground:
+        apart = min((abs(pivot - place) for pivot in candidate.pivots), default=np.inf)
+        if apart > GROUNDED * span:
+            text = f"no fixed pivot is at ({place.real:.6g}, {place.imag:.6g}), the nearest is {apart:.3g} away"
+            return Rejection(REGION, text, candidate)
+    if conditions.lengths is not None:
+        low, high = conditions.lengths
+        wrong = [one for one in candidate.lengths if not low <= one <= high]
+        if wrong:
+            return Rejection(LENGTH, f"a length is {wrong[0]:.6g}, not {low:g} to {high:g}", candidate)
+    return None
+
+
+def _driven(candidate: Linkage, driver: str, conditions: Conditions, tolerance: float) -> SolvedLinkage | Rejection:
+    try:
+        mechanism = candidate.mechanism(driver)
+        found = circuits(mechanism)
+        placed = [found.at(one) for one in positions(candidate, found)]
+    except CompoundkinError as error:
+        return Rejection(ASSEMBLY, str(error), candidate, driver)
+    on = [place.circuit for place in placed]
+    if len(set(on)) > 1:
+        other = next(k for k, number in enumerate(on) if number != on[0])
+        text = f"position {other} is on circuit {on[other]}, position 0 on circuit {on[0]}"
+        return Rejection(CIRCUIT, text, candidate, driver)
+    branches = [place.branch for place in placed]
+    if len(set(branches)) > 1:
+        other = next(k for k, number in enumerate(branches) if number != branches[0])
+        limits = [one.value for one in found.circuits[on[0] - 1].limits]
+        text = f"{driver} would turn back at {_limits(limits, found)} between positions 0 and {other}"
+        return Rejection(BRANCH, text, candidate, driver)
+    circuit, branch = found.circuits[on[0] - 1], found.branches[branches[0] - 1]
+    turns = circuit.turns_fully and not circuit.limits
+    values = _along(np.array([place.value for place in placed]), branch.low, found.period, turns)
+    if values is None:
+        return Rejection(ORDER, f"{driver} passes the positions in another order", candidate, driver)
+    if conditions.turning and not turns:
+        text = f"{driver} goes from {_value(circuit.low, found)} to {_value(circuit.high, found)}"
+        return Rejection(TURNING, text, candidate, driver)
+    return _solved(candidate, driver, values, turns, conditions, tolerance)
+
+
+def positions(candidate: Linkage, found: Circuits) -> Iterator[Configuration]:
+    """Yield the configurations of a candidate at its precision positions."""
+    dimensions = dimensions_at(found.structure, 0, 0)
+    for k, value in enumerate(candidate.drivers[found.driver]):
+        poses = {name: Pose.of(complex(z[k]), complex(candidate.u[name][k])) for name, z in candidate.z.items()}
+        yield Configuration(found.structure, {found.driver: float(value)}, poses, {}, {}, dimensions)
+
+
+def _along(values: Number, low: float, period: float, turns: bool) -> Number | None:
+    """Return the driver's values as they follow one another, None where they are not in order."""
+    if len(values) < 2:
+        return values
+    if not turns:
+        # limits are known to the root of rounding: a position at the low end stays there
+        values = low + np.mod(values - low + STANDING**0.5, period) - STANDING**0.5 if period else values
+        steps = np.diff(values)
+        return values if np.all(steps > 0.0) or np.all(steps < 0.0) else None
+    for sense in (1.0, -1.0):
+        steps = np.mod(sense * np.diff(values), period)
+        if np.sum(steps) < period:
+            return values[0] + sense * np.append(0.0, np.cumsum(steps))
+    return None
+
+
+def _limits(limits: list[float], found: Circuits) -> str:
+    return " and ".join(_value(value, found) for value in limits) or "a limit position"
+
+
+def _value(value: float, found: Circuits) -> str:
+    return f"{np.rad2deg(value):.4g} degrees" if found.period else f"{value:.4g}"
+
+
+def _solved(
+    candidate: Linkage, driver: str, values: Number, turns: bool, conditions: Conditions, tolerance: float
+) -> SolvedLinkage | Rejection:
+    """Return the solution over a branch with all positions, or why it is none."""
+    sense = 1.0 if len(values) < 2 or values[1] >= values[0] else -1.0
+    way = values[0] + sense * np.linspace(0.0, TURN, POSES) if turns else np.linspace(values[0], values[-1], POSES)
+    mechanism = candidate.mechanism(driver, way if len(values) > 1 else values)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            motion = solve(mechanism)
+            there = solve(mechanism, {driver: values}, order=0)
+            missed = missed_by(candidate, there)
+            passed = bool(motion.assembled.all()) and verify(motion).passed
+    except CompoundkinError as problem:
+        return Rejection(ASSEMBLY, str(problem), candidate, driver)
+    size = max(extent(np.array(list(candidate.places.values()))), 1e-300)
+    if not passed or not missed <= MISSED * max(size, 1.0) + tolerance:
+        return Rejection(ACCURACY, f"the solved motion misses a position by {missed:.3g}", candidate, driver)
+    least = least_transmission(motion)
+    if not np.isnan(least) and least < conditions.transmission:
+        text = f"the transmission angle falls to {np.rad2deg(least):.4g} degrees"
+        return Rejection(TRANSMISSION, text, candidate, driver)
+    return SolvedLinkage(mechanism, motion, driver, values, turns, candidate.error + missed, least, candidate)
+
+
+def missed_by(candidate: Linkage, motion: Motion) -> float:
+    """Return by how much a motion over the precision positions misses them: the greatest length or angle."""
+    worst = 0.0
+    for name, z in candidate.z.items():
+        if name in motion.links:
+            pose = motion.poses[name]
+            apart = np.abs(pose.z.c[0] - z), np.abs(pose.u.c[0] - candidate.u[name])
+            worst = max(worst, *(float(np.max(one)) for one in apart))
+    return worst if np.isfinite(worst) else np.inf
+
+
+def least_transmission(motion: Motion) -> float:
+    """Return the least transmission angle of all dyads over a motion (radians), NaN where there is none."""
+    found = []
+    for group in motion.structure.groups:
+        owner = owner_of(motion, "links", group.links[0])
+        if owner.has(TRANSMISSION_ANGLE):
+            angle = quantity(motion, f"{group.links[0]}.{TRANSMISSION_ANGLE}").values
+            found.append(float(np.nanmin(angle)))
+    return min(found, default=np.nan)

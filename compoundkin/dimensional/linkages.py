@@ -1,0 +1,226 @@
+"""Candidates: linkages that meet a task at its precision positions, made of dyads or of pivots and joints.
+
+A pair of dyads on one body is a four-bar (RR RR), a slider-crank (RR PR), an inverted one (RR RP), an elliptic trammel
+(PR PR) and so on. The dyads' links are the `input` and the `output`; the fixed pivots are A0 and B0, the joints on the
+body A and B.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr
+from compoundkin.dimensional.dyads import PR, RP, RR, Dyad
+from compoundkin.model.attributes import ANGLE, POSITION
+from compoundkin.model.elements import Item, drawn, drive, link
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import slide
+
+# The coupler's name where a task names no body, and its point.
+COUPLER, POINT = "coupler", "P"
+INPUT, OUTPUT = "input", "output"
+# What pairs of dyads are called.
+TITLES = {
+    (RR, RR): "Four-bar",
+    (RR, PR): "Slider-crank",
+    (RR, RP): "Inverted slider-crank",
+    (PR, PR): "Elliptic trammel",
+    (PR, RP): "Conchoidal linkage",
+    (RP, RP): "Cross-slide linkage",
+}
+# A joint nearer to another of its link than this part of the linkage is the same.
+COINCIDENT = 1e-6
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Linkage(ShortRepr):
+    """A linkage that meets a task at n precision positions, and may have any defect.
+
+    `links` and `pairs` are written as users write them, `places` has every point at the first position. `z` and `u` are
+    origins and orientations of all links at all positions, arrays (n,) by the link's name; `drivers` the values (n,) of
+    each link on the frame that may drive, by its name. `pivots` and `lengths` are what conditions bound; `error` is by
+    how much the positions miss the task, `outputs` what tables of the mechanism show.
+    """
+
+    title: str
+    links: tuple[Item, ...]
+    pairs: tuple[Item, ...]
+    places: Mapping[str, complex]
+    z: Mapping[str, Number]
+    u: Mapping[str, Number]
+    drivers: Mapping[str, Number]
+    pivots: tuple[complex, ...]
+    lengths: tuple[float, ...]
+    error: float = 0.0
+    outputs: tuple[str, ...] = ()
+    source: str = ""
+    dyads: tuple[Dyad, ...] = field(default=(), repr=False)
+
+    @property
+    def span(self) -> float:
+        """The sum of all lengths, and the distances of fixed pivots."""
+        return float(sum(self.lengths) + abs(self.pivots[0] - self.pivots[-1])) if self.pivots else sum(self.lengths)
+
+    def mechanism(self, driver: str, values: Number = None) -> Mechanism:
+        """Return the mechanism, drawn at the first precision position, with one of its drivers."""
+        sketch = {letter: (place.real, place.imag) for letter, place in self.places.items()}
+        moving = drive(driver) if values is None else drive(driver, values=values)
+        return Mechanism(self.title, *self.links, *self.pairs, moving, drawn(**sketch), outputs=list(self.outputs),
+                         source=self.source)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """What a method gives: `linkages`, `complete`, what of how many there are, and a `note` on what is special.
+
+    `found` may be the dyads that they are made of. `nearest` says where there are none how far a task would have to
+    give, and which tolerance would do.
+    """
+
+    linkages: Iterable[Linkage]
+    complete: str
+    note: str = ""
+    found: object = None
+    nearest: str = ""
+
+    def __iter__(self) -> Iterator[Linkage]:
+        return iter(self.linkages)
+
+
+def of_dyads(
+    z: Number, u: Number, pairs: Iterable[tuple[Dyad, Dyad]], body: str = COUPLER, point: complex = 0j, **extra: object
+) -> Iterator[Linkage]:
+    """Yield the linkages of pairs of dyads on one body with origins `z` and orientations `u`, arrays (n,).
+
+    The coupler point P has the body's coordinates `point`.
+    """
+    for pair in pairs:
+        if _parted(pair):
+            first, second = sorted(pair, key=lambda dyad: (RR, PR, RP).index(dyad.kind))
+            yield _of_pair(z, u, first, second, body, point, **extra)
+
+
+def of_points(points: Number, a: Number, b: Number, A: Number, B: Number, body: str = COUPLER) -> Iterator[Linkage]:
+    """Yield four-bars whose coupler point goes through `points`, complex (n,).
+
+    `a`, `b` are fixed pivots and `A`, `B` the joints when the point is at the first, complex arrays (candidates,). The
+    orientations of the coupler at the other points follow from both cranks' lengths, which are linear in its cosine and
+    sine.
+    """
+    a, b, A, B = (np.atleast_1d(np.asarray(v, dtype=complex)) for v in (a, b, A, B))
+    for fixed in zip(a, b, A, B, strict=True):
+        u = coupler_orientations(points, *map(complex, fixed))
+        ends = (Dyad(RR, f, m - points[0], None, abs(m - f)) for f, m in zip(fixed[:2], fixed[2:], strict=True))
+        yield from of_dyads(points, u, [tuple(ends)], body)  # type: ignore[list-item]
+
+
+def coupler_orientations(points: Number, a: complex, b: complex, A: complex, B: complex) -> Number:
+    """Return the orientations of a coupler at points, unit vectors (n,); 1 at the first. The point is its origin."""
+    rows, right = [], []
+    for centre, joint in ((a, A), (b, B)):
+        arm = joint - points[0]
+        m = np.conj(points - centre) * arm
+        rows.append(np.stack([m.real, -m.imag], axis=-1))
+        right.append((abs(joint - centre) ** 2 - np.abs(points - centre) ** 2 - abs(arm) ** 2) / 2.0)
+    matrix, values = np.stack(rows, axis=-2), np.stack(right, axis=-1)
+    found = np.einsum("nij,nj->ni", np.linalg.pinv(matrix), values)
+    u = found[:, 0] + 1j * found[:, 1]
+    return u / np.abs(u)
+
+
+def _parted(pair: tuple[Dyad, Dyad]) -> bool:
+    """Return whether two dyads hold the body at two different places."""
+    one, other = pair
+    if one.kind != other.kind:
+        return True
+    size = max(abs(one.moving - other.moving), abs(one.fixed - other.fixed), one.length, other.length)
+    if one.direction is not None and other.direction is not None:
+        parallel = abs((np.conj(one.direction) * other.direction).imag) < COINCIDENT
+        if one.kind == RP:
+            return not parallel or abs(one.fixed - other.fixed) > COINCIDENT * size
+        return not parallel
+    return min(abs(one.moving - other.moving), abs(one.fixed - other.fixed)) > COINCIDENT * size
+
+
+@dataclass
+class _Parts:
+    """The parts of a candidate while its dyads are added, one after another."""
+
+    z: dict[str, Number]
+    u: dict[str, Number]
+    frame: dict[str, complex] = field(default_factory=dict)
+    body: dict[str, complex] = field(default_factory=dict)
+    links: list[Item] = field(default_factory=list)
+    pairs: list[Item] = field(default_factory=list)
+    places: dict[str, complex] = field(default_factory=dict)
+    drivers: dict[str, Number] = field(default_factory=dict)
+    lengths: list[float] = field(default_factory=list)
+
+
+def _of_pair(z: Number, u: Number, one: Dyad, other: Dyad, body: str, point: complex, **extra: object) -> Linkage:
+    still = np.zeros(len(z), complex)
+    parts = _Parts({FRAME: still, body: z}, {FRAME: still + 1.0, body: u})
+    for dyad, name, letter in ((one, INPUT, "A"), (other, OUTPUT, "B")):
+        add_dyad(parts, dyad, name, letter, body)
+    joints = [dyad.moving for dyad in (one, other)]
+    if one.kind != RP and other.kind != RP:
+        parts.lengths.append(abs(joints[0] - joints[1]))
+    known = next((letter for letter, place in parts.body.items() if abs(place - point) == 0.0), "")
+    if not known:
+        parts.body[POINT] = point
+        parts.places[POINT] = complex(z[0] + u[0] * point)
+    links = (link(FRAME, **_xy(parts.frame)), *parts.links, link(body, **_xy(parts.body)))
+    return Linkage(
+        TITLES[one.kind, other.kind], links, tuple(parts.pairs), parts.places, parts.z, parts.u, parts.drivers,
+        tuple(parts.frame.values()), tuple(parts.lengths), outputs=(f"{known or POINT}.{POSITION}", f"{body}.{ANGLE}"),
+        dyads=(one, other), **extra,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def add_dyad(parts: _Parts, dyad: Dyad, name: str, letter: str, body: str) -> None:
+    """Add a dyad between the frame and a body: its link, pair, points and poses."""
+    z, u = parts.z[body], parts.u[body]
+    pivot = f"{letter}0"
+    if dyad.kind == RP:
+        assert dyad.direction is not None
+        parts.frame[pivot], parts.body[letter] = dyad.fixed, dyad.moving
+        parts.places |= {pivot: dyad.fixed, letter: complex(z[0] + u[0] * dyad.moving)}
+        parts.links.append(link(name, **_xy({pivot: 0j})))
+        parts.pairs.append(slide(name, on=body, at=pivot, through=letter, angle=float(np.angle(dyad.direction)),
+                                 name=f"{name} slide"))  # fmt: skip
+        parts.z[name], parts.u[name] = np.full(len(z), dyad.fixed), u * dyad.direction
+        parts.drivers[name] = np.angle(parts.u[name])
+        return
+    joint = z + u * dyad.moving
+    parts.body[letter] = dyad.moving
+    if dyad.direction is None:
+        parts.frame[pivot] = dyad.fixed
+        parts.places |= {pivot: dyad.fixed, letter: complex(joint[0])}
+        parts.links.append(link(name, **_xy({pivot: 0j, letter: complex(dyad.length)})))
+        parts.z[name] = np.full(len(z), dyad.fixed)
+        parts.u[name] = (joint - dyad.fixed) / np.abs(joint - dyad.fixed)
+        parts.drivers[name] = np.angle(parts.u[name])
+        parts.lengths.append(dyad.length)
+        return
+    foot = complex(dyad.fixed + dyad.direction * (np.conj(dyad.direction) * (joint[0] - dyad.fixed)).real)
+    parts.frame[pivot] = foot
+    parts.places |= {pivot: foot, letter: complex(joint[0])}
+    parts.links.append(link(name, **_xy({letter: 0j})))
+    parts.pairs.append(slide(name, on=FRAME, at=letter, through=pivot, angle=float(np.angle(dyad.direction)),
+                             name=f"{name} slide"))  # fmt: skip
+    parts.z[name], parts.u[name] = joint, np.full(len(z), dyad.direction)
+    parts.drivers[name] = (np.conj(dyad.direction) * (joint - foot)).real
+
+
+def _xy(points: Mapping[str, complex]) -> dict[str, tuple[float, float]]:
+    return {letter: (float(place.real), float(place.imag)) for letter, place in points.items()}
+
+
+def pairs_of(dyads: Sequence[Dyad]) -> list[tuple[Dyad, Dyad]]:
+    """Return all pairs of dyads."""
+    return [(one, other) for i, one in enumerate(dyads) for other in dyads[i + 1 :]]

@@ -1,0 +1,145 @@
+"""`synthesise`: the mechanisms that do what a task says, all of them where they are finitely many."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import DisplaysPicture, aligned_text, count_phrase, display_function
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.linear import one_thread
+from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
+from compoundkin.dimensional.dyads import dyads_of
+from compoundkin.dimensional.linkages import Candidates, of_dyads, pairs_of
+from compoundkin.dimensional.tasks import COMPACTNESS, Conditions, PoseTask, Task
+from compoundkin.model.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to meet a class of tasks: `run` takes a task that it `fits` and gives candidates."""
+
+    of: type[Task]
+    run: Callable[[Any], Candidates]
+    fits: Callable[[Any], bool] = lambda task: True
+
+
+def five_poses(task: PoseTask) -> Candidates:
+    """Return all linkages through five poses: pairs of the four dyads at most."""
+    found = dyads_of(task)
+    pairs = pairs_of(found.found)
+    complete = f"{count_phrase(len(found), 'real dyad')} of 4, {count_phrase(len(pairs), 'linkage')}"
+    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, found.note, found)
+
+
+# In this order: the first that fits a task is taken.
+METHODS: tuple[Method, ...] = (Method(PoseTask, five_poses, lambda task: task.count == 5),)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Answer(DisplaysPicture):
+    """The answer to a task: `solutions` ranked, the best first; `rejected` with their reasons.
+
+    `complete` says what of how many was found, `note` what is special, `nearest` where there is no solution how far the
+    task would have to give.
+    """
+
+    task: Task
+    solutions: tuple[SolvedLinkage, ...]
+    rejected: tuple[Rejection, ...]
+    complete: str
+    note: str = ""
+    nearest: str = ""
+    candidates: Candidates | None = field(default=None, repr=False)
+
+    @property
+    def mechanisms(self) -> tuple[Mechanism, ...]:
+        """The mechanisms without defects, the best first."""
+        return tuple(one.mechanism for one in self.solutions)
+
+    def __len__(self) -> int:
+        return len(self.solutions)
+
+    def __iter__(self) -> Iterator[SolvedLinkage]:
+        return iter(self.solutions)
+
+    def __getitem__(self, index: int) -> SolvedLinkage:
+        return self.solutions[index]
+
+    @property
+    def reasons(self) -> dict[str, int]:
+        """How many candidates were rejected for which reason."""
+        return dict(Counter(one.reason for one in self.rejected).most_common())
+
+    def table(self) -> str:
+        """Return the solutions as lines of text, then how many were rejected and why."""
+        rows: list[tuple[str | float, ...]] = [("no.", "mechanism", "driver", "turns", "transmission", "size", "error")]
+        for k, one in enumerate(self.solutions, start=1):
+            angle = "-" if np.isnan(one.transmission) else f"{np.rad2deg(one.transmission):.2f}"
+            turns = "fully" if one.turns else "partly"
+            rows.append((f"{k}", one.mechanism.title, one.driver, turns, angle, f"{one.size:.6g}", f"{one.error:.1e}"))
+        lost = ", ".join(f"{count} for {reason}" for reason, count in self.reasons.items())
+        end = f"{count_phrase(len(self.rejected), 'candidate')} rejected: {lost}" if lost else "no candidate rejected"
+        return "\n".join([aligned_text(rows), f"{self.complete}; {end}"])
+
+    def report(self) -> Any:
+        """Return the report on task, solutions and rejections."""
+        return display_function("synthesis_report")(self)
+
+    def draw(self, **options: Any) -> Any:
+        """Return the picture of all solutions side by side, with the task."""
+        return display_function("synthesis_picture")(self, **options)
+
+    def __repr__(self) -> str:
+        found = count_phrase(len(self.solutions), "mechanism")
+        return f"Answer({self.task.in_words}: {found}, {len(self.rejected)} rejected; {self.complete})"
+
+
+@checked
+@one_thread
+def synthesise(
+    task: Task,
+    *,
+    region: Any = None,
+    lengths: Any = None,
+    ground: Any = None,
+    transmission: float = 0.0,
+    turning: bool = False,
+    prefer: str = "transmission",
+) -> Answer:
+    """Return the mechanisms that do what a task of `tasks` says, ranked, and the candidates with defects.
+
+    `region` holds all fixed pivots: two opposite corners or a polygon. `lengths` are the least and greatest length of
+    links between joints, `ground` places of fixed pivots that are given. `transmission` is the least transmission angle
+    (radians), `turning` asks for a driver that turns fully. `prefer` ranks by "transmission" or by "compactness", the
+    sum of lengths. Raises InvalidInput for what is no task or condition.
+
+    >>> from compoundkin.dimensional.tasks import poses
+    >>> angles = np.deg2rad([36.72, 15.64, -16.48, 31.29, -56.82])
+    >>> places = [0.496 - 0.114j, -0.581 + 0.81j, -0.966 - 0.393j, 0.998 - 0.476j, 0.698 + 0.211j]
+    >>> task = poses("plate", [(p.real, p.imag, a) for p, a in zip(places, angles)])
+    >>> answer = synthesise(task)
+    >>> answer.complete
+    '4 real dyads of 4, 6 linkages'
+    """
+    asked = task.under(Conditions.of(region, lengths, ground, transmission, turning, prefer))
+    method = next((one for one in METHODS if isinstance(task, one.of) and one.fits(task)), None)
+    if method is None:
+        raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
+    candidates = method.run(asked)
+    found = [judged(one, asked.conditions, asked.tolerance) for one in candidates]
+    good = [one for one in found if isinstance(one, SolvedLinkage)]
+    bad = tuple(one for one in found if isinstance(one, Rejection))
+    good.sort(key=_rank(asked.conditions.prefer))
+    return Answer(asked, tuple(good), bad, candidates.complete, candidates.note, candidates.nearest, candidates)
+
+
+def _rank(prefer: str) -> Callable[[SolvedLinkage], tuple[float, ...]]:
+    if prefer == COMPACTNESS:
+        return lambda one: (round(one.size, 9), -np.nan_to_num(one.transmission))
+    return lambda one: (-round(float(np.nan_to_num(one.transmission)), 9), round(one.size, 9))

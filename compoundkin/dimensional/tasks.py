@@ -1,0 +1,431 @@
+"""Tasks of dimensional synthesis as data: poses, points, both, functions, swings, strokes; and conditions on answers.
+
+A task has so many precision positions, which answers meet exactly, or within its `tolerance`. Angles are radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+
+from compoundkin.base.arguments import checked, planar_numbers, real_numbers
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import ShortRepr, count_phrase
+from compoundkin.base.errors import InvalidInput, Problem
+
+# Precision positions nearer to each other than this part of their extent are one.
+SAME = 1e-9
+# Preferences among answers, by what they are ranked.
+TRANSMISSION, COMPACTNESS = "transmission", "compactness"
+PREFERENCES = (TRANSMISSION, COMPACTNESS)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Conditions(ShortRepr):
+    """What answers must fulfil beside the task.
+
+    `region` is a polygon (corners, complex) that holds all fixed pivots, `lengths` the least and greatest length
+    between two joints, `ground` are places at which the fixed pivots must be. `transmission` is the least transmission
+    angle (radians), `turning` whether the driver must turn fully. `prefer` ranks the answers.
+    """
+
+    region: Number = None
+    lengths: tuple[float, float] | None = None
+    ground: tuple[complex, ...] = ()
+    transmission: float = 0.0
+    turning: bool = False
+    prefer: str = TRANSMISSION
+
+    @classmethod
+    def of(cls, region: Any, lengths: Any, ground: Any, transmission: float, turning: bool, prefer: str) -> Conditions:
+        """Return conditions as users give them. Raises InvalidInput for what is none."""
+        if prefer not in PREFERENCES:
+            raise InvalidInput(Problem("prefer", f"{prefer!r} is no preference", f"one of {', '.join(PREFERENCES)}"))
+        if not 0.0 <= transmission < np.pi / 2:
+            raise InvalidInput(Problem("transmission", f"{transmission:g} is no transmission angle", "0 to pi / 2"))
+        known = () if ground is None else tuple(places("ground", ground).tolist())
+        return cls(_polygon(region), _bounds(lengths), known, transmission, turning, prefer)
+
+    def holds(self, place: complex) -> bool:
+        """Return whether the region holds a place."""
+        return self.region is None or bool(inside(np.array([place]), self.region)[0])
+
+
+def _polygon(region: Any) -> Number:
+    """Return the corners of a region, given as two opposite corners or as a polygon."""
+    if region is None:
+        return None
+    corners = places("region", region)
+    if len(corners) == 2:
+        low, high = corners
+        corners = np.array([low, complex(high.real, low.imag), high, complex(low.real, high.imag)])
+    if len(corners) < 2:
+        raise InvalidInput(Problem("region", "one corner is no region", "give two opposite corners, or a polygon"))
+    area = np.sum(np.conj(corners) * np.roll(corners, -1)).imag / 2.0
+    if abs(area) <= SAME * np.ptp(np.abs(corners - corners[0])) ** 2:
+        raise InvalidInput(Problem("region", "it has no area", "give two opposite corners, or a polygon"))
+    return corners
+
+
+def _bounds(lengths: Any) -> tuple[float, float] | None:
+    if lengths is None:
+        return None
+    found = real_numbers("lengths", lengths)
+    if found.shape != (2,) or not 0.0 <= found[0] < found[1]:
+        raise InvalidInput(Problem("lengths", "they are no bounds", "give the least and the greatest length"))
+    return float(found[0]), float(found[1])
+
+
+def inside(place: Number, polygon: Number) -> Number:
+    """Return whether places lie in a polygon, by how often a ray crosses its sides.
+
+    >>> inside(np.array([0.5 + 0.5j, 2 + 0j]), np.array([0, 1, 1 + 1j, 1j])).tolist()
+    [True, False]
+    """
+    a, b = polygon, np.roll(polygon, -1)
+    p = np.asarray(place)[..., None]
+    rising = (a.imag > p.imag) != (b.imag > p.imag)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cut = a.real + (p.imag - a.imag) * (b - a).real / (b - a).imag
+    return np.sum(rising & (p.real < cut), axis=-1) % 2 == 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Task(ShortRepr):
+    """What a mechanism is to do.
+
+    `tolerance` is by how much answers may miss it (lengths, radians); zero asks for exact ones. `conditions` are set by
+    `synthesise`.
+    """
+
+    tolerance: float = field(default=0.0, kw_only=True)
+    conditions: Conditions = field(default_factory=Conditions, kw_only=True)
+
+    def under(self, conditions: Conditions) -> Self:
+        """Return the task under conditions."""
+        return replace(self, conditions=conditions)
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return "a task"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PoseTask(Task):
+    """Motion generation: a body `link` takes poses `z` (places of its origin) and `u` (unit vectors), arrays (n,).
+
+    `velocities` are twists (velocity, angular velocity) at some of the poses, by their index: only their ratio counts,
+    the pose and one infinitely near are met. `accelerations` are those with the twist of the same pose: three poses
+    infinitely near.
+    """
+
+    link: str
+    z: Number
+    u: Number
+    velocities: Mapping[int, tuple[complex, float]] = field(default_factory=dict)
+    accelerations: Mapping[int, tuple[complex, float]] = field(default_factory=dict)
+
+    @property
+    def count(self) -> int:
+        """How many poses there are, those infinitely near too."""
+        return len(self.z) + len(self.velocities) + len(self.accelerations)
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        near = self.count - len(self.z)
+        text = f"{self.link} through {count_phrase(len(self.z), 'pose')}"
+        return f"{text}, {near} more infinitely near" if near else text
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PointTask(Task):
+    """Path generation: a coupler point goes through `points`, complex (n,), in this order."""
+
+    points: Number
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"a point through {count_phrase(len(self.points), 'point')}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TimedPointTask(Task):
+    """Path generation with timing: a coupler point is at `points` when the crank has turned by `angles` (radians)."""
+
+    points: Number
+    angles: Number
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"a point through {count_phrase(len(self.points), 'point')} at given crank angles"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MixedTask(Task):
+    """Poses of a body first, then points that its origin goes through with any orientation (Alt-Burmester)."""
+
+    link: str
+    z: Number
+    u: Number
+    points: Number
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"{self.link} through {count_phrase(len(self.z), 'pose')} and {count_phrase(len(self.points), 'point')}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FunctionTask(Task):
+    """Function generation: the output is at `outputs` where the input has turned by `inputs`, arrays (n,).
+
+    `linkage` is "four-bar" (outputs are angles), "slider-crank" (displacements) or "inverted" (angles of a swinging
+    block). Angles and displacements count from where the input is zero, at unknown places, unless they are
+    `absolute`.
+    """
+
+    inputs: Number
+    outputs: Number
+    linkage: str = "four-bar"
+    absolute: bool = False
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"a {self.linkage} function of {count_phrase(len(self.inputs), 'pair')}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SwingTask(Task):
+    """A crank-rocker whose rocker swings by `angle`, forth and back in the ratio of times `time_ratio`."""
+
+    angle: float
+    time_ratio: float = 1.0
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"a swing of {np.rad2deg(self.angle):.6g} degrees in the time ratio {self.time_ratio:.6g}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StrokeTask(Task):
+    """A slide of stroke `length`, forth and back in the ratio of times `time_ratio`.
+
+    `linkage` is "slider-crank", with an `offset` of the guide if given, or "crank-shaper".
+    """
+
+    length: float
+    time_ratio: float = 1.0
+    linkage: str = "slider-crank"
+    offset: float | None = None
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"a {self.linkage} of stroke {self.length:.6g} in the time ratio {self.time_ratio:.6g}"
+
+
+@checked
+def poses(
+    link: str,
+    poses: Any,
+    *,
+    velocities: Mapping[int, Any] | None = None,
+    accelerations: Mapping[int, Any] | None = None,
+    tolerance: float = 0.0,
+) -> PoseTask:
+    """Return the task of motion generation: a body takes poses, three to five of them exactly.
+
+    `poses` is (n, 3): the place of the body's origin and its angle in radians. `velocities` has (x, y, angular
+    velocity) by the index of a pose; such a pose counts twice. `accelerations` likewise; it counts three times then.
+    Raises InvalidInput for equal poses, too few or too many of them.
+
+    >>> poses("plate", [(0, 0, 0), (1, 0, 0.5), (1, 1, 1.0)]).in_words
+    'plate through 3 poses'
+    """
+    z, u = read_poses("poses", poses)
+    rates = {key: _twists(key, given or {}, len(z)) for key, given in
+             (("velocities", velocities), ("accelerations", accelerations))}  # fmt: skip
+    lost = sorted(set(rates["accelerations"]) - set(rates["velocities"]))
+    if lost:
+        what = f"pose {lost[0]} has an acceleration without a velocity"
+        raise InvalidInput(Problem("accelerations", what, "give its velocity too"))
+    _different("poses", "pose", np.stack([z / extent(z), u], axis=-1))
+    return PoseTask(link, z, u, rates["velocities"], rates["accelerations"], tolerance=_tolerance(tolerance))
+
+
+@checked
+def points(points: Any, *, at: Any = None, tolerance: float = 0.0) -> PointTask | TimedPointTask:
+    """Return the task of path generation: a coupler point goes through points in this order, two to nine of them.
+
+    `points` are complex or (n, 2). `at` gives the angles of the crank there (radians, only their differences count),
+    for up to five points. Raises InvalidInput for equal points, or angles that are not one for each.
+
+    >>> points([(0, 0), (1, 0.5), (2, 0)]).in_words
+    'a point through 3 points'
+    """
+    found = places("points", points)
+    if at is None:
+        if len(found) < 2:
+            raise InvalidInput(Problem("points", "there must be two or more"))
+        _different("points", "point", (found / extent(found))[:, None])
+        return PointTask(found, tolerance=_tolerance(tolerance))
+    angles = real_numbers("at", at)
+    if angles.shape != found.shape:
+        what = f"{count_phrase(angles.size, 'angle')} for {count_phrase(len(found), 'point')}"
+        raise InvalidInput(Problem("at", what, "give one for each point"))
+    _different("at", "crank angle", np.exp(1j * angles)[:, None])
+    _finite("at", angles)
+    return TimedPointTask(found, angles, tolerance=_tolerance(tolerance))
+
+
+@checked
+def mixed(*, poses: Any, points: Any, link: str = "coupler", tolerance: float = 0.0) -> MixedTask:
+    """Return the task of a body through poses and its origin through points (Alt-Burmester).
+
+    `poses` is (m, 3) with angles in radians, `points` complex or (n, 2); 2 m + n is ten at most. Raises InvalidInput
+    for equal ones.
+
+    >>> mixed(poses=[(0, 0, 0), (1, 0, 0.5)], points=[(2, 1)]).in_words
+    'coupler through 2 poses and 1 point'
+    """
+    z, u = read_poses("poses", poses)
+    found = places("points", points)
+    every = np.concatenate([z, found])
+    _different("points", "place", (every / extent(every))[:, None])
+    return MixedTask(link, z, u, found, tolerance=_tolerance(tolerance))
+
+
+@checked
+def function(pairs: Any, *, linkage: str = "four-bar", absolute: bool = False, tolerance: float = 0.0) -> FunctionTask:
+    """Return the task of function generation: pairs (n, 2) of an input angle and an output.
+
+    `linkage` is "four-bar" (output an angle), "slider-crank" (a displacement) or "inverted" (the angle of a swinging
+    guide); angles are radians. Only differences of angles and displacements count, unless they are `absolute`: angles
+    from the line of fixed pivots then, displacements from the crank's pivot. Three pairs are met by `absolute` ones,
+    up to five by others; more, and all with a `tolerance`, are approached.
+
+    >>> function([(0, 0), (0.5, 0.3), (1, 0.8)]).in_words
+    'a four-bar function of 3 pairs'
+    """
+    known = ("four-bar", "slider-crank", "inverted")
+    if linkage not in known:
+        raise InvalidInput(Problem("linkage", f"{linkage!r} generates no function", f"one of {', '.join(known)}"))
+    found = real_numbers("pairs", pairs)
+    if found.ndim != 2 or found.shape[1] != 2 or len(found) < 3:
+        raise InvalidInput(Problem("pairs", "they are no three or more pairs", "give (input, output) for each"))
+    _finite("pairs", found)
+    _different("pairs", "input", np.exp(1j * found[:, :1]))
+    return FunctionTask(found[:, 0], found[:, 1], linkage, absolute, tolerance=_tolerance(tolerance))
+
+
+@checked
+def swing(angle: float, *, time_ratio: float = 1.0) -> SwingTask:
+    """Return the task of a crank-rocker: its rocker swings by `angle` (radians).
+
+    `time_ratio` is the longer time of a swing by the shorter, 1 or more. Raises InvalidInput for a swing or a ratio
+    that no crank-rocker has.
+
+    >>> swing(np.pi / 4, time_ratio=1.2).in_words
+    'a swing of 45 degrees in the time ratio 1.2'
+    """
+    if not 0.0 < angle < np.pi:
+        raise InvalidInput(Problem("angle", f"a swing of {angle:g} is not possible", "give 0 to pi"))
+    return SwingTask(float(angle), _time_ratio(time_ratio))
+
+
+@checked
+def stroke(
+    length: float, *, time_ratio: float = 1.0, linkage: str = "slider-crank", offset: float | None = None
+) -> StrokeTask:
+    """Return the task of a slide of stroke `length`, whose longer time of a stroke by the shorter is `time_ratio`.
+
+    `linkage` is "slider-crank", with the `offset` of its guide from the crank's pivot if given, or "crank-shaper".
+
+    >>> stroke(100, time_ratio=1.25, offset=40).in_words
+    'a slider-crank of stroke 100 in the time ratio 1.25'
+    """
+    known = ("slider-crank", "crank-shaper")
+    if linkage not in known:
+        raise InvalidInput(Problem("linkage", f"{linkage!r} has no stroke", f"one of {', '.join(known)}"))
+    if not 0.0 < length < np.inf:
+        raise InvalidInput(Problem("length", f"a stroke of {length:g} is not possible", "give a length above zero"))
+    if offset is not None and not 0.0 <= offset < np.inf:
+        raise InvalidInput(Problem("offset", f"an offset of {offset:g} is not possible", "give zero or more"))
+    return StrokeTask(float(length), _time_ratio(time_ratio), linkage, offset)
+
+
+def places(where: str, given: Any) -> Number:
+    """Return places of the plane as complex numbers (n,), given so or as (n, 2). Raises InvalidInput."""
+    found = planar_numbers(where, given)
+    if found.ndim == 2 and found.shape[1] == 2 and not np.any(found.imag):
+        found = found[:, 0].real + 1j * found[:, 1].real
+    if found.ndim != 1:
+        raise InvalidInput(Problem(where, "these are no places", "give (x, y) for each, or complex numbers"))
+    _finite(where, found)
+    return found.astype(complex)
+
+
+def read_poses(where: str, given: Any) -> tuple[Number, Number]:
+    """Return the origins and orientations of poses (x, y, angle). Raises InvalidInput."""
+    found = real_numbers(where, given)
+    if found.ndim != 2 or found.shape[1] != 3 or len(found) < 1:
+        raise InvalidInput(Problem(where, "these are no poses", "give (x, y, angle in radians) for each"))
+    _finite(where, found)
+    return found[:, 0] + 1j * found[:, 1], np.exp(1j * found[:, 2])
+
+
+def extent(place: Number) -> float:
+    """Return the size of a set of places, 1 for a single one.
+
+    >>> extent(np.array([0, 3, 4j]))
+    5.0
+    """
+    return float(np.max(np.abs(np.subtract.outer(place, place)), initial=0.0)) or 1.0
+
+
+def _twists(where: str, given: Mapping[int, Any], count: int) -> dict[int, tuple[complex, float]]:
+    """Return twists by the index of their pose."""
+    found = dict[int, tuple[complex, float]]()
+    for index, twist in given.items():
+        if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < count:
+            raise InvalidInput(Problem(where, f"there is no pose {index!r}", f"they are 0 to {count - 1}"))
+        numbers = real_numbers(f"{where}[{index}]", twist)
+        if numbers.shape != (3,) or not np.isfinite(numbers).all() or not numbers.any():
+            raise InvalidInput(Problem(f"{where}[{index}]", "it is no twist", "give (x, y, angular), not all zero"))
+        found[index] = complex(numbers[0], numbers[1]), float(numbers[2])
+    return dict(sorted(found.items()))
+
+
+def _different(where: str, noun: str, rows: Number) -> None:
+    """Raise InvalidInput for two rows that are equal."""
+    apart = np.max(np.abs(rows[:, None] - rows[None]), axis=-1) + np.eye(len(rows))
+    if np.min(apart) < SAME:
+        i, j = (int(k) for k in np.argwhere(apart < SAME)[0])
+        what = f"{noun} {i} and {noun} {j} are equal"
+        raise InvalidInput(Problem(where, what, "leave one out; a pose infinitely near is written as a velocity"))
+
+
+def _finite(where: str, numbers: Number) -> None:
+    if not np.isfinite(numbers).all():
+        raise InvalidInput(Problem(where, "some are not finite"))
+
+
+def _tolerance(tolerance: float) -> float:
+    if not 0.0 <= tolerance < np.inf:
+        raise InvalidInput(Problem("tolerance", f"{tolerance:g} is no tolerance", "give zero or more"))
+    return float(tolerance)
+
+
+def _time_ratio(ratio: float) -> float:
+    if not 0.0 < ratio < np.inf:
+        raise InvalidInput(Problem("time_ratio", f"{ratio:g} is no ratio of times", "give 1 or more"))
+    return float(max(ratio, 1.0 / ratio))
