@@ -389,6 +389,15 @@ def rectangle(value: Number, designs: slice, poses: slice) -> Number:
     return value[designs if value.shape[0] > 1 else slice(None), poses if value.shape[1] > 1 else slice(None)]
 
 
+def repeated(value: Number, copies: int) -> Number:
+    """Return a value of several copies of all designs, one after another; what all designs share stays as it is.
+
+    >>> repeated(np.array([[1.0], [2.0]]), 2).tolist(), repeated(3.0, 2)
+    ([[1.0], [2.0], [1.0], [2.0]], 3.0)
+    """
+    return np.tile(value, (copies, 1)) if copies > 1 and np.ndim(value) and len(value) > 1 else value
+
+
 def between_poses(value: Number, i: Number, weight: Number) -> Number:
     """Return a value of all designs between the poses `i` and the next ones."""
     if np.ndim(value) == 0 or value.shape[1] == 1:

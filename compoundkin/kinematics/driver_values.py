@@ -16,7 +16,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.base.poses import End
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import between_poses, picked, picked_slope, rates, rectangle, slope
+from compoundkin.kinematics.block import between_poses, picked, picked_slope, rates, rectangle, repeated, slope
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.elements import Drive
@@ -312,6 +312,10 @@ class Inputs(ShortRepr):
     def with_dimensions(self, change: Callable[[Number], Number]) -> Inputs:
         """Return the same drivers with every dimension changed."""
         return self._made(self.shape, self._ends(change), self.drives)
+
+    def repeated(self, copies: int) -> Inputs:
+        """Return so many copies of all designs, one after another."""
+        return self._each(partial(repeated, copies=copies))
 
     def of_poses(self, count: int) -> Inputs:
         """Return the same numbers, as a motion of `count` poses."""

@@ -16,7 +16,7 @@ from compoundkin.base.display import DisplaysPicture, display_function
 from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import Block, blocks, places, size_in, with_poses
+from compoundkin.kinematics.block import BLOCK, Block, blocks, places, repeated, size_in, with_poses
 from compoundkin.kinematics.curve.change_points import rates_at
 from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
 from compoundkin.kinematics.curve.modes import GroupMode, modes_of
@@ -448,7 +448,12 @@ def errors_of(followed: FollowedPoses, given: Inputs, order: int) -> list[Number
         designs, index, poses = rates_at(given, followed, order)
         if len(designs):
             part = _differences(
-                lambda other: rates_at(other, followed, order)[2], given, poses, order, followed.solving_order, designs
+                lambda other, _: rates_at(other, followed, order)[2],
+                given,
+                poses,
+                order,
+                followed.solving_order,
+                designs,
             )
             for whole, errors in zip(found, _largest(part, order), strict=True):
                 whole[designs, index] = np.broadcast_to(errors, (len(designs), 1))[:, 0]
@@ -461,11 +466,14 @@ def errors_at(followed: FollowedPoses, given: Inputs, order: int, s: Number, des
     Of the origin in lengths, of the orientation in radians times the mechanism's size: whichever is larger. Infinite
     for rates where a change by rounding leads to a limit position.
     """
+    rows, poses = np.broadcast_shapes(s.shape, designs.shape)
 
-    def again(other: Inputs) -> Mapping[str, Pose]:
-        return followed.run(other, order, s, designs).world
+    def again(other: Inputs, copies: int = 1) -> Mapping[str, Pose]:
+        return followed.run(other, order, repeated(s, copies), np.tile(designs, (copies, 1))).world
 
-    return _differences(again, given, again(given), order, followed.solving_order)
+    # few poses of many links take as long as one pose does: all copies are solved in one run
+    at_once = COPIES if COPIES * rows * poses <= BLOCK else 1
+    return _differences(again, given, again(given), order, followed.solving_order, copies=(at_once, rows))
 
 
 def _largest(errors: LinkErrors, order: int) -> Iterator[Number]:
@@ -478,35 +486,54 @@ def _largest(errors: LinkErrors, order: int) -> Iterator[Number]:
 
 
 def _differences(
-    again: Callable[[Inputs], Mapping[str, Pose]],
+    again: Callable[[Inputs, int], Mapping[str, Pose]],
     given: Inputs,
     poses: Mapping[str, Pose],
     order: int,
     solving_order: SolvingOrder,
     designs: Number | None = None,
+    copies: tuple[int, int] = (1, 1),
 ) -> LinkErrors:
     """Return how far links are from where they are when dimensions change by rounding.
 
-    The poses are those of the inputs, or a column of some designs.
+    The poses are those of the inputs, or a column of some designs. `copies` tells how many are solved at once, and how
+    many designs each has.
     """
     rng, size = np.random.default_rng(SEED), size_in(given.ends, solving_order.size)
     size = size if designs is None or not np.ndim(size) else size[designs]
+    at_once, rows = copies
     moving = {link: pose for link, pose in poses.items() if pose is not FIXED}
     squares: dict[str, list[Number]] = {link: [0.0] * (order + 1) for link in moving}
     closed: dict[str, list[Number]] = {link: [0.0] * (order + 1) for link in moving}
     with np.errstate(all="ignore"):
-        for _ in range(COPIES):
-            other = again(_rounded(given, solving_order, rng))
+        for _ in range(COPIES // at_once):
+            others = again(_rounded(given, solving_order, rng, at_once, rows), at_once)
             for link, pose in moving.items():
+                other = others[link] if at_once == 1 else others[link].mapped(partial(_by_copies, at_once, rows))
                 for k in range(order + 1):
-                    gap = _gap(pose, other[link], k, size)
+                    gap = _gap(pose, other, k, size)
                     known = np.isfinite(gap)
-                    squares[link][k] = squares[link][k] + np.where(known, gap, 0.0) ** 2
+                    square = np.where(known, gap, 0.0) ** 2
+                    if at_once > 1:
+                        square, known = np.add.accumulate(square)[-1], np.count_nonzero(known, axis=0)
+                    squares[link][k] = squares[link][k] + square
                     closed[link][k] = closed[link][k] + known
         return {
             link: [SAFETY * np.sqrt(_mean(squares[link][k], closed[link][k], k)) for k in range(order + 1)]
             for link in moving
         }
+
+
+def _by_copies(copies: int, rows: int, series: Series) -> Series:
+    """Return a series of designs of several copies with an axis of the copies, the first."""
+
+    def parted(c: Number) -> Number:
+        if np.ndim(c) and len(c) > 1:
+            return c.reshape(copies, rows, -1)
+        # all copies share it
+        return np.broadcast_to(c, (copies, 1, np.shape(c)[-1] if np.ndim(c) else 1))
+
+    return Series(tuple(map(parted, series.c)))
 
 
 def _mean(squares: Number, closed: Number, k: int) -> Number:
@@ -525,21 +552,31 @@ def _coefficient(series: Series, k: int) -> Number:
     return series.c[k] if k < len(series.c) else 0.0
 
 
-def _rounded(given: Inputs, solving_order: SolvingOrder, rng: np.random.Generator) -> Inputs:
-    """Return inputs whose every dimension is changed by rounding: of the size, or of itself if it is larger."""
+def _rounded(given: Inputs, solving_order: SolvingOrder, rng: np.random.Generator, copies: int, rows: int) -> Inputs:
+    """Return inputs whose every dimension is changed by rounding: of the size, or of itself if it is larger.
+
+    Each of several copies is changed on its own; they stand one after another, each of so many designs.
+    """
+    given = given if copies == 1 else given.repeated(copies)
     size = size_in(given.ends, solving_order.size)
     # not the ends of guides, which change no pose
     sides_of = {*solving_order.pairs, *(name for solver in solving_order.solvers for name in solver.ends)}
+    changing = {name: ends for name, ends in given.ends.items() if name in sides_of}
+    count = sum(
+        2 + (end.direction is not None) + (end.measure is not None) for ends in changing.values() for end in ends
+    )
+    noise = iter((ROUNDING * rng.uniform(-1.0, 1.0, (copies, count))).T)
 
-    def noise() -> float:
-        return ROUNDING * float(rng.uniform(-1.0, 1.0))
+    def drawn() -> Number:
+        found = next(noise)
+        return float(found[0]) if copies == 1 else np.repeat(found, rows)[:, None]
 
     def changed(end: End) -> End:
         place: Number = end.point
-        point = place + np.maximum(np.abs(place), size) * complex(noise(), noise())
-        direction = None if end.direction is None else end.direction * (1.0 + 1j * noise())
-        measure = None if end.measure is None else end.measure * (1.0 + noise())
+        point = place + np.maximum(np.abs(place), size) * (drawn() + 1j * drawn())
+        direction = None if end.direction is None else end.direction * (1.0 + 1j * drawn())
+        measure = None if end.measure is None else end.measure * (1.0 + drawn())
         return end._replace(point=point, direction=direction, measure=measure)
 
-    ends = {name: tuple(map(changed, given.ends[name])) for name in given.ends if name in sides_of}
+    ends = {name: tuple(map(changed, sides)) for name, sides in changing.items()}
     return replace(given, ends={**given.ends, **ends})

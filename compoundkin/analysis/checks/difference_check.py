@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from math import factorial
+from math import factorial, prod
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.poses import Pose
+from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.block import places
+from compoundkin.kinematics.block import BLOCK, places
 from compoundkin.kinematics.curve.change_points import rates_at, times_to_limits
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
@@ -37,7 +37,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
     counted = counted & np.isfinite(step) & _before_change_points(motion, step * len(OFFSETS))
     # a pose at rest stays where it is: NaN there would spread to its neighbours
     step = np.where(np.isfinite(step), step, 0.0)
-    stencils = [_positions(motion, step * j) for j in OFFSETS]
+    stencils = _stencils(motion, step)
     counted = counted & _smooth(motion, stencils)
     if not counted.any():
         return
@@ -47,9 +47,9 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
         for link, pose in motion.poses.items():
             for what, size in (("z", motion.sizes), ("u", 1.0)):
                 series = getattr(pose, what)
-                found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
+                places = getattr(stencils[link], what).c[0]
                 # the truncation error of the differences is below the change by two neighbours fewer
-                rest = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights - fewer, stencils, strict=True))
+                found, rest = (_weighted(each, places) for each in (weights, weights - fewer))
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
                 parts[link] = np.maximum(parts.get(link, 0.0), _beyond(found - own, rest) / (STEP**k * size))
@@ -105,27 +105,50 @@ def _largest(motion: Motion, k: int) -> Number:
     return found
 
 
-def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
-    """Return the poses at a time before or after those of the motion.
+def _weighted(weights: Number, values: Number) -> Number:
+    """Return the sum of what stands along the first axis, each part times its weight, from the first on."""
+    return np.add.accumulate(weights.reshape(-1, 1, 1) * values)[-1]
 
-    The drivers follow their rates. Poses solved through a double root are so beside it, too. Rates beyond the motion's
-    order are left out: they do not belong to the series that tells its time scale.
+
+def _stencils(motion: Motion, step: Number) -> dict[str, Pose]:
+    """Return the poses of all links at the neighbours of those of the motion, (neighbours, designs, poses)."""
+    shape = len(OFFSETS), *motion.failed.shape
+    # few poses of many links take as long as one pose does: all neighbours are solved in one run
+    at_once = len(OFFSETS) if prod(shape) <= BLOCK and motion.followed.expanded is None else 1
+    moving = [name for name, pose in motion.poses.items() if pose is not FIXED]
+    found = {name: Pose.of(np.empty(shape, complex), np.empty(shape, complex)) for name in moving}
+    for first in range(0, len(OFFSETS), at_once):
+        part = slice(first, first + at_once)
+        positions = _positions(motion, step * OFFSETS[part, None, None])
+        for name, pose in found.items():
+            for whole, series in ((pose.z, positions[name].z), (pose.u, positions[name].u)):
+                value = series.c[0]
+                several = np.ndim(value) and len(value) > 1
+                whole.c[0][part] = value.reshape(at_once, len(value) // at_once, -1) if several else value
+    return {name: found.get(name, FIXED) for name in motion.poses}
+
+
+def _positions(motion: Motion, time: Number) -> Mapping[str, Pose]:
+    """Return the poses at times before or after those of the motion, (times, designs, poses), as so many more designs.
+
+    The drivers follow their rates. Poses solved through a double root are so beside it, too, for one time. Rates beyond
+    the motion's order are left out: they do not belong to the series that tells its time scale.
     """
-    given = motion.inputs
+    given, (copies, designs, poses) = motion.inputs, time.shape
     drives = {}
     for name, values in given.drives.items():
         moved: Number = values[0]
         for k, rate in enumerate(values[1 : motion.order + 1], start=1):
             moved = moved + rate * time**k / factorial(k)
-        drives[name] = (moved,)
-    everywhere = places(slice(0, given.designs), slice(0, given.poses))
-    moved_inputs = given.driven(drives)
-    found = dict(motion.block(moved_inputs, 0, *everywhere).world)
-    if motion.followed.expanded is not None:
-        designs, index, poses = rates_at(moved_inputs, motion.followed, 0)
-        found = {name: _put(pose, poses[name], (designs, index), given) if name in poses else pose
-                 for name, pose in found.items()}  # fmt: skip
-    return found
+        drives[name] = (np.broadcast_to(moved, time.shape).reshape(copies * designs, poses),)
+    place, row = places(slice(0, designs), slice(0, poses))
+    moved_inputs = given.repeated(copies).driven(drives)
+    found = motion.block(moved_inputs, 0, place, np.tile(row, (copies, 1))).world
+    if motion.followed.expanded is None:
+        return found
+    chosen, index, others = rates_at(moved_inputs, motion.followed, 0)
+    return {name: _put(pose, others[name], (chosen, index), given) if name in others else pose
+            for name, pose in found.items()}  # fmt: skip
 
 
 def _put(pose: Pose, other: Pose, at: tuple[Number, Number], given: Inputs) -> Pose:
@@ -139,15 +162,22 @@ def _put(pose: Pose, other: Pose, at: tuple[Number, Number], given: Inputs) -> P
     return Pose(put(pose.z, other.z), put(pose.u, other.u))
 
 
-def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
+def _smooth(motion: Motion, stencils: Mapping[str, Pose]) -> Number:
     """Return whether no contact passes a jump of its profile around a pose."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     for pair in filter(None, map(as_profile_contact, motion.structure.pairs)):
         ends = motion.inputs.ends[pair.name]
-        found = [pair.smooth_piece(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
+        poses = [stencils[name] for name in pair.members]
+        each = (tuple(_entry(pose, k) for pose in poses) for k in range(len(OFFSETS)))
+        found = [pair.smooth_piece(ends, members) for members in each]
         for piece in found[1:]:
             good = good & (piece == found[0])
     return good
+
+
+def _entry(pose: Pose, k: int) -> Pose:
+    """Return the poses at a neighbour."""
+    return pose if pose is FIXED else Pose.of(pose.z.c[0][k], pose.u.c[0][k])
 
 
 def _away_from_change_points(motion: Motion) -> Number:
