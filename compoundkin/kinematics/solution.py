@@ -14,7 +14,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.buffers import keep_freed_memory
+from compoundkin.base.buffers import keep_freed_memory, without_collection
 from compoundkin.base.errors import (
     ChangePointWarning,
     DrawnBeyondEnd,
@@ -264,7 +264,8 @@ def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
         if structure.faults:
             problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
             raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{rank_diagnosis(structure)}")
-        solving_order = owner.__dict__["_solving_order"] = SolvingOrder(structure)
+        with without_collection():
+            solving_order = owner.__dict__["_solving_order"] = SolvingOrder(structure)
     return solving_order
 
 
@@ -381,7 +382,9 @@ def _solved_along(followed: FollowedPoses, order: int) -> _SolvedBlocks:
 
 
 def _near(block: Block) -> set[int]:
-    return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
+    # of many links every check of an array counts
+    near = ((k, margin < NEAR) for k, margin in block.margins.items())
+    return {k for k, here in near if (here if np.size(here) == 1 else here.any())}
 
 
 def _nearly(block: Block) -> set[int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from copy import copy
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
@@ -11,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.buffers import without_collection
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, constant
@@ -202,11 +204,20 @@ class Choice(Protocol):
         """Return about which angle, full turns counted, a link of a group has. It is None where it is not counted."""
 
 
+# Of more groups than these the poses are so many objects that looking for cycles among them takes a sixth of the time.
+MANY = 500
+
+
 def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None, since: int = 0) -> Block:
     """Assemble the groups one after another, from one up to one; return the block.
 
     Each is in the mode that is chosen.
     """
+    with without_collection() if len(solving_order.solvers) > MANY else nullcontext():
+        return _run(solving_order, block, choose, upto, since)
+
+
+def _run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None, since: int) -> Block:
     guide_ends = solving_order.guide_ends
     has_ends, turning = bool(guide_ends.pairs), solving_order.turning
     solving_order.fits.mask(block)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,7 @@ class Geometry(ShortRepr):
         """The length scale, the greatest distance on a link or size of a profile; that of the greatest design."""
         return float(np.max(self.sizes))
 
-    @property
+    @cached_property
     def sizes(self) -> Number:
         """The length scale of each design, an array over their axes with a last one of 1; a number if all share it."""
         found = spans_of(points.values() for points in (*self.points.values(), self.sketch))
@@ -52,11 +52,8 @@ class Geometry(ShortRepr):
 
 def spans_of(many: Iterable[Collection[Number]]) -> Number:
     """Return the greatest diagonal of the boxes around points, over the axes of designs."""
-    found: Number = 0.0
-    for points in many:
-        span = _span(list(points))
-        found = np.maximum(found, span) if np.ndim(found) or np.ndim(span) else max(found, span)
-    return found
+    spans = [_span(list(points)) for points in many]
+    return reduce(np.maximum, spans, 0.0) if any(map(np.ndim, spans)) else max(spans, default=0.0)
 
 
 def _span(points: list[Number]) -> Number:

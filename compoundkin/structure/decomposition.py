@@ -12,12 +12,11 @@ W. Whiteley, Checking mobility and decomposition of linkages via pebble game alg
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.buffers import without_collection
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.base.linear import one_thread
 from compoundkin.model.elements import Drive
@@ -64,7 +63,7 @@ def decompose(mechanism: Mechanism) -> Structure:
     >>> [(group.name, group.links) for group in decompose(four_bar).groups]
     [('RRR', ('coupler', 'rocker'))]
     """
-    with _without_collection():
+    with without_collection():
         structure = decomposed(mechanism)
     if not any(fault.kind == "over" for fault in structure.faults):
         return structure
@@ -93,18 +92,6 @@ def without_leads(structure: Structure) -> Structure:
         )
     except InvalidMechanism:  # of links that nothing else joins
         return structure
-
-
-@contextmanager
-def _without_collection() -> Iterator[None]:
-    """Pause Python's collector of cycles. Nothing here makes any, and at 100,000 links it takes a third of the time."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def decomposed(mechanism: Mechanism, relaxation: Relaxation | None = None) -> Structure:

@@ -267,6 +267,9 @@ def _open_sign(curve: AtHome, k: int, loops: FourBarLoops, block: Block) -> Numb
     will be that counts.
     """
     sides = _sides(curve, loops, block)[0]
+    if np.size(sides) == 1 and (side := sides.item()):
+        # of many links every check of an array counts
+        return -1.0 if side < 0.0 else 1.0
     # higher derivatives change nothing of the first, which most often tells
     for order in (1, HIGHEST):
         if np.any(sides == 0.0):
