@@ -14,7 +14,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import dumps, loads
-from tests.catalog import NAMES, mechanism, motion
+from tests.catalog import NAMES, each, mechanism, motion
 
 SIX_BAR = mechanism("six-bar")
 FOUR_BAR = """\
@@ -261,7 +261,7 @@ def halved(t: Any) -> Any:
 
 
 @pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
-@pytest.mark.parametrize("name", NAMES)
+@each(NAMES)
 def test_mechanisms_and_motions_pickle_and_are_copied(name: str) -> None:
     was, moved = mechanism(name), motion(name)
     for other in (pickle.loads(pickle.dumps(was)), copy.deepcopy(was), copy.copy(was)):

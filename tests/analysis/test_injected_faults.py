@@ -19,7 +19,7 @@ GROUPS = 2
 CAMS = ("flat-faced-follower", "oscillating-flat-follower", "oscillating-roller-follower", "disc-cam-roller-program")
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_right_motions_pass_and_every_fault_is_found(name):
     motion = catalog.motion(name)
     check = ck.verify(motion)

@@ -26,7 +26,7 @@ def of(name: str) -> Circuits:
     return ck.circuits(mechanism, mechanism.drives[0].name)
 
 
-@pytest.mark.parametrize("name", CHOSEN)
+@catalog.each(CHOSEN)
 def test_branches_are_as_many_as_configurations(name: str) -> None:
     found = of(name)
     check_counts(found)

@@ -8,15 +8,6 @@ from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-SAMPLES = sorted([*Path(__file__).parent.glob("samples/*.toml"), *ROOT.glob("catalog/*.toml")])
-
-
-def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """`sample` is every mechanism file there is: those of these tests and the catalog."""
-    if "sample" in metafunc.fixturenames:
-        metafunc.parametrize("sample", SAMPLES, ids=[path.stem for path in SAMPLES])
-
 
 @pytest.fixture
 def text() -> str:

@@ -19,6 +19,7 @@ from compoundkin.model.elements import Expectation, Link, drawn, drive, expect, 
 from compoundkin.model.geometry import deg, polar
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
+from tests.catalog import FILES, each
 
 finite = st.floats(-1e6, 1e6)
 radians = st.one_of(
@@ -90,6 +91,7 @@ def test_every_mechanism_is_read_as_it_was_written(mechanism: Mechanism, syntax:
     assert loads(dumps(mechanism, syntax), syntax) == mechanism
 
 
+@each(FILES)
 def test_files_are_read_as_written(sample: Path) -> None:
     mechanism = load(sample)
     assert loads(dumps(mechanism)) == mechanism

@@ -12,6 +12,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from compoundkin.files import dumps, load, schema
+from tests.catalog import FILES, each
 
 PUBLISHED = Path(__file__).parents[2] / "docs" / "mechanism.schema.json"
 VALIDATOR = Draft202012Validator(schema())
@@ -23,6 +24,7 @@ def test_the_published_schema_is_up_to_date() -> None:
     assert json.loads(PUBLISHED.read_text("utf-8")) == schema()
 
 
+@each(FILES)
 def test_every_file_fits(sample: Path) -> None:
     VALIDATOR.validate(tomllib.loads(sample.read_text("utf-8")))
     VALIDATOR.validate(tomllib.loads(dumps(load(sample))))

@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, UnknownName
 from compoundkin.kinematics.quantities import quantity
-from tests.catalog import NAMES
+from tests.catalog import NAMES, each
 from tests.catalog import mechanism as loaded
 
 UPPER, FORE = 1.0, 0.7
@@ -59,7 +59,7 @@ def test_stretched_and_folded_arms_are_singular() -> None:
     assert len(coarse.crossings[1]) == 0
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each(NAMES)
 def test_speeds_of_drivers_times_the_jacobian_are_the_rates_of_outputs(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

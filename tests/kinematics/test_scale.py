@@ -53,7 +53,7 @@ def _assert_alike(one: ck.results.Motion | str, other: ck.results.Motion | str, 
             np.testing.assert_allclose(found, expected, rtol=SAME, atol=SAME * one.size, err_msg=f"{name}.{rate}")
 
 
-@pytest.mark.parametrize("name", catalog.NAMES)
+@catalog.each(catalog.NAMES)
 def test_motions_of_the_catalog_are_the_same_in_all_units(name: str) -> None:
     number = catalog.NAMES.index(name)
     _assert_same(catalog.mechanism(name), 1e-9 if number % 2 else 1e9, 10.0 ** POWERS[number % len(POWERS)])

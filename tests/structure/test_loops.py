@@ -7,13 +7,12 @@ from itertools import combinations
 import networkx as nx
 import pytest
 
-from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.structure import decompose, independent_loops, loop_count, simple_loops
 from compoundkin.synthesis.composer import random_mechanism
 from tests import catalog
 
 
-@pytest.mark.parametrize("name", shipped())
+@catalog.each(catalog.NAMES)
 def test_euler(name):
     structure = catalog.structure(name)
     pieces = nx.number_connected_components(nx.Graph(structure.graph))

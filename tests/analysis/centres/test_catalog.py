@@ -21,7 +21,7 @@ from tests.analysis.centres.twists import disagreement, loop_twists, solved_twis
 EXACT = 1e-9
 # Flat poses of these, where a driver's position has two ways to go on: the loop equations have two solutions.
 CHANGE_POINTS = {"parallelogram", "parallelogram-third-crank", "antiparallelogram"}
-each = pytest.mark.parametrize("name", sorted({*catalog.CHOSEN, *CHANGE_POINTS}))
+each = catalog.each(sorted({*catalog.CHOSEN, *CHANGE_POINTS}))
 
 
 @cache

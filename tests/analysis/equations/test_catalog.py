@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equations.expressions import latex, text
@@ -51,7 +50,7 @@ def values_of(motion: ck.results.Motion, equations: LoopEquations) -> dict[str, 
     return values
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_solved_positions_satisfy_every_equation(name):
     motion = solved(name)
     equations = loop_equations(motion.structure)
@@ -68,7 +67,7 @@ def test_solved_positions_satisfy_every_equation(name):
         assert np.max(np.abs(np.broadcast_to(left, good.shape)[good])) < ZERO * size, driven.driver
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_there_are_as_many_equations_as_unknowns_and_every_unknown_is_written(name):
     structure = catalog.structure(name)
     equations, count = loop_equations(structure), equation_count(structure)

@@ -28,10 +28,7 @@ def test_constants_of_norton() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "name",
-    sorted({*catalog.CHOSEN, "four-bar-norton", "slider-crank-offset", "watt-ii", "engine-v-twin"} & {*catalog.NAMES}),
-)
+@catalog.each(sorted({*catalog.CHOSEN, "four-bar-norton", "slider-crank-offset", "watt-ii", "v-engine"}))
 def test_every_solved_pose_satisfies_them(name: str) -> None:
     motion = catalog.motion(name)
     values = pose_values(motion)

@@ -125,7 +125,7 @@ def agree(motion: ck.results.Motion) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize("name", catalog.NAMES)
+@catalog.each(catalog.NAMES)
 def test_closed_forms_are_those_of_cut_forces(name: str) -> None:
     agree(catalog.motion(name))
 

@@ -55,7 +55,7 @@ def equations_of(name: str) -> ck.results.LoopEquations:
     return loop_equations(catalog.structure(name), order=2)
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> None:
     found = equations_of(name)
     for equation in (*found.loops, *found.auxiliary, *found.drivers):
@@ -65,7 +65,7 @@ def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> 
         assert said.count("=") == text(equation).count("=")
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_matrices_and_right_hand_sides_are_read_entry_by_entry(name: str) -> None:
     for rates in equations_of(name).rates:
         for array in (rates.matrix, rates.right_side) if rates.unknowns else ():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from compoundkin.structure import without_leads
 from compoundkin.synthesis.chains import structure_name
 from compoundkin.view.report import Report
@@ -12,7 +10,7 @@ from tests import catalog
 from tests.view.report.support import assert_fits, assert_well_formed, parsed
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_the_report_of_a_motion(name: str) -> None:
     made = catalog.report_of(name)
     assert made.outcome.passed
@@ -27,7 +25,7 @@ def test_the_report_of_a_motion(name: str) -> None:
 
 
 # every other one: the report of a motion has all sections of the structure's
-@pytest.mark.parametrize("name", catalog.CHOSEN[::2])
+@catalog.each(catalog.CHOSEN[::2])
 def test_the_report_of_a_structure(name: str) -> None:
     made = catalog.structure_report(name)
     assert_is_rendered(made)

@@ -64,7 +64,7 @@ def test_each_group_says_what_it_uses_and_yields(six_bar: ck.results.Motion) -> 
     assert facts[2]["yields"] == "bar, block; point G"
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_equations_equal_unknowns_where_the_drivers_determine_the_motion(name: str) -> None:
     structure = catalog.structure(name)
     count, mobility = equation_count(structure), structure.mobility

@@ -53,7 +53,7 @@ def test_every_mark_is_drawn() -> None:
     assert {*PAINTED, Pin} == set(get_args(Mark))
 
 
-@pytest.mark.parametrize("name", catalog.CHOSEN)
+@catalog.each(catalog.CHOSEN)
 def test_a_guide_is_as_long_as_the_motion_uses_it(name: str) -> None:
     for seen in _scene(name).pair_marks:
         if isinstance(seen.mark, Sliding):
