@@ -1,4 +1,4 @@
-"""`compoundkin catalog`, `compoundkin atlas`: the shipped mechanisms; all chains, trusses and Assur groups of a size."""
+"""`compoundkin catalog`, `compoundkin atlas`: the shipped mechanisms; chains, trusses and Assur groups of a size."""
 
 from __future__ import annotations
 
