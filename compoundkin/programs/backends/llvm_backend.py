@@ -1,22 +1,17 @@
 """The LLVM back end: a program compiled by llvmlite for this processor, for the arrays it is called with.
 
-Compiled code is kept on disk from one process to the next; any fault of that cache is ignored.
+Compiled code is kept on disk from one process to the next.
 """
 
 from __future__ import annotations
 
 import ctypes
 import ctypes.util
-import hashlib
-import os
-import secrets
-import sys
 import threading
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -31,6 +26,7 @@ from compoundkin.programs.backends.llvm_program import (
     segment_length,
     segments_of,
 )
+from compoundkin.programs.backends.object_cache import cached_object, store_object
 from compoundkin.programs.backends.runner import run_in_threads
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 
@@ -236,59 +232,3 @@ def compile_text(text: str) -> CompiledCode:
     engine.finalize_object()
     run, run_all = (engine.get_function_address(name) for name in ("run", "run_all"))
     return CompiledCode(engine, RUN(run), RUN_ALL(run_all))
-
-
-# The environment variable that names the folder.
-FOLDER = "COMPOUNDKIN_CACHE"
-
-
-DIGEST = 32  # bytes in front, of what follows them
-
-
-def cache_folder() -> Path:
-    """Return the folder of compiled code: the one named, or the platform's own."""
-    named = os.environ.get(FOLDER)
-    if named:
-        return _expand_home(Path(named))
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or "~/AppData/Local")
-    elif sys.platform == "darwin":
-        base = Path("~/Library/Caches")
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
-    return _expand_home(base) / "compoundkin"
-
-
-def _expand_home(folder: Path) -> Path:
-    """Return a folder with "~" as the user's home."""
-    with suppress(RuntimeError):  # of a user without one
-        return folder.expanduser()
-    return folder
-
-
-def cached_object(key: str) -> bytes | None:
-    """Return the object kept by a key, unless it is damaged."""
-    try:
-        content = _cache_file(key).read_bytes()
-    except (OSError, ValueError):
-        return None
-    digest, found = content[:DIGEST], content[DIGEST:]
-    return found if found and hashlib.sha256(found).digest() == digest else None
-
-
-def store_object(key: str, content: bytes) -> None:
-    """Write an object. Any other process finds it whole or not at all."""
-    target = _cache_file(key)
-    beside = target.with_name(f".{target.name}.{secrets.token_hex(6)}")
-    with suppress(OSError, ValueError):
-        target.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-        try:
-            beside.write_bytes(hashlib.sha256(content).digest() + content)
-            os.replace(beside, target)
-        finally:
-            with suppress(OSError):
-                beside.unlink()
-
-
-def _cache_file(key: str) -> Path:
-    return cache_folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.o"
