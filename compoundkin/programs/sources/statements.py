@@ -16,7 +16,7 @@ from math import isfinite
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, REDUCTIONS
 from compoundkin.programs.sources.spellings import QUOTIENT, Phrase, Spelling
-from compoundkin.programs.sources.written_program import WrittenProgram
+from compoundkin.programs.sources.written_program import WrittenProgram, within_comment
 
 # So long may the expression of a line be, and one that is used once to go without a name.
 LINE, NAMELESS = 84, 44
@@ -60,7 +60,7 @@ class Statements:
         for one in (*self.numbers, *self.values):
             if one.section != section:
                 section = one.section
-                yield from ("", comment(section))
+                yield from ("", comment(within_comment(section)))
             yield line(one)
 
     @property

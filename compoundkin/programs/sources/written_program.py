@@ -92,7 +92,7 @@ def head_comment(program: WrittenProgram, use: str) -> list[str]:
     for note in program.notes:
         lines += ["", note]
     lines += ["", f"Made by compoundkin {VERSION}."]
-    return [_without_comment_end(part) for line in lines for part in _wrapped_line(line)]
+    return [within_comment(part) for line in lines for part in _wrapped_line(line)]
 
 
 def _with_own_value(meaning: str, own: float | None) -> str:
@@ -110,7 +110,7 @@ def _wrapped_line(line: str) -> list[str]:
     return textwrap.wrap(line, WIDTH, subsequent_indent=indent, break_long_words=False) or [""]
 
 
-def _without_comment_end(line: str) -> str:
+def within_comment(line: str) -> str:
     """A line that ends no comment in any language, whatever a title says."""
     line = " ".join(line.splitlines()).replace("\\", "/").replace('"""', "'''").replace("??", "? ?")
     return line.replace("*/", "* /").replace("/*", "/ *").rstrip()
