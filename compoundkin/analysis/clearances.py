@@ -18,7 +18,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import missing_extra
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
@@ -333,4 +333,4 @@ def shapely(where: str = "interference") -> Any:
     try:
         return import_module("shapely")
     except ImportError:
-        raise InvalidInput(Problem(where, "this needs shapely", "pip install 'compoundkin[interference]'")) from None
+        raise missing_extra(where, "this needs shapely", "interference") from None

@@ -177,6 +177,15 @@ def _unwrapped_row(angle: Number) -> Number:
 # --- values at one design and pose ---
 
 
+def trapezoid(values: Number, places: Number) -> Number:
+    """Integrate values over their places, along the last axis, by the trapezoidal rule.
+
+    >>> float(trapezoid(np.array([0.0, 1.0, 4.0]), np.array([0.0, 1.0, 2.0])))
+    3.0
+    """
+    return np.sum((values[..., 1:] + values[..., :-1]) * np.diff(places), axis=-1) / 2
+
+
 def degrees(angle: Any) -> Any:
     """Convert radians to degrees; a short decimal missed by rounding alone is that decimal.
 

@@ -115,6 +115,18 @@ class UnmetConstraints(UserWarning):
     """A search found no design at which all its constraints hold."""
 
 
+def missing_extra(where: str, what: str, extra: str, otherwise: str = "") -> InvalidInput:
+    """Return the error for a library that is not installed: what needs it, the extra that brings it, what else helps.
+
+    >>> print(missing_extra("x.png", "PNG needs CairoSVG", "pictures", "save an .svg"))
+    PNG needs CairoSVG
+      where:  x.png
+      remedy: pip install 'compoundkin[pictures]', or save an .svg
+    """
+    remedy = f"pip install 'compoundkin[{extra}]'"
+    return InvalidInput(Problem(where, what, f"{remedy}, or {otherwise}" if otherwise else remedy))
+
+
 def warn(text: str, category: type[Warning]) -> None:
     """Warn at the line of the user's program that called the package."""
     import inspect

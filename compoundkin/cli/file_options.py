@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from compoundkin.view.report import Report
     from compoundkin.view.sketch import Picture
 
+    Parameter = click.ParamType[Any]
+else:  # before click 8.4 it takes no type
+    Parameter = click.ParamType
 
 F = TypeVar("F", bound=Callable[..., Any])
 FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
@@ -36,7 +39,7 @@ STDOUT = ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
 _MOST_PAIRS = 100
 
 
-class Destination(click.ParamType[Any]):
+class Destination(Parameter):
     """A file to write, or None for standard output."""
 
     name = "path"

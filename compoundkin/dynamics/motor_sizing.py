@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import Number, dot
+from compoundkin.base.arrays import Number, dot, trapezoid
 from compoundkin.base.display import ShortRepr, aligned_text, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.dynamics.driver_course import driver_course, driver_named
@@ -123,7 +123,7 @@ class Sizing(ShortRepr):
     def duty(self) -> float:
         """The part of the time in which it moves."""
         moves = np.abs(self.speeds) > 1e-9 * self.speed
-        return float(np.trapezoid(moves.astype(float), self.times) / (self.times[-1] - self.times[0]))
+        return float(trapezoid(moves.astype(float), self.times) / (self.times[-1] - self.times[0]))
 
     @cached_property
     def chosen(self) -> SizedMotor | None:
@@ -352,7 +352,7 @@ def _times(values: Number, speeds: Number) -> Number:
 
 
 def _rms(values: Number, times: Number) -> float:
-    return float(np.sqrt(np.trapezoid(np.square(values), times) / (times[-1] - times[0])))
+    return float(np.sqrt(trapezoid(np.square(values), times) / (times[-1] - times[0])))
 
 
 def _part_of_time(above: Number, times: Number) -> float:

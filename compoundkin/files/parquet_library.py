@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import missing_extra
 
 
 def parquet(where: str = "") -> Any:
@@ -14,4 +14,4 @@ def parquet(where: str = "") -> Any:
         import_module("pyarrow")
         return import_module("pyarrow.parquet")
     except ImportError:
-        raise InvalidInput(Problem(where, "this needs pyarrow", "pip install 'compoundkin[parquet]'")) from None
+        raise missing_extra(where, "this needs pyarrow", "parquet") from None

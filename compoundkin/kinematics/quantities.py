@@ -13,7 +13,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import PLAIN, Number, degrees
 from compoundkin.base.display import display_function
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, missing_extra, suggestion
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack, OfMotion, motion_of
 from compoundkin.model.attributes import (
@@ -278,7 +278,7 @@ def data_frame(title: str, columns: Mapping[str, Any], units: Mapping[str, str])
     try:
         pandas = import_module("pandas")
     except ImportError:
-        raise InvalidInput(Problem("", "this needs pandas", "pip install 'compoundkin[pandas]'")) from None
+        raise missing_extra("", "this needs pandas", "pandas") from None
     frame = pandas.DataFrame(columns)
     frame.attrs = {"title": title, "angles": ANGLES, "units": dict(units)}
     return frame

@@ -18,7 +18,7 @@ import numpy as np
 
 from compoundkin.base.arguments import real_numbers
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, missing_extra, suggestion
 from compoundkin.kinematics.curve.driver_path import SPACING
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
@@ -138,7 +138,7 @@ def jax_path(path: PathVariants) -> JaxPath:
     groups, contacts of profiles, counted turns.
     """
     if not find_spec("jax"):
-        raise InvalidInput(Problem("jax", "JAX is not installed", "pip install 'compoundkin[jax]'"))
+        raise missing_extra("jax", "JAX is not installed", "jax")
     recorded = path.variant(frozenset())
     graph = recorded.mechanism.graph
     given = [graph.nodes[k].given for k in graph.inputs(_output_nodes(recorded))]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.util import find_spec
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, missing_extra
 from compoundkin.programs.backends.runner import BackEnd, Runner
 from compoundkin.programs.backends.tape_backend import Tape
 from compoundkin.programs.graph.flat_program import FlatProgram
@@ -44,5 +44,5 @@ def chosen_back_end(name: str | None = None) -> str:
     if name not in BACK_ENDS:
         raise InvalidInput(Problem("backend", f"there is no back end {name!r}", f"known: {', '.join(BACK_ENDS)}"))
     if name not in installed:
-        raise InvalidInput(Problem("backend", f"it needs {BACK_ENDS[name][0]}", "pip install 'compoundkin[compiled]'"))
+        raise missing_extra("backend", f"it needs {BACK_ENDS[name][0]}", "compiled")
     return name

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, missing_extra
 from compoundkin.base.suffixes import suffix_for
 
 # Two colours of a palette differ by more than this, red, green and blue together: no eye misses what is between.
@@ -125,9 +125,8 @@ def require_pillow() -> Any:
     try:
         from PIL import Image
     except ImportError:
-        what = "GIF needs Pillow"
-        remedy = "pip install compoundkin[animation], or save an .svg"
-        raise InvalidInput(Problem(suffix_for("animation", "gif"), what, remedy)) from None
+        where = suffix_for("animation", "gif")
+        raise missing_extra(where, "GIF needs Pillow", "animation", "save an .svg") from None
     return Image
 
 

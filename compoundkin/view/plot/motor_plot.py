@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import trapezoid
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.motor_sizing import RPM, SizedMotor, Sizing
 from compoundkin.view.plot import canvas, plot_style
@@ -63,7 +64,7 @@ def motor_curves(
         _draw_limits(one, shown, torques, speeds)
         one.plot(pace, path, color=blue, label="over the motion")
         canvas.draw_arrow(one, pace, path, blue)
-        middle = float(np.sqrt(np.trapezoid(np.square(speeds), sized.times) / np.ptp(sized.times))) / RPM
+        middle = float(np.sqrt(trapezoid(np.square(speeds), sized.times) / np.ptp(sized.times))) / RPM
         canvas.draw_dots(one, [middle], [shown.rms], plot_style.COLOURS[1], 6.0)
         said = f"effective {value_text(shown.rms)} N m, rated {value_text(own.rated)}"
         labels = [PointLabel(one, middle, shown.rms, said, 1j, plot_style.COLOURS[1])]

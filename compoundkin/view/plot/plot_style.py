@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import missing_extra
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 
@@ -72,7 +72,7 @@ def require_matplotlib() -> None:
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise InvalidInput(Problem("", "plots need matplotlib", "pip install 'compoundkin[plot]'")) from None
+        raise missing_extra("", "plots need matplotlib", "plot") from None
 
 
 @contextmanager

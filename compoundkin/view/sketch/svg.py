@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import missing_extra
 from compoundkin.view.sketch.shapes import (
     ArcShape,
     Band,
@@ -163,7 +163,7 @@ def converted(source: str, form: str) -> bytes:
         import cairosvg
     except (ImportError, OSError) as error:
         what = f"{form.upper()} needs CairoSVG and the library Cairo: {error}"
-        raise InvalidInput(Problem(f".{form}", what, "pip install compoundkin[pictures], or save an .svg")) from None
+        raise missing_extra(f".{form}", what, "pictures", "save an .svg") from None
     convert: Any = cairosvg.svg2png if form == "png" else cairosvg.svg2pdf
     extra = {"scale": FINE} if form == "png" else {}
     made: bytes = convert(bytestring=on_light_paper(source).encode("utf-8"), **extra)
@@ -182,7 +182,7 @@ def require_cairo(form: str) -> None:
         import cairosvg  # noqa: F401
     except (ImportError, OSError) as error:
         what = f"{form.upper()} needs CairoSVG and the library Cairo: {error}"
-        raise InvalidInput(Problem(f".{form}", what, "pip install compoundkin[animation], or save an .svg")) from None
+        raise missing_extra(f".{form}", what, "animation", "save an .svg") from None
 
 
 def pixel_size(width: float, height: float, size: float) -> tuple[int, int]:

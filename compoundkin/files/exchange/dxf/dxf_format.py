@@ -20,7 +20,15 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import convex_hull
-from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, UnknownName, suggestion
+from compoundkin.base.errors import (
+    InvalidInput,
+    NotAssembled,
+    NotDetermined,
+    Problem,
+    UnknownName,
+    missing_extra,
+    suggestion,
+)
 from compoundkin.files.exchange.chords import short_chords
 from compoundkin.files.exchange.contract import Exported, Writable, flag, letters_of, positive
 from compoundkin.files.exchange.dxf.link_contours import Contour, LinkPart, link_parts
@@ -424,7 +432,7 @@ def ezdxf(where: str = "") -> Any:
     try:
         return import_module("ezdxf")
     except ImportError:
-        raise InvalidInput(Problem(where, "DXF files need ezdxf", "pip install 'compoundkin[dxf]'")) from None
+        raise missing_extra(where, "DXF files need ezdxf", "dxf") from None
 
 
 @contextmanager

@@ -1,0 +1,137 @@
+"""Packages as users get them: built, installed where no checkout is, and every verb tried. `python -m tests.packages`
+
+A source distribution is built, a wheel of it, and the wheel is installed without extras into fresh environments: with
+the newest versions of what it depends on, and with the lowest that pyproject.toml allows. In each, every verb either
+works or says in one form which extra it needs. Printed are the size of the wheel and the time to a first report.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+import venv
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+# The largest wheel, in bytes: half of it is the catalog and the scripts of pages.
+LARGEST = 3_000_000
+NEEDS_EXTRA = "pip install 'compoundkin["
+# A call of each verb, with what is in the folder it runs in; several where forms of results need extras.
+CALLS = {
+    "report": ["report six-bar", "report six-bar --format html -o six-bar.html"],
+    "open": ["open --help"],
+    "structure": ["structure six-bar"],
+    "solve": ["solve six-bar -o six-bar.csv", "solve six-bar -o six-bar.parquet"],
+    "draw": ["draw six-bar -o six-bar.svg", "draw six-bar -o six-bar.png"],
+    "animate": ["animate crank-rocker -o moving.svg", "animate crank-rocker -o moving.gif"],
+    "plot": ["plot six-bar G.velocity -o plot.svg"],
+    "centres": ["centres six-bar --at 35"],
+    "configurations": ["configurations six-bar --at 35"],
+    "circuits": ["circuits crank-rocker"],
+    "singularities": ["singularities parallelogram"],
+    "workspace": ["workspace five-bar P"],
+    "characteristics": ["characteristics crank-rocker"],
+    "forces": ["forces engine-gas-pressure"],
+    "size": ["size shaper-cutting-force"],
+    "simulate": ["simulate engine-gas-pressure --until 0.01"],
+    "study": ["study study.toml"],
+    "tolerance": ["tolerance crank-rocker --tolerance crank.B=0.05"],
+    "import": ["import crank-rocker.linkage2 -o imported.toml"],
+    "export": ["export crank-rocker -o again.linkage2", "export crank-rocker --to dxf -o crank-rocker.dxf"],
+    "compare": ["compare crank-rocker crank-rocker"],
+    "check": ["check six-bar"],
+    "catalog": ["catalog list"],
+    "atlas": ["atlas --links 6"],
+    "new": ["new mine.toml"],
+    "schema": ["schema"],
+    "completion": ["completion bash"],
+}
+STUDY = """\
+format = 1
+count = 64
+mechanism = "crank-rocker"
+outputs = ["rocker.angle.stroke"]
+
+[dimensions]
+"crank.B" = { centre = [14, 0], within = 0.5 }
+"""
+
+
+def build(folder: Path) -> Path:
+    """Build the source distribution and, of it, the wheel."""
+    run([sys.executable, "-m", "hatchling", "build", "--target", "sdist", "--directory", str(folder)], ROOT)
+    (source,) = folder.glob("*.tar.gz")
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
+    run([*pip, "--wheel-dir", str(folder), str(source)], folder)
+    (wheel,) = folder.glob("*.whl")
+    return wheel
+
+
+def lowest() -> list[str]:
+    """Return the lowest versions that pyproject.toml allows, as constraints."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return [requirement.replace(">=", "==") for requirement in project["dependencies"]]
+
+
+def run(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command that must succeed, away from any checkout."""
+    done = _run(command, folder)
+    if done.returncode:
+        raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+    return done
+
+
+def _run(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def tried(name: str, requirements: list[str], folder: Path) -> Iterator[str]:
+    """Install in a fresh environment, call every verb; yield lines about it, faults begin with "FAULT"."""
+    start = time.perf_counter()
+    venv.create(folder / name, with_pip=True)
+    programs = folder / name / ("Scripts" if os.name == "nt" else "bin")
+    run([str(programs / "python"), "-m", "pip", "install", "--quiet", *requirements], folder)
+    work = folder / f"work-{name}"
+    work.mkdir()
+    command = str(programs / "compoundkin")
+    run([command, "report", "six-bar"], work)
+    yield f"{name}: installed, first report after {time.perf_counter() - start:.0f} s"
+    (work / "study.toml").write_text(STUDY, encoding="utf-8")
+    run([command, "export", "crank-rocker", "-o", "crank-rocker.linkage2"], work)
+    for call in (call for calls in CALLS.values() for call in calls):
+        done = _run([command, *call.split()], work)
+        needs_extra = done.returncode == 2 and NEEDS_EXTRA in done.stderr
+        if (done.returncode and not needs_extra) or "Traceback" in done.stderr:
+            yield f"FAULT {name}: compoundkin {call}: {done.stderr or done.stdout}"
+        elif needs_extra:
+            yield f"{name}: {call}: {done.stderr.strip().splitlines()[-1]}"
+
+
+def main() -> None:
+    """Build, install, try."""
+    from compoundkin.cli import VERBS
+
+    if set(CALLS) != set(VERBS):
+        raise SystemExit(f"verbs without a call: {set(VERBS) ^ set(CALLS)}")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        wheel = build(folder)
+        size = wheel.stat().st_size
+        print(f"{wheel.name}: {size / 1e6:.2f} MB", flush=True)
+        environments = {"newest": [str(wheel)], "lowest": [str(wheel), *lowest()]}
+        with ThreadPoolExecutor() as pool:
+            lines = [*pool.map(lambda one: list(tried(*one, folder)), environments.items())]
+        print("\n".join(line for some in lines for line in some))
+        faults = sum(line.startswith("FAULT") for some in lines for line in some) + (size > LARGEST)
+    raise SystemExit(f"{faults} faults" if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
