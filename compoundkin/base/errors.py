@@ -119,9 +119,7 @@ def missing_extra(where: str, what: str, extra: str, otherwise: str = "") -> Inv
     """Return the error for a library that is not installed: what needs it, the extra that brings it, what else helps.
 
     >>> print(missing_extra("x.png", "PNG needs CairoSVG", "pictures", "save an .svg"))
-    PNG needs CairoSVG
-      where:  x.png
-      remedy: pip install 'compoundkin[pictures]', or save an .svg
+    x.png: PNG needs CairoSVG; pip install 'compoundkin[pictures]', or save an .svg
     """
     remedy = f"pip install 'compoundkin[{extra}]'"
     return InvalidInput(Problem(where, what, f"{remedy}, or {otherwise}" if otherwise else remedy))
