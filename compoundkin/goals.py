@@ -10,8 +10,7 @@ from __future__ import annotations
 
 from compoundkin.studies.goals.clearance_constraint import clearance
 from compoundkin.studies.goals.constraints import assembles, at_least, at_most, box, distance, full_turn, transmits
-from compoundkin.studies.goals.function_goal import function
-from compoundkin.studies.goals.path_goals import path, poses, trace
+from compoundkin.studies.goals.path_goals import function, path, poses, trace
 from compoundkin.studies.goals.range_goals import dwell, even, straight_line, without_harmonics
 from compoundkin.studies.goals.value_goals import greatest, least, target
 

@@ -48,6 +48,7 @@ VERBS = {
 
 # Verbs that are not `command` of the file of their name, as `import` is a word of Python.
 _COMMANDS = {
+    "completion": ("schema", "completion_command"),
     "atlas": ("catalog", "atlas_command"),
     "import": ("import_command", "command"),
     "open": ("report", "open_command"),

@@ -1,4 +1,4 @@
-"""`compoundkin schema`: the JSON Schema of mechanism files, and of study files."""
+"""`compoundkin schema`, `compoundkin completion`: the JSON Schema of files; the script that completes commands."""
 
 from __future__ import annotations
 
@@ -26,4 +26,29 @@ def command(kind: str) -> int:
 
     result = {"mechanism": schema, "study": study_schema}[kind]()
     put(json.dumps(result, indent=2, ensure_ascii=False) + "\n")
+    return 0
+
+
+SHELLS = ("bash", "zsh", "fish")
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  eval "$(compoundkin completion bash)"      in ~/.bashrc
+  eval "$(compoundkin completion zsh)"       in ~/.zshrc
+  compoundkin completion fish > ~/.config/fish/completions/compoundkin.fish
+"""
+)
+@click.argument("shell", type=click.Choice(SHELLS))
+def completion_command(shell: str) -> int:
+    """Print the script that completes commands, options, files and catalog names in your shell."""
+    from click.shell_completion import get_completion_class
+
+    from compoundkin.cli import cli
+
+    kind = get_completion_class(shell)
+    if kind is None:  # pragma: no cover - click knows all three
+        raise click.UsageError(f"{shell} is not supported")
+    put(kind(cli, {}, "compoundkin", "_COMPOUNDKIN_COMPLETE").source() + "\n")
     return 0

@@ -12,14 +12,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.analysis.checks import verify
-from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.arrays import TURN, Number, unwrapped
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.poses import Pose
+from compoundkin.configurations.circuit import CircuitPlace
 from compoundkin.configurations.circuit_search import Circuits, circuits
 from compoundkin.dimensional.linkages import Linkage
 from compoundkin.dimensional.tasks import Conditions, extent
@@ -33,7 +35,7 @@ ORDER, BRANCH, CIRCUIT, TURNING, TRANSMISSION, REGION, LENGTH, ASSEMBLY, ACCURAC
     "order", "branch", "circuit", "no full turn", "transmission", "region", "length", "assembly", "accuracy",
 )  # fmt: skip
 # The least of defects first: of several drivers the one whose defect is least tells.
-SEVERITY = (TRANSMISSION, TURNING, ORDER, BRANCH, CIRCUIT, LENGTH, REGION, ACCURACY, ASSEMBLY)
+SEVERITY = (TRANSMISSION, TURNING, BRANCH, ORDER, CIRCUIT, LENGTH, REGION, ACCURACY, ASSEMBLY)
 # A solved position may miss its place by so much, in parts of the linkage: next to limit positions rounding grows to
 # its root.
 MISSED = 1e-6
@@ -41,6 +43,8 @@ MISSED = 1e-6
 GROUNDED = 1e-6
 # Poses of a motion over a branch.
 POSES = 181
+# A range in which nothing was found is looked at again with so many times itself on either side.
+CLOSER = 8.0
 # Driver values nearer to each other than this part of a turn or a stroke are one.
 STANDING = 1e-9
 
@@ -85,16 +89,46 @@ class SolvedLinkage(ShortRepr):
 
 
 def judged(candidate: Linkage, conditions: Conditions, tolerance: float = 0.0) -> SolvedLinkage | Rejection:
-    """Return the solution with the best driver of a candidate, or what is wrong with it."""
+    """Return the solution with the best driver of a candidate, one that turns fully first, or what is wrong with it."""
     wrong = _unfulfilled(candidate, conditions)
     if wrong is not None:
         return wrong
-    found = [_driven(candidate, driver, conditions, tolerance) for driver in candidate.drivers]
-    good = [one for one in found if isinstance(one, SolvedLinkage)]
-    if good:
-        return max(good, key=lambda one: (one.turns, np.nan_to_num(one.transmission)))
-    bad = [one for one in found if isinstance(one, Rejection)]
+    bad, good = list[Rejection](), list[_Course]()
+    for driver in candidate.drivers:
+        found = _course(candidate, driver, conditions)
+        if isinstance(found, Rejection):
+            bad.append(found)
+            if found.reason == CIRCUIT:  # so it is with every driver
+                return found
+        else:
+            good.append(found)
+    for course in sorted(good, key=lambda one: not one.turns):
+        solved = _solved(candidate, course, conditions, tolerance)
+        if isinstance(solved, SolvedLinkage):
+            return solved
+        bad.append(solved)
     return min(bad, key=lambda one: SEVERITY.index(one.reason))
+
+
+def confirmed(one: SolvedLinkage) -> SolvedLinkage | Rejection:
+    """Return a solution whose motion passes all checks, which solve nothing by the formulas that solved it."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            check = verify(one.motion)
+    except CompoundkinError as problem:
+        return Rejection(ACCURACY, str(problem), one.candidate, one.driver)
+    if check.passed:
+        return one
+    return Rejection(ACCURACY, f"its motion fails {', '.join(check.failed)}", one.candidate, one.driver)
+
+
+class _Course(NamedTuple):
+    """The driver's values at the positions as they follow one another on one branch, and whether it turns fully."""
+
+    driver: str
+    values: Number
+    turns: bool
 
 
 def _unfulfilled(candidate: Linkage, conditions: Conditions) -> Rejection | None:
@@ -116,11 +150,13 @@ def _unfulfilled(candidate: Linkage, conditions: Conditions) -> Rejection | None
     return None
 
 
-def _driven(candidate: Linkage, driver: str, conditions: Conditions, tolerance: float) -> SolvedLinkage | Rejection:
+def _course(candidate: Linkage, driver: str, conditions: Conditions) -> _Course | Rejection:
+    """Return how a driver passes the positions, or what prevents it."""
+    given = candidate.drivers[driver]
+    if _out_of_order(given, candidate.u[driver]):
+        return Rejection(ORDER, f"{driver} passes the positions in another order", candidate, driver)
     try:
-        mechanism = candidate.mechanism(driver)
-        found = circuits(mechanism)
-        placed = [found.at(one) for one in positions(candidate, found)]
+        found, placed = _placed(candidate, driver)
     except CompoundkinError as error:
         return Rejection(ASSEMBLY, str(error), candidate, driver)
     on = [place.circuit for place in placed]
@@ -142,7 +178,41 @@ def _driven(candidate: Linkage, driver: str, conditions: Conditions, tolerance: 
     if conditions.turning and not turns:
         text = f"{driver} goes from {_value(circuit.low, found)} to {_value(circuit.high, found)}"
         return Rejection(TURNING, text, candidate, driver)
-    return _solved(candidate, driver, values, turns, conditions, tolerance)
+    return _Course(driver, values, turns)
+
+
+def _out_of_order(values: Number, u: Number) -> bool:
+    """Return whether a driver passes positions in another order whatever its circuits are like, which is quickly seen.
+
+    A slide cannot go on in one sense, a link on a pin not even with whole turns.
+    """
+    if _turned(u):
+        return _along(np.angle(u), 0.0, TURN, True) is None
+    steps = np.diff(values)
+    return bool(np.any(steps > 0.0) and np.any(steps < 0.0))
+
+
+def _turned(u: Number) -> bool:
+    """Return whether a link turns at all, as one on a slide does not."""
+    return bool(np.any(u != u[0]))
+
+
+def _placed(candidate: Linkage, driver: str) -> tuple[Circuits, list[CircuitPlace]]:
+    """Return the circuits of a driver and the places of the positions on them.
+
+    A range so small that it lies between the places where circuits are sought is looked at by itself.
+    """
+    mechanism = candidate.mechanism(driver)
+    try:
+        found = circuits(mechanism)
+        return found, [found.at(one) for one in positions(candidate, found)]
+    except CompoundkinError:
+        values = candidate.drivers[driver]
+        values = unwrapped(values) if _turned(candidate.u[driver]) else values
+        low, high = float(np.min(values)), float(np.max(values))
+        room = CLOSER * (high - low) + STANDING
+        found = circuits(mechanism, between=(low - room, high + room))
+        return found, [found.at(one) for one in positions(candidate, found)]
 
 
 def positions(candidate: Linkage, found: Circuits) -> Iterator[Configuration]:
@@ -177,10 +247,9 @@ def _value(value: float, found: Circuits) -> str:
     return f"{np.rad2deg(value):.4g} degrees" if found.period else f"{value:.4g}"
 
 
-def _solved(
-    candidate: Linkage, driver: str, values: Number, turns: bool, conditions: Conditions, tolerance: float
-) -> SolvedLinkage | Rejection:
+def _solved(candidate: Linkage, course: _Course, conditions: Conditions, tolerance: float) -> SolvedLinkage | Rejection:
     """Return the solution over a branch with all positions, or why it is none."""
+    driver, values, turns = course
     sense = 1.0 if len(values) < 2 or values[1] >= values[0] else -1.0
     way = values[0] + sense * np.linspace(0.0, TURN, POSES) if turns else np.linspace(values[0], values[-1], POSES)
     mechanism = candidate.mechanism(driver, way if len(values) > 1 else values)
@@ -188,30 +257,29 @@ def _solved(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             motion = solve(mechanism)
-            there = solve(mechanism, {driver: values}, order=0)
-            missed = missed_by(candidate, there)
-            passed = bool(motion.assembled.all()) and verify(motion).passed
+            missed = missed_by(candidate, solve(mechanism, {driver: values}, order=0))
     except CompoundkinError as problem:
         return Rejection(ASSEMBLY, str(problem), candidate, driver)
-    size = max(extent(np.array(list(candidate.places.values()))), 1e-300)
-    if not passed or not missed <= MISSED * max(size, 1.0) + tolerance:
-        return Rejection(ACCURACY, f"the solved motion misses a position by {missed:.3g}", candidate, driver)
+    size = extent(np.array(list(candidate.places.values())))
+    if not motion.assembled.all() or not (missed[0] <= MISSED * size and missed[1] <= MISSED):
+        text = f"the solved motion misses a position by {missed[0]:.3g} and {missed[1]:.3g} radians"
+        return Rejection(ACCURACY, text, candidate, driver)
+    if 0.0 < tolerance < candidate.error:
+        text = f"it misses the task by {candidate.error:.3g}, more than {tolerance:.3g}"
+        return Rejection(ACCURACY, text, candidate, driver)
     least = least_transmission(motion)
     if not np.isnan(least) and least < conditions.transmission:
         text = f"the transmission angle falls to {np.rad2deg(least):.4g} degrees"
         return Rejection(TRANSMISSION, text, candidate, driver)
-    return SolvedLinkage(mechanism, motion, driver, values, turns, candidate.error + missed, least, candidate)
+    return SolvedLinkage(mechanism, motion, driver, values, turns, candidate.error + max(missed), least, candidate)
 
 
-def missed_by(candidate: Linkage, motion: Motion) -> float:
-    """Return by how much a motion over the precision positions misses them: the greatest length or angle."""
-    worst = 0.0
-    for name, z in candidate.z.items():
-        if name in motion.links:
-            pose = motion.poses[name]
-            apart = np.abs(pose.z.c[0] - z), np.abs(pose.u.c[0] - candidate.u[name])
-            worst = max(worst, *(float(np.max(one)) for one in apart))
-    return worst if np.isfinite(worst) else np.inf
+def missed_by(candidate: Linkage, motion: Motion) -> tuple[float, float]:
+    """Return by how much a motion over the precision positions misses them: the greatest length, the greatest angle."""
+    apart = [(np.abs(motion.poses[name].z.c[0] - z), np.abs(motion.poses[name].u.c[0] - candidate.u[name]))
+             for name, z in candidate.z.items()]  # fmt: skip
+    lengths, angles = (np.array([np.max(part) for part in parts]) for parts in zip(*apart, strict=True))
+    return float(np.max(np.nan_to_num(lengths, nan=np.inf))), float(np.max(np.nan_to_num(angles, nan=np.inf)))
 
 
 def least_transmission(motion: Motion) -> float:

@@ -17,16 +17,18 @@ approach to algebraic fitting of a pencil of quadrics for planar 4R motion synth
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from itertools import combinations
+from functools import cached_property
+from itertools import combinations, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arguments import checked
+from compoundkin.base.arguments import checked, planar_numbers
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import count_phrase
+from compoundkin.base.display import ShortRepr, count_phrase, display_function
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.tasks import PoseTask, extent, poses
 
@@ -234,11 +236,241 @@ def real_ones(points: Number) -> Number:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class BurmesterCurve(ShortRepr):
+    """The dyads through four poses, in order along the centre-point and circle-point curves.
+
+    `centres` are fixed centres, `points` the moving points in the body's coordinates, `lengths` those of the cranks,
+    arrays (n,). `loops` numbers the loops; a loop is closed. Where both go through infinity the dyad there is a slider:
+    `breaks` are the places (indices) before which that happens.
+    """
+
+    centres: Number
+    points: Number
+    lengths: Number
+    loops: Number
+    breaks: tuple[int, ...]
+
+    def __len__(self) -> int:
+        return len(self.centres)
+
+    def __getitem__(self, index: int) -> Dyad:
+        """Return the dyad at a place of the curve."""
+        numbers = self.centres[index], self.points[index], self.lengths[index]
+        return Dyad(RR, complex(numbers[0]), complex(numbers[1]), None, float(numbers[2]))
+
+    def pieces(self) -> Iterator[tuple[Number, bool]]:
+        """Yield the indices of each piece between breaks, and whether it is closed."""
+        for loop in range(int(self.loops[-1]) + 1 if len(self) else 0):
+            indices = np.flatnonzero(self.loops == loop)
+            cuts = [int(np.searchsorted(indices, k)) for k in self.breaks if indices[0] <= k <= indices[-1]]
+            if not cuts:
+                yield indices, True
+                continue
+            turned = np.roll(indices, -cuts[0])
+            places = [(cut - cuts[0]) % len(indices) for cut in cuts] + [len(indices)]
+            yield from ((turned[a:b], False) for a, b in pairwise(places) if b > a)
+
+
+def curve_of(basis: Number, unit: _Unit, count: int = CURVE_POINTS) -> BurmesterCurve:
+    """Return the curve in which two quadrics of a space with four dimensions meet, some `count` points of it.
+
+    Planes through a line that meets the curve twice meet it in two more points each: the roots of one quadratic. Where
+    its discriminant, a quartic in the direction of the plane, is positive they are real.
+    """
+    forms = np.einsum("ji,njk,kl->nil", basis, QUADRICS, basis)
+    chord = _chord(forms)
+    part = np.einsum("ai,nij,bj->nab", chord, forms, chord)
+    a, b = part.reshape(2, -1)
+    # on the chord both quadrics are proportional: one of their combinations is zero on it, one is not
+    axis = a if np.linalg.norm(a) >= np.linalg.norm(b) else b
+    first, second = (float(v @ axis) / float(axis @ axis) for v in (a, b))
+    flat, other = second * forms[0] - first * forms[1], first * forms[0] + second * forms[1]
+    pencil = _Pencil(chord, np.linalg.svd(chord)[2][2:], flat, other)
+    found = [loop for ends in pencil.arcs() for loop in pencil.loops(*ends, count)]
+    if not found:
+        return BurmesterCurve(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0), np.zeros(0, int), ())
+    share = [max(round(count * _length(w) / sum(map(_length, found))), 24) for w in found]
+    evened = [pencil.evened(w, number) for w, number in zip(found, share, strict=True)]
+    return _as_curve(evened, basis, unit)
+
+
+def _chord(forms: Number) -> Number:
+    """Return two vectors (2, 4) that span a real line through two points of the curve."""
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        plane = np.linalg.qr(rng.normal(size=(4, 3)))[0]
+        points = common_points(np.einsum("ai,nab,bj->nij", plane, forms, plane))
+        if len(points) < 4:
+            continue
+        real = real_ones(points)
+        if len(real) < 4:
+            largest = np.argmax(np.abs(points), axis=-1)[:, None]
+            turned = points / np.take_along_axis(points, largest, axis=-1)
+            one = turned[int(np.argmax(np.max(np.abs(turned.imag), axis=-1)))]
+            pair = np.stack([one.real, one.imag])
+        else:
+            pair = real[:2]
+        return np.linalg.qr((pair @ plane.T).T)[0].T
+    raise InvalidInput(Problem("poses", "their dyads form no curve", "move one of the poses a little"))
+
+
+@dataclass(frozen=True)
+class _Pencil:
+    """The planes through a chord (2, 4) of the curve, with directions in its complement (2, 4).
+
+    The quadric `flat` holds the chord, `other` does not.
+    """
+
+    chord: Number
+    complement: Number
+    flat: Number
+    other: Number
+
+    def forms(self, t: Number) -> tuple[Number, Number, Number]:
+        """Return for planes: the direction (n, 4), the line in which `flat` meets it and the conic of `other`."""
+        w = np.cos(t)[:, None] * self.complement[0] + np.sin(t)[:, None] * self.complement[1]
+        flat = w @ self.flat
+        line = np.concatenate([2.0 * flat @ self.chord.T, np.einsum("ni,ni->n", flat, w)[:, None]], axis=-1)
+        conic = np.zeros((len(t), 3, 3))
+        conic[:, :2, :2] = self.chord @ self.other @ self.chord.T
+        conic[:, :2, 2] = conic[:, 2, :2] = w @ self.other @ self.chord.T
+        conic[:, 2, 2] = np.einsum("ni,ij,nj->n", w, self.other, w)
+        return w, line, conic
+
+    def discriminant(self, t: Number) -> Number:
+        """Return what is positive where the two points of a plane are real, a quartic form of cosine and sine."""
+        _, line, conic = self.forms(t)
+        rows = [np.cross(conic[:, (i + 1) % 3], conic[:, (i + 2) % 3]) for i in range(3)]
+        adjugate = np.stack(rows, axis=-1)
+        return -np.einsum("ni,nij,nj->n", line, adjugate, line)
+
+    def arcs(self) -> Iterator[tuple[float, float]]:
+        """Yield the ranges of directions with real points; a range of a half turn has no ends."""
+        angles = np.arange(5) * np.pi / 5.0 + 0.1
+        values = self.discriminant(angles)
+        start = float(angles[int(np.argmax(np.abs(values)))])
+        # the quartic in the tangent of the angle from there, where it is greatest: its first coefficient is not zero
+        c, s = np.cos(angles - start), np.sin(angles - start)
+        quartic = np.linalg.solve(np.stack([c**k * s ** (4 - k) for k in range(4, -1, -1)], axis=-1), values)
+        roots = np.roots(quartic)
+        cotangents = roots[np.abs(roots.imag) < REAL * (1.0 + np.abs(roots))].real
+        real = np.sort(np.mod(start + np.arctan2(1.0, cotangents), np.pi))
+        if not len(real):
+            if values[0] > 0.0:
+                yield 0.0, np.pi
+            return
+        for low, high in zip(real, [*real[1:], real[0] + np.pi], strict=True):
+            if self.discriminant(np.array([(low + high) / 2.0]))[0] > 0.0:
+                yield float(low), float(high)
+
+    def points(self, t: Number, side: float) -> Number:
+        """Return one of the two points of each plane, unit vectors (n, 4)."""
+        w, line, conic = self.forms(t)
+        zero = np.zeros(len(t))
+        first = np.stack([line[:, 1], -line[:, 0], zero], axis=-1)
+        square = line[:, 0] ** 2 + line[:, 1] ** 2
+        second = np.stack([-line[:, 0] * line[:, 2], -line[:, 1] * line[:, 2], square], axis=-1)
+        first, second = (v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (first, second))
+        ends = (first, first), (first, second), (second, second)
+        a, b, c = (np.einsum("ni,nij,nj->n", left, conic, right) for left, right in ends)
+        root = np.sqrt(np.maximum(b * b - a * c, 0.0)) * side
+        # both forms of the solution of a quadratic, the one without cancellation
+        one = np.where((b * side <= 0.0)[:, None], np.stack([-b + root, a], -1), np.stack([c, -b - root], -1))
+        local = one[:, :1] * first + one[:, 1:] * second
+        found = local[:, :1] * self.chord[0] + local[:, 1:2] * self.chord[1] + local[:, 2:] * w
+        return found / np.linalg.norm(found, axis=-1, keepdims=True)
+
+    def loops(self, low: float, high: float, count: int) -> Iterator[Number]:
+        """Yield the closed loops over a range of directions: there on one side and back on the other.
+
+        Over a half turn without ends each side is a loop of its own, or goes on as the other.
+        """
+        half = max(count // 2, 24)
+        if high - low < np.pi:
+            t = (low + high) / 2.0 - (high - low) / 2.0 * np.cos(np.linspace(0.0, np.pi, half))
+            there, back = (self.points(t, side) for side in (1.0, -1.0))
+            yield _signed(np.concatenate([there, back[::-1][1:-1]]))
+            return
+        t = np.linspace(low, high, half + 1)
+        one, other = (self.points(t, side) for side in (1.0, -1.0))
+        if abs(one[-1] @ one[0]) >= abs(one[-1] @ other[0]):
+            yield from (_signed(side[:-1]) for side in (one, other))
+        else:
+            yield _signed(np.concatenate([one[:-1], other[:-1]]))
+
+    def evened(self, loop: Number, count: int) -> Number:
+        """Return a loop with points at even distances on the unit sphere, made exact on both quadrics."""
+        closed = np.concatenate([loop, loop[:1] * np.sign(loop[0] @ loop[-1])])
+        along = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=-1)))
+        places = np.linspace(0.0, along[-1], count, endpoint=False)
+        points = np.stack([np.interp(places, along, column) for column in closed.T], axis=-1)
+        for _ in range(5):
+            points = points / np.linalg.norm(points, axis=-1, keepdims=True)
+            points = points - _correction(points, np.stack([self.flat, self.other]))
+        return points / np.linalg.norm(points, axis=-1, keepdims=True)
+
+
+def _correction(points: Number, forms: Number) -> Number:
+    """Return the shortest steps to two quadrics by Newton's method, (n, 4)."""
+    slopes = 2.0 * np.einsum("nij,pj->pni", forms, points)
+    values = np.einsum("pni,pi->pn", slopes, points) / 2.0
+    gram = np.einsum("pni,pmi->pnm", slopes, slopes)
+    determinant = gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2
+    weights = np.stack([gram[:, 1, 1] * values[:, 0] - gram[:, 0, 1] * values[:, 1],
+                        gram[:, 0, 0] * values[:, 1] - gram[:, 0, 1] * values[:, 0]], axis=-1)  # fmt: skip
+    with np.errstate(all="ignore"):
+        steps = np.einsum("pn,pni->pi", weights / determinant[:, None], slopes)
+    return np.where(np.isfinite(steps), steps, 0.0)
+
+
+def _signed(points: Number) -> Number:
+    """Return unit vectors with the signs with which each follows the one before."""
+    signs = np.sign(np.einsum("ni,ni->n", points[1:], points[:-1]))
+    return points * np.append(1.0, np.cumprod(np.where(signs == 0.0, 1.0, signs)))[:, None]
+
+
+def _length(points: Number) -> float:
+    return float(np.sum(np.linalg.norm(np.diff(points, axis=0), axis=-1)))
+
+
+def _as_curve(loops: list[Number], basis: Number, unit: _Unit) -> BurmesterCurve:
+    q = np.concatenate(loops) @ basis.T
+    number = np.concatenate([np.full(len(w), k) for k, w in enumerate(loops)])
+    with np.errstate(all="ignore"):
+        moving = (q[:, 1] + 1j * q[:, 2]) / (2.0 * q[:, 0])
+        centre = -(q[:, 3] + 1j * q[:, 4]) / (2.0 * q[:, 0])
+        square = np.abs(moving) ** 2 + np.abs(centre) ** 2 - q[:, 7] / q[:, 0]
+        lengths = np.sqrt(np.maximum(square, 0.0)) * unit.length
+    breaks, start = [], 0
+    for w in loops:
+        k = (w @ basis[0]) * np.append(1.0, np.cumprod(np.sign(np.einsum("ni,ni->n", w[1:], w[:-1]))))
+        breaks += (start + 1 + np.flatnonzero(k[1:] * k[:-1] <= 0.0)).tolist()
+        end = k[-1] * np.sign(w[0] @ w[-1] * k[0])
+        breaks += [start] if end * abs(k[0]) <= 0.0 and k[-1] != 0.0 else []
+        start += len(w)
+    places = unit.place + unit.length * centre, unit.point + unit.length * moving
+    return BurmesterCurve(*places, lengths, number, tuple(sorted(breaks)))
+
+
+@dataclass(frozen=True)
+class Pole:
+    """The pole of two poses: the place of the frame, and the point of the body, that are one in both.
+
+    `poses` are their indices. Of a pose with a velocity it is the pole of that motion, both indices are the pose's.
+    """
+
+    poses: tuple[int, int]
+    place: complex
+    point: complex
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Dyads:
     """The dyads that guide a body through poses.
 
     `freedom` is 0 where they are finitely many, 1 where they form a curve, 2 or more where a surface or all of the
-    plane. `found` are those that stand alone: all for five poses, the sliders for four. `note` says what is special.
+    plane. `found` are those that stand alone: all of five poses, the sliders of four, whose PR has Ball's point. `note`
+    says what is special.
     """
 
     task: PoseTask
@@ -247,6 +479,79 @@ class Dyads:
     note: str = ""
     basis: Number = field(default=None, repr=False)
     unit: _Unit = field(default=_Unit(0j, 0j, 1.0), repr=False)
+
+    @cached_property
+    def curve(self) -> BurmesterCurve:
+        """The curves of centre and circle points of four poses; raises InvalidInput where there is none."""
+        if self.freedom != 1:
+            what = f"the dyads through these poses are {_FREEDOMS[min(self.freedom, 2)]}"
+            raise InvalidInput(Problem("curve", what, "four poses have one; of three, choose a centre or a point"))
+        return curve_of(self.basis, self.unit)
+
+    @cached_property
+    def poles(self) -> tuple[Pole, ...]:
+        """The poles of all pairs of poses that differ in their angle, then those of velocities."""
+        z, u = self.task.z, self.task.u
+        found = []
+        for i, j in combinations(range(len(z)), 2):
+            if abs(u[i] - u[j]) > ALIKE:
+                point = (z[j] - z[i]) / (u[i] - u[j])
+                found.append(Pole((i, j), complex(z[i] + u[i] * point), complex(point)))
+        for i, (v, w) in self.task.velocities.items():
+            if abs(w) > ALIKE * abs(v):
+                arm = 1j * v / w
+                found.append(Pole((i, i), complex(z[i] + arm), complex(arm * np.conj(u[i]))))
+        return tuple(found)
+
+    def with_centre(self, place: Any) -> Dyad:
+        """Return the dyad with a fixed centre, (x, y) or complex: RR, or RP. Raises InvalidInput where there is none.
+
+        Of three poses every centre has one; of four only the centres on the curve have.
+        """
+        c = (_place("place", place) - self.unit.place) / self.unit.length
+        # beta = -2 k c and gamma = -conj(c) alpha
+        rows = np.zeros((4, COEFFICIENTS))
+        rows[0, [0, 3]], rows[1, [0, 4]] = (2.0 * c.real, 1.0), (2.0 * c.imag, 1.0)
+        rows[2, [1, 2, 5]], rows[3, [1, 2, 6]] = (c.real, c.imag, 1.0), (-c.imag, c.real, 1.0)
+        return self._with(rows, "centre", f"({place})")
+
+    def with_point(self, point: Any) -> Dyad:
+        """Return the dyad with a moving point of the body, (x, y) or complex: RR, or PR. Raises InvalidInput."""
+        p = (_place("point", point) - self.unit.point) / self.unit.length
+        # alpha = 2 k p and gamma = conj(beta) p
+        rows = np.zeros((4, COEFFICIENTS))
+        rows[0, [0, 1]], rows[1, [0, 2]] = (2.0 * p.real, -1.0), (2.0 * p.imag, -1.0)
+        rows[2, [3, 4, 5]], rows[3, [3, 4, 6]] = (p.real, p.imag, -1.0), (p.imag, -p.real, -1.0)
+        return self._with(rows, "point", f"({point})")
+
+    def with_line(self, angle: float, kind: str = PR) -> Dyad:
+        """Return the slider of a direction (radians): of its line in the frame (PR) or in the body (RP)."""
+        if kind not in (PR, RP):
+            raise InvalidInput(Problem("kind", f"{kind!r} is no slider", "PR or RP"))
+        normal = 1j * np.exp(1j * angle)
+        rows = np.zeros((4, COEFFICIENTS))
+        here, none = ((3, 4), (1, 2)) if kind == PR else ((1, 2), (3, 4))
+        rows[0, 0], rows[1, none[0]], rows[2, none[1]] = 1.0, 1.0, 1.0
+        rows[3, here] = -normal.imag, normal.real
+        return self._with(rows, "angle", f"{angle:g}")
+
+    def _with(self, rows: Number, name: str, given: str) -> Dyad:
+        """Return the one dyad of the space that fulfils further linear equations."""
+        matrix = rows / np.linalg.norm(rows, axis=-1, keepdims=True) @ self.basis
+        _, sizes, right = np.linalg.svd(matrix)
+        many = matrix.shape[1] > 1 and len(sizes) > matrix.shape[1] - 2 and sizes[matrix.shape[1] - 2] < REAL
+        if matrix.shape[1] > 5 or many:
+            what = f"infinitely many dyads with the {name} {given} take these poses"
+            raise InvalidInput(Problem(name, what, "give a further pose, or both places"))
+        least = sizes[matrix.shape[1] - 1] if len(sizes) >= matrix.shape[1] else 0.0
+        found = dyad_of(self.basis @ right[-1], self.unit) if least < REAL else None
+        if found is None:
+            raise InvalidInput(Problem(name, f"no dyad with the {name} {given} takes these poses"))
+        return found
+
+    def draw(self, **options: Any) -> Any:
+        """Return the picture of poses, poles, curves and dyads."""
+        return display_function("dyads_picture")(self, **options)
 
     def __iter__(self) -> Iterator[Dyad]:
         return iter(self.found)
@@ -259,35 +564,48 @@ class Dyads:
 
     def __repr__(self) -> str:
         kinds = ", ".join(dyad.kind for dyad in self.found) or "none alone"
-        return f"Dyads({self.task.in_words}: {kinds}; {_FREEDOMS[min(self.freedom, 2)]})"
+        note = f"; {self.note}" if self.note else ""
+        return f"Dyads({self.task.in_words}: {kinds}; {_FREEDOMS[min(self.freedom, 2)]}{note})"
 
 
 _FREEDOMS = ("finitely many", "a curve of them", "a surface of them")
 
 
+def _place(where: str, given: Any) -> complex:
+    """Return one place of the plane."""
+    found = planar_numbers(where, given)
+    if found.shape == (2,) and not found.imag.any():
+        found = np.asarray(complex(found[0].real, found[1].real))
+    if found.ndim or not np.isfinite(found):
+        raise InvalidInput(Problem(where, "it is no place", "give (x, y) or a complex number"))
+    return complex(found)
+
+
 @checked
 @one_thread
-def dyads(
-    poses: Any, *, velocities: Mapping[int, Any] | None = None, accelerations: Mapping[int, Any] | None = None
-) -> Dyads:
+def dyads(poses: Any, *, velocities: Any = None, accelerations: Any = None) -> Dyads:
     """Return the dyads RR, PR and RP that guide a body through poses (n, 3): x, y and the angle in radians.
 
-    Five poses have four dyads at most, `found`. `velocities` and `accelerations` are those of `tasks.poses`. Raises
-    InvalidInput for equal poses.
+    Five poses have four dyads at most, `found`; four have a `curve` of them and two sliders; three have one for each
+    fixed centre, `with_centre`, and each moving point, `with_point`. `velocities` and `accelerations` are those of
+    `tasks.poses`. Raises InvalidInput for equal poses.
 
     >>> angles = np.array([0.0, 0.4, 0.9, 1.3, 1.8])
     >>> crank = np.exp(1j * np.array([0.2, 0.9, 1.7, 2.2, 3.1]))  # a body on a crank of length 1 about zero
-    >>> for dyad in dyads(np.stack([crank.real, crank.imag, angles], axis=1)):
+    >>> plate = np.stack([crank.real, crank.imag, angles], axis=1)
+    >>> for dyad in dyads(plate):
     ...     print(dyad.kind, round(dyad.length, 6))
     RR 0.248484
     RR 0.455318
     RR 1.0
     RR 3.568724
+    >>> round(dyads(plate[:3]).with_centre(0).length, 6)
+    1.0
     """
     return dyads_of(poses_task(poses, velocities, accelerations))
 
 
-def poses_task(given: Any, velocities: Mapping[int, Any] | None, accelerations: Mapping[int, Any] | None) -> PoseTask:
+def poses_task(given: Any, velocities: Any, accelerations: Any) -> PoseTask:
     """Return the task of poses of a body without a name."""
     if isinstance(given, PoseTask):
         return given
@@ -297,18 +615,82 @@ def poses_task(given: Any, velocities: Mapping[int, Any] | None, accelerations: 
 def dyads_of(task: PoseTask) -> Dyads:
     """Return the dyads of a task of poses."""
     unit = _Unit.of(task.z, task.u)
+    special = _special(task, unit)
+    if special is not None:
+        return special
     rows = rows_of(task, unit)
     _, sizes, right = np.linalg.svd(rows)
     rank = int(np.sum(sizes > DEPENDENT * sizes[0]))
     basis = right[rank:].T
     freedom = basis.shape[1] - 3
+    note = "" if rank == task.count or freedom < 0 else "the poses depend on each other"
     if freedom < 0:
         return Dyads(task, 0, (), f"{count_phrase(task.count, 'pose')} are more than a dyad can meet", basis, unit)
     if freedom == 0:
         forms = np.einsum("ji,njk,kl->nil", basis, QUADRICS, basis)
         found = (dyad_of(basis @ point, unit) for point in real_ones(common_points(forms)))
-        return Dyads(task, 0, tuple(sorted(filter(None, found), key=_order)), "", basis, unit)
-    return Dyads(task, freedom, (), "", basis, unit)
+        return Dyads(task, 0, tuple(sorted(filter(None, found), key=_order)), note, basis, unit)
+    sliders = _sliders(basis, unit) if freedom == 1 else ()
+    return Dyads(task, freedom, sliders, note, basis, unit)
+
+
+def _sliders(basis: Number, unit: _Unit) -> tuple[Dyad, ...]:
+    """Return the PR and the RP dyad of four poses: k and alpha, or k and beta, are zero."""
+    found = []
+    for zero in ([0, 1, 2], [0, 3, 4]):
+        _, sizes, right = np.linalg.svd(basis[zero])
+        if sizes[-1] > DEPENDENT:
+            # exactly zero, so that rounding makes no crank of it
+            q = basis @ right[-1]
+            q[zero] = 0.0
+            found.append(dyad_of(q, unit))
+    return tuple(filter(None, found))
+
+
+def _special(task: PoseTask, unit: _Unit) -> Dyads | None:
+    """Return what a body that only turns or only shifts needs, None for any other."""
+    z, u = task.z, task.u
+    turning = any(abs(w) > ALIKE * abs(v) for v, w in task.velocities.values())
+    if len(z) > 1 and np.max(np.abs(u - u[0])) < ALIKE and not turning:
+        return Dyads(task, 2, (), f"the body only shifts: {_shifting(z)}", np.eye(COEFFICIENTS), unit)
+    moved = z + u * unit.point
+    if (
+        len(z) > 1
+        and np.max(np.abs(moved - unit.place)) < ALIKE * max(extent(z), abs(unit.point), 1e-300)
+        and not task.velocities
+    ):
+        x, y = (round(v, 12) + 0.0 for v in (unit.place.real, unit.place.imag))
+        note = f"the body only turns: a pin at ({x:.6g}, {y:.6g}) takes it through all poses"
+        return Dyads(task, 2, (), note, np.eye(COEFFICIENTS), unit)
+    return None
+
+
+def _shifting(z: Number) -> str:
+    found = circle_through(z)
+    if found is None:
+        return "all places are on a line, so that a slide does"
+    _, radius, off = found
+    if off > DEPENDENT**0.5 * radius:
+        return "its places are on no circle, so that no dyad takes it there"
+    return f"parallel cranks of length {radius:.6g} do, at any two of its points"
+
+
+def circle_through(z: Number) -> tuple[complex, float, float] | None:
+    """Return centre, radius and greatest deviation of the circle that fits places best, None where they are in line.
+
+    >>> circle_through(np.array([1, 1j, -1]))[1]
+    1.0
+    """
+    middle, size = complex(np.mean(z)), extent(z)
+    w = (z - middle) / size
+    matrix = np.stack([2.0 * w.real, 2.0 * w.imag, np.ones(len(w))], axis=-1)
+    (x, y, c), _, rank, _ = np.linalg.lstsq(matrix, np.abs(w) ** 2, rcond=DEPENDENT)
+    if rank < 3:
+        return None
+    centre = complex(x, y)
+    radius = float(np.sqrt(max(c + abs(centre) ** 2, 0.0)))
+    off = float(np.max(np.abs(np.abs(w - centre) - radius)))
+    return middle + size * centre, size * radius, size * off
 
 
 def _order(dyad: Dyad) -> tuple[int, float, float, float]:

@@ -8,7 +8,7 @@ body A and B.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -66,6 +66,10 @@ class Linkage(ShortRepr):
         """The sum of all lengths, and the distances of fixed pivots."""
         return float(sum(self.lengths) + abs(self.pivots[0] - self.pivots[-1])) if self.pivots else sum(self.lengths)
 
+    def driven_by(self, driver: str) -> Linkage:
+        """Return the linkage with one of its drivers alone."""
+        return replace(self, drivers={driver: self.drivers[driver]})
+
     def mechanism(self, driver: str, values: Number = None) -> Mechanism:
         """Return the mechanism, drawn at the first precision position, with one of its drivers."""
         sketch = {letter: (place.real, place.imag) for letter, place in self.places.items()}
@@ -79,7 +83,7 @@ class Candidates:
     """What a method gives: `linkages`, `complete`, what of how many there are, and a `note` on what is special.
 
     `found` may be the dyads that they are made of. `nearest` says where there are none how far a task would have to
-    give, and which tolerance would do.
+    give, and which tolerance would do. `is_family` marks some linkages of infinitely many.
     """
 
     linkages: Iterable[Linkage]
@@ -87,6 +91,7 @@ class Candidates:
     note: str = ""
     found: object = None
     nearest: str = ""
+    is_family: bool = False
 
     def __iter__(self) -> Iterator[Linkage]:
         return iter(self.linkages)

@@ -13,11 +13,14 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.display import DisplaysPicture, aligned_text, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
-from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
-from compoundkin.dimensional.dyads import dyads_of
-from compoundkin.dimensional.linkages import Candidates, of_dyads, pairs_of
-from compoundkin.dimensional.tasks import COMPACTNESS, Conditions, PoseTask, Task
+from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
+from compoundkin.dimensional.linkages import Candidates
+from compoundkin.dimensional.motion_generation import few_poses_with_timing, five_poses, four_poses, three_poses
+from compoundkin.dimensional.tasks import COMPACTNESS, Conditions, PoseTask, Task, TimedPointTask
 from compoundkin.model.mechanism import Mechanism
+
+# Of a family no more solutions are kept.
+KEPT = 40
 
 
 @dataclass(frozen=True)
@@ -29,16 +32,13 @@ class Method:
     fits: Callable[[Any], bool] = lambda task: True
 
 
-def five_poses(task: PoseTask) -> Candidates:
-    """Return all linkages through five poses: pairs of the four dyads at most."""
-    found = dyads_of(task)
-    pairs = pairs_of(found.found)
-    complete = f"{count_phrase(len(found), 'real dyad')} of 4, {count_phrase(len(pairs), 'linkage')}"
-    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, found.note, found)
-
-
 # In this order: the first that fits a task is taken.
-METHODS: tuple[Method, ...] = (Method(PoseTask, five_poses, lambda task: task.count == 5),)
+METHODS: tuple[Method, ...] = (
+    Method(PoseTask, five_poses, lambda task: task.count == 5),
+    Method(PoseTask, four_poses, lambda task: task.count == 4),
+    Method(PoseTask, three_poses, lambda task: task.count == 3),
+    Method(TimedPointTask, few_poses_with_timing, lambda task: 3 <= len(task.points) <= 5),
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -133,10 +133,16 @@ def synthesise(
         raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
     candidates = method.run(asked)
     found = [judged(one, asked.conditions, asked.tolerance) for one in candidates]
-    good = [one for one in found if isinstance(one, SolvedLinkage)]
-    bad = tuple(one for one in found if isinstance(one, Rejection))
-    good.sort(key=_rank(asked.conditions.prefer))
-    return Answer(asked, tuple(good), bad, candidates.complete, candidates.note, candidates.nearest, candidates)
+    bad = [one for one in found if isinstance(one, Rejection)]
+    good = sorted((one for one in found if isinstance(one, SolvedLinkage)), key=_rank(asked.conditions.prefer))
+    complete = candidates.complete
+    if candidates.is_family and len(good) > KEPT:
+        complete = f"{complete}, the best {KEPT} of {len(good)} without defects"
+        good = good[:KEPT]
+    checks = [confirmed(one) for one in good]
+    bad += [one for one in checks if isinstance(one, Rejection)]
+    solutions = tuple(one for one in checks if isinstance(one, SolvedLinkage))
+    return Answer(asked, solutions, tuple(bad), complete, candidates.note, candidates.nearest, candidates)
 
 
 def _rank(prefer: str) -> Callable[[SolvedLinkage], tuple[float, ...]]:

@@ -238,8 +238,8 @@ def poses(
     link: str,
     poses: Any,
     *,
-    velocities: Mapping[int, Any] | None = None,
-    accelerations: Mapping[int, Any] | None = None,
+    velocities: Any = None,
+    accelerations: Any = None,
     tolerance: float = 0.0,
 ) -> PoseTask:
     """Return the task of motion generation: a body takes poses, three to five of them exactly.
@@ -252,7 +252,7 @@ def poses(
     'plate through 3 poses'
     """
     z, u = read_poses("poses", poses)
-    rates = {key: _twists(key, given or {}, len(z)) for key, given in
+    rates = {key: _twists(key, given, len(z)) for key, given in
              (("velocities", velocities), ("accelerations", accelerations))}  # fmt: skip
     lost = sorted(set(rates["accelerations"]) - set(rates["velocities"]))
     if lost:
@@ -392,9 +392,13 @@ def extent(place: Number) -> float:
     return float(np.max(np.abs(np.subtract.outer(place, place)), initial=0.0)) or 1.0
 
 
-def _twists(where: str, given: Mapping[int, Any], count: int) -> dict[int, tuple[complex, float]]:
+def _twists(where: str, given: Any, count: int) -> dict[int, tuple[complex, float]]:
     """Return twists by the index of their pose."""
     found = dict[int, tuple[complex, float]]()
+    if given is None:
+        return found
+    if not isinstance(given, Mapping):
+        raise InvalidInput(Problem(where, "they are no table by the index of a pose", "write {0: (x, y, angular)}"))
     for index, twist in given.items():
         if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < count:
             raise InvalidInput(Problem(where, f"there is no pose {index!r}", f"they are 0 to {count - 1}"))

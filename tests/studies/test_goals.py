@@ -16,9 +16,8 @@ from compoundkin.studies.goals.clearance_constraint import clearance
 from compoundkin.studies.goals.constraints import assembles, at_least, at_most, box, distance, full_turn, transmits
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
 from compoundkin.studies.goals.driver_schedule import DriverSchedule
-from compoundkin.studies.goals.function_goal import function
 from compoundkin.studies.goals.goal import DesignConstraint, Goal
-from compoundkin.studies.goals.path_goals import path, poses, trace
+from compoundkin.studies.goals.path_goals import function, path, poses, trace
 from compoundkin.studies.goals.range_goals import dwell, even, straight_line
 from compoundkin.studies.goals.value_goals import greatest, least, target
 from compoundkin.studies.responses import studied_path

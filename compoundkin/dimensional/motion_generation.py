@@ -1,0 +1,189 @@
+"""Linkages that guide a body through three, four or five poses, and a point at given crank angles.
+
+Pairs of dyads on the body are linkages. Of the curve of dyads through four poses, and of the plane of them through
+three, some are taken: those with given fixed pivots, else places spread over the curve or over the region.
+
+A path with timing is a motion: of a body that turns like the crank and whose point goes through the points. A four-bar
+that guides that body has two cognates whose cranks turn like it (S. Roberts, On three-bar motion in plane space, Proc.
+London Math. Soc. 7 (1875) 14-23; J. M. McCarthy and G. S. Soh, Geometric Design of Linkages, section 4.5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import count_phrase
+from compoundkin.base.errors import InvalidInput
+from compoundkin.dimensional.cognates import crank_cognates
+from compoundkin.dimensional.dyads import PR, RR, Dyad, Dyads, circle_through, dyads_of
+from compoundkin.dimensional.linkages import Candidates, Linkage, of_dyads, pairs_of
+from compoundkin.dimensional.tasks import Conditions, PoseTask, TimedPointTask, extent
+
+# So many dyads of a curve are paired, of those whose crank passes the poses in order or that may be driven.
+OF_CURVE = 16
+# Of the pairs of a family so many are tried at most, spread over all.
+MOST_PAIRS = 96
+# Fixed pivots are tried on a grid of so many places each way.
+GRID = 4
+# Without a region pivots are sought so many extents of the poses around their middle.
+AROUND = 1.5
+# Dyads with longer links, in extents of the poses, are of no use.
+LONGEST = 20.0
+
+
+def five_poses(task: PoseTask) -> Candidates:
+    """Return all linkages through five poses: pairs of the four dyads at most."""
+    found = dyads_of(task)
+    if found.freedom:
+        return _family(task, found)
+    pairs = pairs_of(found.found)
+    complete = f"{count_phrase(len(found), 'real dyad')} of 4, {count_phrase(len(pairs), 'linkage')}"
+    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, found.note, found)
+
+
+def four_poses(task: PoseTask) -> Candidates:
+    """Return linkages through four poses: pairs of dyads spread over the curve, and of the two sliders."""
+    found = dyads_of(task)
+    if found.freedom != 1:
+        return _family(task, found)
+    given = task.conditions.ground
+    chosen = [_nearest(found, place) for place in given] if given else _spread(task, found)
+    dyads = [*found, *chosen]
+    pairs = _some([pair for pair in pairs_of(dyads) if len(given) < 2 or all(dyad in chosen for dyad in pair)])
+    complete = f"{len(chosen)} dyads of a curve with 2 sliders, {count_phrase(len(pairs), 'linkage')}"
+    note = "the dyads through four poses form a curve: any two of it are a linkage"
+    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, note, found, is_family=True)
+
+
+def three_poses(task: PoseTask) -> Candidates:
+    """Return linkages through three poses: pairs of dyads with given pivots, or pivots on a grid over the region."""
+    return _family(task, dyads_of(task))
+
+
+def few_poses_with_timing(task: TimedPointTask) -> Candidates:
+    """Return four-bars and slider-cranks whose coupler point is at points when the crank has turned by angles."""
+    turned = PoseTask("coupler", task.points, np.exp(1j * task.angles), conditions=Conditions())
+    count = len(task.points)
+    found = dyads_of(turned)
+    if found.freedom:
+        dyads = list(found) + (_spread(turned, found) if found.freedom == 1 else _of_grid(turned, found))
+    else:
+        dyads = list(found)
+    # a slider has a cognate too, but two sliders have no crank
+    pairs = [pair for pair in pairs_of(dyads) if {dyad.kind for dyad in pair} in ({RR}, {RR, PR})]
+    made = [
+        one for pair in (_some(pairs)[::2] if count < 5 else pairs) for one in crank_cognates(turned.z, turned.u, *pair)
+    ]
+    of = "4" if count == 5 else "a family"
+    complete = f"{count_phrase(len(dyads), 'dyad')} of {of}, {count_phrase(len(made), 'linkage')}"
+    note = found.note if count == 5 else f"{count} points with timing leave a family, of which some are tried"
+    return Candidates(_same_crank(made, task.angles), complete, note, found, is_family=count < 5)
+
+
+def _same_crank(made: list[Linkage], angles: Number) -> Iterator[Linkage]:
+    """Yield linkages that their crank alone drives, for the angles are its."""
+    for one in made:
+        name = next(iter(one.drivers))
+        yield one.driven_by(name)
+
+
+def _family(task: PoseTask, found: Dyads) -> Candidates:
+    """Return some linkages of a family of two freedoms in each dyad, or of a body that only shifts or turns."""
+    if found.freedom == 1:
+        dyads = [*found, *_spread(task, found)]
+    elif found.basis.shape[0] == found.basis.shape[1]:
+        return _of_special(task, found)
+    else:
+        dyads = _of_grid(task, found)
+    pairs = _some(pairs_of(dyads))
+    complete = f"{count_phrase(len(dyads), 'dyad')} of a family, {count_phrase(len(pairs), 'linkage')}"
+    note = found.note or "every fixed pivot has a dyad through three poses: any two of them are a linkage"
+    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, note, found, is_family=True)
+
+
+def _of_special(task: PoseTask, found: Dyads) -> Candidates:
+    """Return parallel cranks for a body that only shifts on a circle; nothing is needed but one pair for others."""
+    circle = circle_through(task.z)
+    if "parallel cranks" not in found.note or circle is None:
+        return Candidates((), "no linkage of two dyads", found.note, found, nearest=found.note)
+    centre, radius, _ = circle
+    arms = (0j, radius * 1j, complex(radius), radius * (1 + 1j)) if not task.conditions.ground else tuple(
+        complex((place - centre) / task.u[0]) for place in task.conditions.ground)  # fmt: skip
+    dyads = [Dyad(RR, complex(centre + task.u[0] * arm), arm, None, radius) for arm in arms]
+    pairs = pairs_of(dyads)
+    complete = f"{count_phrase(len(dyads), 'crank')} of a family, {count_phrase(len(pairs), 'parallelogram')}"
+    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, found.note, found, is_family=True)
+
+
+def _some(pairs: list[tuple[Dyad, Dyad]]) -> list[tuple[Dyad, Dyad]]:
+    """Return no more than `MOST_PAIRS`, spread evenly."""
+    if len(pairs) <= MOST_PAIRS:
+        return pairs
+    return [pairs[int(k)] for k in np.linspace(0, len(pairs) - 1, MOST_PAIRS).round()]
+
+
+def _nearest(found: Dyads, place: complex) -> Dyad:
+    """Return the dyad of a curve whose fixed centre is nearest to a place."""
+    try:
+        return found.with_centre(place)
+    except InvalidInput:
+        apart = np.abs(found.curve.centres - place)
+        return found.curve[int(np.nanargmin(np.where(np.isfinite(apart), apart, np.inf)))]
+
+
+def _spread(task: PoseTask, found: Dyads) -> list[Dyad]:
+    """Return dyads spread over the curve: within the conditions and of sensible lengths, by the arc of the centres."""
+    curve, size = found.curve, extent(task.z)
+    middle = complex(np.mean(task.z))
+    with np.errstate(invalid="ignore"):
+        good = (np.abs(curve.centres - middle) < LONGEST * size) & (curve.lengths < LONGEST * size)
+        good &= (np.abs(curve.points) < LONGEST * size + np.abs(middle)) & (curve.lengths > 1e-3 * size)
+    if task.conditions.region is not None:
+        good &= np.array([task.conditions.holds(complex(c)) for c in curve.centres])
+    if task.conditions.lengths is not None:
+        low, high = task.conditions.lengths
+        good &= (curve.lengths >= low) & (curve.lengths <= high)
+    indices = np.flatnonzero(good)
+    if not len(indices):
+        return []
+    # far centres count less: the arc of the curve seen from the middle of the poses
+    seen = (curve.centres[indices] - middle) / (size + np.abs(curve.centres[indices] - middle))
+    steps = np.abs(np.diff(seen)) * (np.diff(indices) == 1)
+    along = np.append(0.0, np.cumsum(steps))
+    places = (np.arange(OF_CURVE) + 0.5) * along[-1] / OF_CURVE
+    chosen = np.unique(indices[np.clip(np.searchsorted(along, places), 0, len(indices) - 1)])
+    return [curve[int(k)] for k in chosen]
+
+
+def _of_grid(task: PoseTask, found: Dyads) -> list[Dyad]:
+    """Return the dyads of given pivots, or of those on a grid over the region."""
+    conditions, size = task.conditions, extent(task.z)
+    middle = complex(np.mean(task.z))
+    if conditions.region is None:
+        low, high = middle - AROUND * size * (1 + 1j), middle + AROUND * size * (1 + 1j)
+    else:
+        low = complex(np.min(conditions.region.real), np.min(conditions.region.imag))
+        high = complex(np.max(conditions.region.real), np.max(conditions.region.imag))
+    steps = (np.arange(GRID) + 0.5) / GRID
+    grid = [complex(low.real + s * (high - low).real, low.imag + t * (high - low).imag) for s in steps for t in steps]
+    places = [*conditions.ground, *(place for place in grid if conditions.holds(place) and len(conditions.ground) < 2)]
+    dyads = []
+    for place in places:
+        try:
+            dyads.append(found.with_centre(place))
+        except InvalidInput:
+            continue
+    for angle in (0.0, np.pi / 2) if len(conditions.ground) < 2 else ():
+        for kind in (PR, "RP"):
+            try:
+                dyads.append(found.with_line(float(angle), kind))
+            except InvalidInput:
+                continue
+    good = [dyad for dyad in dyads if dyad.length < LONGEST * size]
+    if conditions.lengths is not None:
+        low_length, high_length = conditions.lengths
+        good = [dyad for dyad in good if dyad.kind != RR or low_length <= dyad.length <= high_length]
+    return good
