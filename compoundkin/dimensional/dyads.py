@@ -453,7 +453,7 @@ def _as_curve(loops: list[Number], basis: Number, unit: _Unit) -> BurmesterCurve
 
 
 @dataclass(frozen=True)
-class Pole:
+class RotationPole:
     """The pole of two poses: the place of the frame, and the point of the body, that are one in both.
 
     `poses` are their indices. Of a pose with a velocity it is the pole of that motion, both indices are the pose's.
@@ -489,18 +489,18 @@ class Dyads:
         return curve_of(self.basis, self.unit)
 
     @cached_property
-    def poles(self) -> tuple[Pole, ...]:
+    def poles(self) -> tuple[RotationPole, ...]:
         """The poles of all pairs of poses that differ in their angle, then those of velocities."""
         z, u = self.task.z, self.task.u
         found = []
         for i, j in combinations(range(len(z)), 2):
             if abs(u[i] - u[j]) > ALIKE:
                 point = (z[j] - z[i]) / (u[i] - u[j])
-                found.append(Pole((i, j), complex(z[i] + u[i] * point), complex(point)))
+                found.append(RotationPole((i, j), complex(z[i] + u[i] * point), complex(point)))
         for i, (v, w) in self.task.velocities.items():
             if abs(w) > ALIKE * abs(v):
                 arm = 1j * v / w
-                found.append(Pole((i, i), complex(z[i] + arm), complex(arm * np.conj(u[i]))))
+                found.append(RotationPole((i, i), complex(z[i] + arm), complex(arm * np.conj(u[i]))))
         return tuple(found)
 
     def with_centre(self, place: Any) -> Dyad:

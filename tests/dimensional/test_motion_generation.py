@@ -212,8 +212,9 @@ def test_five_poses_give_verified_mechanisms_that_pass_them():
 def test_defects_are_those_of_the_motion():
     """A branch defect: the driver, turned either way to some position, does not get there."""
     answer = ck.synthesise(ck.tasks.poses("plate", radians(SLIDER)))
-    assert {one.reason for one in answer.rejected} == {"branch"}
-    for one in answer.rejected:
+    stopped = [one for one in answer.rejected if one.reason == "branch"]
+    assert stopped
+    for one in stopped:
         values = one.candidate.drivers[one.driver]
         z = one.candidate.z["plate"]
         arrives = []
