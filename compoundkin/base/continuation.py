@@ -1,18 +1,21 @@
 """Continuation: solutions traced while a system changes, by predictor and corrector with a step length for every path.
 
+`follow_paths` follows the solutions of a homotopy H(x, t) = 0 from t = 0 to 1; `trace_paths` any others.
+
 Source: E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003, chapters 2 and 6.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.linear import solve
-from compoundkin.base.newton import NewtonResult, System, newton
+from compoundkin.base.newton import NewtonResult, System, largest_change, newton
 
 
 class StepLengths(NamedTuple):
@@ -81,6 +84,69 @@ def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number,
     three = slope(x + step / 2 * two, t + h / 2)
     four = slope(x + step * three, t + h)
     return x + step / 6 * (one + 2 * two + 2 * three + four)
+
+
+class MovingSystem(NamedTuple):
+    """A system H(x, t) = 0 of paths.
+
+    It gives residuals (paths, d), its derivatives by x (paths, d, d) and by t (paths, d).
+
+    Each is called with the indices of some paths, their x (paths, d) and t (paths,).
+    """
+
+    value: Callable[[Number, Number, Number], Number]
+    by_x: Callable[[Number, Number, Number], Number]
+    by_t: Callable[[Number, Number, Number], Number]
+
+
+class Corrector(NamedTuple):
+    """The control of corrections by Newton's method, in the measure `size(step, x)`.
+
+    They must end below `accurate` within so many `steps`, none longer than `near`: then the path they return to is the
+    one that was left.
+    """
+
+    accurate: float
+    near: float
+    steps: int
+    size: Callable[[Number, Number], Number] = largest_change
+
+
+def follow_paths(moving: MovingSystem, start: Number, lengths: StepLengths, corrector: Corrector) -> Number:
+    """Follow paths from `start` (paths, d) at t = 0 to t = 1. Those that do not arrive there are NaN.
+
+    >>> moving = MovingSystem(
+    ...     lambda i, x, t: x**2 - (1.0 + 3.0 * t)[:, None],
+    ...     lambda i, x, t: 2.0 * x[..., None],
+    ...     lambda i, x, t: np.full(x.shape, -3.0),
+    ... )
+    >>> lengths, corrector = StepLengths(0.1, 0.5, 1e-6, 2, 99), Corrector(1e-9, 0.1, 3)
+    >>> follow_paths(moving, np.array([[1.0], [-1.0]]), lengths, corrector).real.round(6).tolist()
+    [[2.0], [-2.0]]
+    """
+    x, t = np.array(start, dtype=complex), np.zeros(len(start))
+
+    def step(i: Number, longest: Number) -> StepResult:
+        h = np.minimum(longest, 1 - t[i])
+        ahead = np.where(h == 1 - t[i], 1.0, t[i] + h)
+        guess = runge_kutta(partial(_slope, moving, i), x[i], t[i], h)
+
+        def system(x: Number) -> tuple[Number, Number]:
+            return moving.value(i, x, ahead), moving.by_x(i, x, ahead)
+
+        found = newton(system, guess, 0.0, corrector.steps, corrector.size)
+        good = (found.longest < corrector.near) & (found.last < corrector.accurate)
+        x[i[good]], t[i[good]] = found.x[good], ahead[good]
+        return StepResult(h, good, t[i] >= 1)
+
+    with np.errstate(all="ignore"):
+        arrived = trace_paths(step, np.ones(len(start), dtype=bool), lengths)
+    return np.where(arrived[:, None], x, np.nan)
+
+
+def _slope(moving: MovingSystem, i: Number, x: Number, t: Number) -> Number:
+    """Return dx/dt = -H_x^-1 H_t along paths."""
+    return -solve(moving.by_x(i, x, t), moving.by_t(i, x, t))
 
 
 def correct_in_hyperplane(system: System, guess: Number, across: Number, converged: float, steps: int) -> NewtonResult:

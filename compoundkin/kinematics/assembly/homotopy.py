@@ -12,17 +12,13 @@ continuation, Appl. Math. Comput. 29 (1989) 123.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import lru_cache
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.continuation import StepLengths, StepResult, runge_kutta, trace_paths
-from compoundkin.base.linear import solve
-from compoundkin.base.newton import newton
+from compoundkin.base.continuation import Corrector, MovingSystem, StepLengths, follow_paths
 from compoundkin.kinematics.assembly.loop_closure import GroupGraph, random_equations
 from compoundkin.kinematics.assembly.rotation_equations import (
     RotationEquations,
@@ -35,25 +31,9 @@ from compoundkin.kinematics.assembly.rotation_equations import (
 
 # The paths of the generic instance are followed this often, with other random numbers, to find any that was lost.
 RUNS = 2
-# The corrector must end below ACCURATE (of each unknown) within CORRECTIONS steps, its first step below NEAR: then
-# the path it returns to is the one it left. A step is halved when that fails, doubled after some successes.
-ACCURATE = 1e-8
-NEAR = 1e-3
-CORRECTIONS = 3
+# Steps and corrections, in parts of each unknown.
 LENGTHS = StepLengths(first=0.02, longest=0.1, shortest=1e-9, easy=3, most=2000)
-
-
-class MovingSystem(NamedTuple):
-    """A system H(x, t) = 0 of paths.
-
-    It gives residuals (paths, d), its derivatives by x (paths, d, d) and by t (paths, d).
-
-    Each is called with the indices of some paths, their x (paths, d) and t (paths,).
-    """
-
-    value: Callable[[Number, Number, Number], Number]
-    by_x: Callable[[Number, Number, Number], Number]
-    by_t: Callable[[Number, Number, Number], Number]
+CORRECTOR = Corrector(accurate=1e-8, near=1e-3, steps=3, size=relative)
 
 
 @lru_cache(maxsize=64)
@@ -74,7 +54,7 @@ def roots(loops: RotationEquations, graph: GroupGraph) -> Number:
     """Find candidates for all solutions (poses, candidates, unknowns). Paths that go to infinity give NaN."""
     start, x = generic(graph)
     poses = len(loops.constant)
-    ends = follow_paths(_between(start, loops, len(x)), np.tile(x, (poses, 1)))
+    ends = follow_paths(_between(start, loops, len(x)), np.tile(x, (poses, 1)), LENGTHS, CORRECTOR)
     return ends.reshape(poses, len(x), -1)
 
 
@@ -114,7 +94,7 @@ def _all_paths(loops: RotationEquations, rng: np.random.Generator) -> Number:
     twist = np.exp(2j * np.pi * rng.random())
     first = np.stack([_start(start, patches, kept) for kept in combinations(range(2 * loops.count), loops.count)])
     forms = twist * start[0][:, :, None] * start[1][:, None, :]
-    ends = follow_paths(_bilinear(forms, target - forms, patches), first)
+    ends = follow_paths(_bilinear(forms, target - forms, patches), first, LENGTHS, CORRECTOR)
     full = ends[:, :size] @ bases[0].T
     with np.errstate(all="ignore"):
         return full[:, 1:] / full[:, :1]
@@ -182,29 +162,3 @@ def _bilinear(start: Number, change: Number, patches: list[Number]) -> MovingSys
 
 def _random(rng: np.random.Generator, *shape: int) -> Number:
     return rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
-
-
-def follow_paths(moving: MovingSystem, start: Number) -> Number:
-    """Follow paths from `start` (paths, d) at t = 0 to t = 1. Those that do not arrive there are NaN."""
-    x, t = np.array(start, dtype=complex), np.zeros(len(start))
-
-    def step(i: Number, longest: Number) -> StepResult:
-        h = np.minimum(longest, 1 - t[i])
-        ahead = np.where(h == 1 - t[i], 1.0, t[i] + h)
-        slope = partial(_slope, moving, i)
-        guess = runge_kutta(slope, x[i], t[i], h)
-        found = newton(
-            lambda x: (moving.value(i, x, ahead), moving.by_x(i, x, ahead)), guess, 0.0, CORRECTIONS, relative
-        )
-        good = (found.longest < NEAR) & (found.last < ACCURATE)
-        x[i[good]], t[i[good]] = found.x[good], ahead[good]
-        return StepResult(h, good, t[i] >= 1)
-
-    with np.errstate(all="ignore"):
-        arrived = trace_paths(step, np.ones(len(start), dtype=bool), LENGTHS)
-    return np.where(arrived[:, None], x, np.nan)
-
-
-def _slope(moving: MovingSystem, i: Number, x: Number, t: Number) -> Number:
-    """Return dx/dt = -H_x^-1 H_t along paths."""
-    return -solve(moving.by_x(i, x, t), moving.by_t(i, x, t))

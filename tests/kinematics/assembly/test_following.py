@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from compoundkin.base.continuation import MovingSystem, follow_paths
 from compoundkin.kinematics.assembly import homotopy, rotation_equations
-from compoundkin.kinematics.assembly.homotopy import MovingSystem, follow_paths
+from compoundkin.kinematics.assembly.homotopy import CORRECTOR, LENGTHS
 from compoundkin.kinematics.assembly.loop_closure import random_equations, rotation_equations_of
 from compoundkin.kinematics.assembly.rotation_equations import distinct, jacobian, polish, residual
 from tests.kinematics.assembly.cases import triad, with_slides
@@ -17,7 +18,7 @@ def test_paths_end_at_all_roots_and_not_at_infinity():
         lambda i, z, t: ((1 - t)[:, None] * 3j * z**2 + t[:, None] * (2 * z - 5))[..., None],
         lambda i, z, t: -1j * (z**3 - 1) + (z - 2) * (z - 3),
     )
-    ends = follow_paths(moving, np.exp(2j * np.pi * np.arange(3) / 3)[:, None])[:, 0]
+    ends = follow_paths(moving, np.exp(2j * np.pi * np.arange(3) / 3)[:, None], LENGTHS, CORRECTOR)[:, 0]
     found = ends[np.isfinite(ends) & (np.abs(ends) < 1e6)]
     assert np.allclose(sorted(found.real), [2, 3], atol=1e-7)
     assert np.allclose(found.imag, 0, atol=1e-7)
