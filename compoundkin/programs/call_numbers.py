@@ -216,6 +216,10 @@ def output_arrays(out: Any, outputs: Mapping[str, bool], shape: tuple[int, ...])
         return {}
     if not isinstance(out, Mapping):
         raise InvalidInput(Problem("out", f"{short_repr(out)} is no table by name", 'write {"G.position": array}'))
+    if _are_plain(out, outputs, shape):
+        return {
+            name: array.reshape(prod(shape[:-1]), -1) if len(shape) > 1 else array[None] for name, array in out.items()
+        }
     problems = [_array_problem(name, array, outputs, shape) for name, array in out.items()
                 if not _can_hold(array, outputs.get(name), shape)]  # fmt: skip
     # arrays with memory of their own do not overlap
@@ -230,6 +234,25 @@ def output_arrays(out: Any, outputs: Mapping[str, bool], shape: tuple[int, ...])
     if len(shape) == 2:
         return dict(out)
     return {name: array.reshape(prod(shape[:-1]), *(shape[-1:] or (1,))) for name, array in out.items()}
+
+
+def _are_plain(out: Mapping[str, Any], outputs: Mapping[str, bool], shape: tuple[int, ...]) -> bool:
+    """Tell whether arrays are such as most callers give: right ones, each with memory of its own, and not a number."""
+    places = set()
+    for name, array in out.items():
+        is_vector = outputs.get(name)
+        if is_vector is None or type(array) is not np.ndarray or array.shape != shape or not shape:
+            return False
+        if array.dtype is not (COMPLEX if is_vector else FLOAT) or array.base is not None:
+            return False
+        if array.flags.num & PLAIN_FLAGS != PLAIN_FLAGS:
+            return False
+        places.add(id(array))
+    return len(places) == len(out)
+
+
+# Contiguous, aligned and writeable, as NumPy's interface numbers them.
+PLAIN_FLAGS = 0x1 | 0x100 | 0x400
 
 
 def _can_hold(array: Any, is_vector: bool | None, shape: tuple[int, ...]) -> bool:

@@ -9,6 +9,7 @@ them is read in full again, which reports it. A plan is kept only if it reads wh
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import takewhile
 from math import copysign, prod
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
@@ -22,7 +23,7 @@ from compoundkin.kinematics.solution import COUNTED
 from compoundkin.model.attributes import RATES as RATE_WORDS
 from compoundkin.model.elements import Drive
 from compoundkin.programs.call_numbers import COMPLEX, FLOAT, Call, CallNumbers, ReadyProgram, parameter_inputs
-from compoundkin.programs.graph.operation_graph import DRIVE, InputNumber
+from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
 from compoundkin.programs.recorded_path import PathVariants
 
 # So many plain numbers are kept as arrays, and so many plans.
@@ -181,6 +182,14 @@ class NumberPlace(NamedTuple):
             array = np.broadcast_to(array, self.whole)
         return array.reshape(self.rows).copy()
 
+    def laid_twice(self, array: Number) -> tuple[Number, Number]:
+        """Return an array in the form of inputs, one pose late and as it is, both in the memory of one copy."""
+        copy = np.empty((1, array.shape[-1] + 1))
+        late, row = copy[:, :-1], copy[:, 1:]
+        row[...] = array.reshape(self.rows)
+        copy[0, 0] = copy[0, 1]
+        return late, row
+
 
 class TimedDriver(NamedTuple):
     """A driver that moves in time: the inputs that it is, and the numbers that say how it does.
@@ -220,7 +229,8 @@ class CallPlan(ShortRepr):
     """What the numbers of calls of one form are to programs.
 
     `inputs` are the inputs in their order, `shape` is that of the call's arrays, `values` are the places of drivers'
-    values among the inputs, by name.
+    values among the inputs, by name. `before` are those of the values a pose before, of drivers that a call of one
+    design gives: they stand behind all inputs, in the values' own memory.
     """
 
     def __init__(self, path: PathVariants, arguments: Sequence[Any], numbers: CallNumbers, array: ArrayOf) -> None:
@@ -248,6 +258,13 @@ class CallPlan(ShortRepr):
         self._timed = [
             TimedDriver.of(one, inputs, names) for one, inputs in zip(drives, of_drives, strict=True) if in_time
         ]
+        row = (1, self.extent[1])
+        laid = {place.inputs[0] for place in self._places if place.rows == row == self.extent != (1, 1)}
+        moving = [name for name, k in self.values.items() if k in laid]
+        self.before = {name: len(self.inputs) + k for k, name in enumerate(moving)}
+        # by the place where a driver's values go
+        self._before = {self.values[name]: k for name, k in self.before.items()}
+        self._own += [ZERO] * len(self.before)
         self._fitted, self._order = fit(self.shape), max(output.attribute.order for output in path.outputs)
 
     def _place(self, number: int, names: tuple[InputNumber, ...], shape: tuple[int, ...]) -> NumberPlace:
@@ -276,6 +293,9 @@ class CallPlan(ShortRepr):
                         return None
                     given[inputs[1]] = self.array(number.imag)
             else:
+                if (before := self._before.get(inputs[0])) is not None:
+                    given[before], given[inputs[0]] = place.laid_twice(number)
+                    continue
                 if inputs[0] not in values and not np.isfinite(number).all():
                     return None
                 given[inputs[0]] = place.laid(number.real if len(inputs) > 1 else number)
@@ -361,7 +381,8 @@ class ReadCall:
     def numbers(self) -> CallNumbers:
         """Return the inputs by name."""
         plan = self.plan
-        return CallNumbers(dict(zip(plan.inputs, self.given, strict=True)), plan.shape, plan.still(self.zero))
+        # what stands behind the inputs is no number of a call
+        return CallNumbers(dict(zip(plan.inputs, self.given, strict=False)), plan.shape, plan.still(self.zero))
 
     def is_finite(self) -> bool:
         """Tell whether the drivers' values are finite; all else is."""
@@ -377,23 +398,29 @@ class ReadCall:
 class PlannedProgram(NamedTuple):
     """A program, and the places of its inputs among those of a call.
 
-    `is_watched` tells whether driver values that are not finite spoil the least margin, which is among the results.
+    `is_watched` tells whether driver values that are not finite spoil the least margin, which is among the results;
+    `vectors` are the results before it by name, and which are vectors.
     """
 
     program: ReadyProgram[Any]
     places: tuple[int, ...]
     is_watched: bool
+    vectors: Mapping[Any, bool]
 
     @classmethod
     def of(cls, program: ReadyProgram[Any], plan: CallPlan, least: Any) -> PlannedProgram | None:
         """Return the plan of a program with the least margin by this name; None where it has other inputs."""
         flat = program.flat
+        known = {name: k for k, name in enumerate(plan.inputs)}
+        known |= {InputNumber(DRIVE, name, BEFORE): k for name, k in plan.before.items()}
         names = [flat.graph.nodes[k].given for k in flat.inputs]
-        if any(name not in plan.inputs for name in names):
+        if any(name not in known for name in names):
             return None
         needed = flat.graph.needed(program.nodes[least])
         is_watched = all(flat.graph.input(plan.inputs[k]) in needed for k in plan.values.values())
-        return cls(program, tuple(plan.inputs.index(name) for name in names), is_watched)
+        outputs = takewhile(lambda item: item[0] != least, program.nodes.items())
+        vectors = {name: len(nodes) > 1 for name, nodes in outputs}
+        return cls(program, tuple(known[name] for name in names if name is not None), is_watched, vectors)
 
     def run(self, read: ReadCall, threads: int, given: Mapping[Any, Number] = MappingProxyType({})) -> list[Number]:
         """Compute the results of a call, in their order."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -90,9 +91,13 @@ class StepProgram(ShortRepr):
         graph = OperationGraph()
         ends = [InputNumber(DRIVE, "", part) for part in ("before", "after")]
         numbers = CallNumbers(dict.fromkeys(ends, value), value.shape, frozenset())
-        step = graph.apply("abs", graph.apply("sub", *map(graph.input, ends)))
-        least = graph.apply(LEAST, graph.apply("neg", step))
-        return ReadyProgram.of(graph, {"": (least,)}, numbers, self.backend)
+        return ReadyProgram.of(graph, {"": (longest_step(graph, *map(graph.input, ends)),)}, numbers, self.backend)
+
+
+def longest_step(graph: OperationGraph, before: int, value: int) -> int:
+    """Return the node of the longest step between values and those before them, less than zero."""
+    step = graph.apply("abs", graph.apply("sub", value, before))
+    return graph.apply(LEAST, graph.apply("neg", step))
 
 
 class LimitScreening(ShortRepr):
@@ -102,15 +107,22 @@ class LimitScreening(ShortRepr):
         self.recording, self.approach, self.backend = recording, approach, backend
         self._ready: dict[Any, ReadyProgram[int]] = {}
 
-    def is_clear(self, values: Mapping[str, Number], least: Number, numbers: Callable[[], CallNumbers]) -> bool:
+    def is_clear(
+        self,
+        values: Mapping[str, Number],
+        least: Number,
+        numbers: Callable[[], CallNumbers],
+        steps: Mapping[str, Number] = MappingProxyType({}),
+    ) -> bool:
         """Tell whether surely no design needs screening, as `needed` finds out of all of them.
 
-        `numbers` gives those of the call, where the drivers' values are not enough to know.
+        `numbers` gives those of the call, where the drivers' values are not enough to know; `steps` are the longest of
+        drivers, less than zero, as far as a program computed them beside.
         """
         margin = least.item() if least.size == 1 else float(least.min())
         return (
             margin >= NEAR
-            and margin >= self._safe_margin(values)
+            and margin >= self._safe_margin(values, steps)
             and (self.approach.is_passed(values) or not self._squares or self._clear.has(values, numbers))
         )
 
@@ -118,14 +130,16 @@ class LimitScreening(ShortRepr):
     def _clear(self) -> ClearApproaches:
         return ClearApproaches(self.approach)
 
-    def _safe_margin(self, values: Mapping[str, Number]) -> float:
-        return float(safe_margin(max(1.0, self._longest_step(values))))
+    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
+        return float(safe_margin(max(1.0, self._longest_step(values, steps))))
 
-    def _longest_step(self, values: Mapping[str, Number]) -> float:
+    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
         """Return the longest step of a driver, in its spacing."""
         longest = 0.0
         for name, value in values.items():
-            if value.shape[1] > 1:
+            if name in steps:
+                longest = max(longest, -steps[name].item() / self._spacings[name])
+            elif value.shape[1] > 1:
                 step = _longest_step(value) if value.size < MANY_VALUES else self._steps.longest(value)
                 longest = max(longest, step / self._spacings[name])
         return min(longest, float(MOST))

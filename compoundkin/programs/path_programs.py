@@ -32,7 +32,8 @@ from compoundkin.programs.dimensions import (
     dimension_values,
     mechanism_with,
 )
-from compoundkin.programs.limit_screening import DrawnApproach, LimitScreening, ScreenedDesigns
+from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
+from compoundkin.programs.limit_screening import DrawnApproach, LimitScreening, ScreenedDesigns, longest_step
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
@@ -40,8 +41,9 @@ from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_motion import ProgramOutput
 from compoundkin.programs.solved_designs import ProgramConfiguration, solve_designs, values_near_limits
 
-# The name of the least margin among the results of a program; no output has it.
-LEAST = ""
+# The name of the least margin among the results of a program, and before a driver's that of its longest step; no
+# output is named so.
+LEAST = " "
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -129,14 +131,24 @@ class PathPrograms(ShortRepr):
         read = tuple(one for one in self.dimensions if one.is_read)
         return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
-    def program(self, numbers: CallNumbers) -> ReadyProgram[str]:
-        """Return the program for numbers of this form; it computes all outputs, and last the least margin."""
-        if numbers.form not in self._programs:
+    def program(self, numbers: CallNumbers, moving: tuple[str, ...] = ()) -> ReadyProgram[str]:
+        """Return the program for numbers of this form; it computes all outputs, and then the least margin.
+
+        Last are the longest steps of the drivers `moving`, less than zero; their values a pose before are inputs too.
+        """
+        if (numbers.form, moving) not in self._programs:
             path = self.variant(numbers.still)
-            nodes = {**dict(zip(self.names, path.nodes, strict=True)), LEAST: (path.least,)}
             graph, carried = path.mechanism.graph, path.carried(numbers)
-            self._programs[numbers.form] = ReadyProgram.of(graph, nodes, numbers, self.chosen_backend, carried)
-        return self._programs[numbers.form]
+            nodes = {**dict(zip(self.names, path.nodes, strict=True)), LEAST: (path.least,)}
+            given = dict(numbers.given)
+            for name in moving:
+                value, before = (InputNumber(DRIVE, name, part) for part in ("0", BEFORE))
+                given[before] = given[value]
+                nodes[f"{LEAST}{name}"] = (longest_step(graph, graph.input(before), graph.input(value)),)
+            whole = replace(numbers, given=given)
+            program = ReadyProgram.of(graph, nodes, whole, self.chosen_backend, carried)
+            self._programs[numbers.form, moving] = program
+        return self._programs[numbers.form, moving]
 
     @cached_property
     def plans(self) -> CallPlans:
@@ -147,11 +159,14 @@ class PathPrograms(ShortRepr):
         """Return the values of a call; raises InvalidInput for what does not fit."""
         read = self.plans.read(call)
         if read is not None and type(threads) is int and threads > 0:
-            program = read.plan.program(None, read, LEAST, self._program_of_inputs)
+            before = read.plan.before
+            program = read.plan.program(None, read, LEAST, partial(self._program_of_inputs, tuple(before)))
             if program is not None:
-                given = {} if out is None else output_arrays(out, self._are_vectors(program.program), read.plan.shape)
-                *arrays, least = program.run(read, threads, given)
-                if self.limits.is_clear(read.driver_values, least, read.numbers):
+                given = {} if out is None else output_arrays(out, program.vectors, read.plan.shape)
+                arrays, count = program.run(read, threads, given), len(self.names)
+                least, steps = arrays[count], dict(zip(before, arrays[count + 1 :], strict=True))
+                arrays = arrays[:count]
+                if self.limits.is_clear(read.driver_values, least, read.numbers, steps):
                     return self.path_values(read.numbers, arrays, None, read.plan.shape)
                 # a full reading reports values that are not finite
                 return self.checked_values(self.numbers(call), arrays, least)
@@ -160,9 +175,9 @@ class PathPrograms(ShortRepr):
         given = {} if out is None else output_arrays(out, self._are_vectors(self.program(numbers)), numbers.shape)
         return self.computed(numbers, threads, given)
 
-    def _program_of_inputs(self, numbers: CallNumbers) -> ReadyProgram[str] | None:
+    def _program_of_inputs(self, moving: tuple[str, ...], numbers: CallNumbers) -> ReadyProgram[str] | None:
         """Return the program of numbers without seeds; None where it needs some."""
-        return None if self.variant(numbers.still).seeds else self.program(numbers)
+        return None if self.variant(numbers.still).seeds else self.program(numbers, moving)
 
     def numbers(self, call: Call, with_slopes: bool = False) -> CallNumbers:
         """Return the numbers of a call, perhaps with the slopes of laws; raises InvalidInput for what does not fit."""

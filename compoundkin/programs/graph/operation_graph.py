@@ -9,7 +9,7 @@ import struct
 import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from math import frexp
+from math import frexp, inf, nan
 
 import numpy as np
 
@@ -159,6 +159,10 @@ SIGN, TURNS = "sign", "turns"
 STEP = "step"
 
 
+# Part of a driver: its value a pose before.
+BEFORE = "before"
+
+
 # Part of a group's seeds: on which side of a singularity it was a pose before.
 SIDE = "side"
 
@@ -246,7 +250,16 @@ def _mul(graph: OperationGraph, a: int, b: int) -> int | None:
         if opposite is not None and opposite < one:
             # a difference that was taken the other way round before
             return graph.apply("neg", graph.apply("mul", opposite, other))
+        if node.operation == "inv" and node.operands[0] == other:
+            return _by_itself(graph, other)
     return x.operands[0] if a == b and x.operation == "sqrt" else None
+
+
+def _by_itself(graph: OperationGraph, node: int) -> int:
+    """Return a number divided by itself: one, or none where it is zero, infinite or none."""
+    size, zero, infinite = graph.apply("abs", node), graph.constant(0.0), graph.constant(inf)
+    is_finite = graph.apply("and", graph.apply("gt", size, zero), graph.apply("gt", infinite, size))
+    return graph.apply("select", is_finite, graph.constant(1.0), graph.constant(nan))
 
 
 def _by_number(graph: OperationGraph, one: int, other: int) -> int | None:
