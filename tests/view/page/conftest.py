@@ -103,20 +103,40 @@ class Opened:
         return getattr(self.view, name)
 
 
+@pytest.fixture(scope="session")
+def contexts(browser: Any) -> Callable[..., Any]:
+    """Contexts by their size and settings, each made once.
+
+    Each has an empty window that stays open: pages then share what a context begins anew with its first window, and
+    open at 0.45 s of CPU time each instead of 1.1.
+    """
+    made: dict[str, Any] = {}
+
+    def of(size: tuple[int, int], script: str, **how: Any) -> Any:
+        key = repr((size, script, sorted(how.items())))
+        if key not in made:
+            made[key] = browser.new_context(viewport={"width": size[0], "height": size[1]}, **how)
+            if script:
+                made[key].add_init_script(script)
+            made[key].new_page()
+        return made[key]
+
+    return of
+
+
 @pytest.fixture
-def opened(browser: Any) -> Iterator[Callable[..., Opened]]:
-    """Open a file in a new window; all windows are closed afterwards."""
-    contexts = []
+def opened(contexts: Callable[..., Any]) -> Iterator[Callable[..., Opened]]:
+    """Open a file in a new window; all windows are closed afterwards, and nothing is remembered of them."""
+    windows: list[Opened] = []
 
     def of(path: Path, size: tuple[int, int] = DESK, script: str = "", **how: Any) -> Opened:
-        contexts.append(browser.new_context(viewport={"width": size[0], "height": size[1]}, **how))
-        if script:
-            contexts[-1].add_init_script(script)
-        return Opened(contexts[-1], path)
+        windows.append(Opened(contexts(size, script, **how), path))
+        return windows[-1]
 
     yield of
-    for context in contexts:
-        context.close()
+    for window in windows:
+        window.value("localStorage.clear()")
+        window.close()
 
 
 @pytest.fixture(scope="session")
