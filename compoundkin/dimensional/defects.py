@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +28,7 @@ from compoundkin.dimensional.tasks import Conditions, extent
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at
 from compoundkin.kinematics.quantities import owner_of, quantity
-from compoundkin.model.attributes import TRANSMISSION_ANGLE
+from compoundkin.model.attributes import LEAST, TRANSMISSION_INDEX
 from compoundkin.model.mechanism import Mechanism
 
 ORDER, BRANCH, CIRCUIT, TURNING, TRANSMISSION, REGION, LENGTH, ASSEMBLY, ACCURACY = (
@@ -110,17 +110,25 @@ def judged(candidate: Linkage, conditions: Conditions, tolerance: float = 0.0) -
     return min(bad, key=lambda one: SEVERITY.index(one.reason))
 
 
-def confirmed(one: SolvedLinkage) -> SolvedLinkage | Rejection:
-    """Return a solution whose motion passes all checks, which solve nothing by the formulas that solved it."""
+def confirmed(one: SolvedLinkage, conditions: Conditions) -> SolvedLinkage | Rejection:
+    """Return a solution whose motion passes all checks, with its least transmission angle between the poses too."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             check = verify(one.motion)
+            least = least_transmission(one.motion)
     except CompoundkinError as problem:
         return Rejection(ACCURACY, str(problem), one.candidate, one.driver)
-    if check.passed:
-        return one
-    return Rejection(ACCURACY, f"its motion fails {', '.join(check.failed)}", one.candidate, one.driver)
+    if not check.passed:
+        return Rejection(ACCURACY, f"its motion fails {', '.join(check.failed)}", one.candidate, one.driver)
+    if least < conditions.transmission:
+        return _poor(least, one.candidate, one.driver)
+    return replace(one, transmission=least)
+
+
+def _poor(least: float, candidate: Linkage, driver: str) -> Rejection:
+    text = f"the transmission angle falls to {np.rad2deg(least):.4g} degrees"
+    return Rejection(TRANSMISSION, text, candidate, driver)
 
 
 class _Course(NamedTuple):
@@ -264,13 +272,14 @@ def _solved(candidate: Linkage, course: _Course, conditions: Conditions, toleran
     if not motion.assembled.all() or not (missed[0] <= MISSED * size and missed[1] <= MISSED):
         text = f"the solved motion misses a position by {missed[0]:.3g} and {missed[1]:.3g} radians"
         return Rejection(ACCURACY, text, candidate, driver)
+    if not np.isfinite(candidate.error):
+        return Rejection(ACCURACY, "it does not assemble over the whole range", candidate, driver)
     if 0.0 < tolerance < candidate.error:
         text = f"it misses the task by {candidate.error:.3g}, more than {tolerance:.3g}"
         return Rejection(ACCURACY, text, candidate, driver)
-    least = least_transmission(motion)
-    if not np.isnan(least) and least < conditions.transmission:
-        text = f"the transmission angle falls to {np.rad2deg(least):.4g} degrees"
-        return Rejection(TRANSMISSION, text, candidate, driver)
+    least = least_transmission(motion, between=False)
+    if least < conditions.transmission:
+        return _poor(least, candidate, driver)
     return SolvedLinkage(mechanism, motion, driver, values, turns, candidate.error + max(missed), least, candidate)
 
 
@@ -282,12 +291,16 @@ def missed_by(candidate: Linkage, motion: Motion) -> tuple[float, float]:
     return float(np.max(np.nan_to_num(lengths, nan=np.inf))), float(np.max(np.nan_to_num(angles, nan=np.inf)))
 
 
-def least_transmission(motion: Motion) -> float:
-    """Return the least transmission angle of all dyads over a motion (radians), NaN where there is none."""
+def least_transmission(motion: Motion, *, between: bool = True) -> float:
+    """Return the least transmission angle of all dyads over a motion (radians), NaN where there is none.
+
+    Of a single pose, or not `between`, the poses alone count.
+    """
     found = []
     for group in motion.structure.groups:
         owner = owner_of(motion, "links", group.links[0])
-        if owner.has(TRANSMISSION_ANGLE):
-            angle = quantity(motion, f"{group.links[0]}.{TRANSMISSION_ANGLE}").values
-            found.append(float(np.nanmin(angle)))
+        if owner.has(TRANSMISSION_INDEX):
+            name = f"{group.links[0]}.{TRANSMISSION_INDEX}"
+            values = quantity(motion, f"{name}.{LEAST}" if between and motion.inputs.poses > 1 else name).values
+            found.append(float(np.arcsin(np.clip(np.nanmin(values), 0.0, 1.0))))
     return min(found, default=np.nan)

@@ -14,9 +14,26 @@ from compoundkin.base.display import DisplaysPicture, aligned_text, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
+from compoundkin.dimensional.function_generation import (
+    approached_function,
+    crank_rocker,
+    exact_function,
+    stroke_linkage,
+)
 from compoundkin.dimensional.linkages import Candidates
 from compoundkin.dimensional.motion_generation import few_poses_with_timing, five_poses, four_poses, three_poses
-from compoundkin.dimensional.tasks import COMPACTNESS, Conditions, PoseTask, Task, TimedPointTask
+from compoundkin.dimensional.tasks import (
+    ACCURACY,
+    COMPACTNESS,
+    TRANSMISSION,
+    Conditions,
+    FunctionTask,
+    PoseTask,
+    StrokeTask,
+    SwingTask,
+    Task,
+    TimedPointTask,
+)
 from compoundkin.model.mechanism import Mechanism
 
 # Of a family no more solutions are kept.
@@ -37,6 +54,10 @@ METHODS: tuple[Method, ...] = (
     Method(PoseTask, five_poses, lambda task: task.count == 5),
     Method(PoseTask, four_poses, lambda task: task.count == 4),
     Method(PoseTask, three_poses, lambda task: task.count == 3),
+    Method(FunctionTask, exact_function, lambda task: len(task.inputs) <= 5),
+    Method(FunctionTask, approached_function),
+    Method(SwingTask, crank_rocker),
+    Method(StrokeTask, stroke_linkage),
     Method(TimedPointTask, few_poses_with_timing, lambda task: 3 <= len(task.points) <= 5),
 )
 
@@ -110,14 +131,15 @@ def synthesise(
     ground: Any = None,
     transmission: float = 0.0,
     turning: bool = False,
-    prefer: str = "transmission",
+    prefer: str | None = None,
 ) -> Answer:
     """Return the mechanisms that do what a task of `tasks` says, ranked, and the candidates with defects.
 
     `region` holds all fixed pivots: two opposite corners or a polygon. `lengths` are the least and greatest length of
     links between joints, `ground` places of fixed pivots that are given. `transmission` is the least transmission angle
-    (radians), `turning` asks for a driver that turns fully. `prefer` ranks by "transmission" or by "compactness", the
-    sum of lengths. Raises InvalidInput for what is no task or condition.
+    (radians), `turning` asks for a driver that turns fully. `prefer` ranks by "transmission", by "compactness",
+    the sum of lengths, or by "accuracy"; functions that are approached by accuracy if it is left out. Raises
+    InvalidInput for what is no task or condition.
 
     >>> from compoundkin.dimensional.tasks import poses
     >>> angles = np.deg2rad([36.72, 15.64, -16.48, 31.29, -56.82])
@@ -127,7 +149,7 @@ def synthesise(
     >>> answer.complete
     '4 real dyads of 4, 6 linkages'
     """
-    asked = task.under(Conditions.of(region, lengths, ground, transmission, turning, prefer))
+    asked = task.under(Conditions.of(region, lengths, ground, transmission, turning, prefer or _usual(task)))
     method = next((one for one in METHODS if isinstance(task, one.of) and one.fits(task)), None)
     if method is None:
         raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
@@ -139,13 +161,22 @@ def synthesise(
     if candidates.is_family and len(good) > KEPT:
         complete = f"{complete}, the best {KEPT} of {len(good)} without defects"
         good = good[:KEPT]
-    checks = [confirmed(one) for one in good]
+    checks = [confirmed(one, asked.conditions) for one in good]
     bad += [one for one in checks if isinstance(one, Rejection)]
-    solutions = tuple(one for one in checks if isinstance(one, SolvedLinkage))
-    return Answer(asked, solutions, tuple(bad), complete, candidates.note, candidates.nearest, candidates)
+    solutions = (one for one in checks if isinstance(one, SolvedLinkage))
+    ranked = tuple(sorted(solutions, key=_rank(asked.conditions.prefer)))
+    return Answer(asked, ranked, tuple(bad), complete, candidates.note, candidates.nearest, candidates)
+
+
+def _usual(task: Task) -> str:
+    """Return what answers are ranked by where nothing is said: accuracy where they approach a task."""
+    approached = isinstance(task, FunctionTask) and (task.whole is not None or len(task.inputs) > 5)
+    return ACCURACY if approached else TRANSMISSION
 
 
 def _rank(prefer: str) -> Callable[[SolvedLinkage], tuple[float, ...]]:
     if prefer == COMPACTNESS:
         return lambda one: (round(one.size, 9), -np.nan_to_num(one.transmission))
+    if prefer == ACCURACY:
+        return lambda one: (float(f"{one.error:.6g}"), -np.nan_to_num(one.transmission))
     return lambda one: (-round(float(np.nan_to_num(one.transmission)), 9), round(one.size, 9))

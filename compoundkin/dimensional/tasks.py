@@ -19,8 +19,10 @@ from compoundkin.base.errors import InvalidInput, Problem
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
 # Preferences among answers, by what they are ranked.
-TRANSMISSION, COMPACTNESS = "transmission", "compactness"
-PREFERENCES = (TRANSMISSION, COMPACTNESS)
+# A function's error is seen at so many places of its range.
+WHOLE = 181
+TRANSMISSION, COMPACTNESS, ACCURACY = "transmission", "compactness", "accuracy"
+PREFERENCES = (TRANSMISSION, COMPACTNESS, ACCURACY)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -188,13 +190,14 @@ class FunctionTask(Task):
 
     `linkage` is "four-bar" (outputs are angles), "slider-crank" (displacements) or "inverted" (angles of a swinging
     block). Angles and displacements count from where the input is zero, at unknown places, unless they are
-    `absolute`.
+    `absolute`. `whole` is the function over its range, pairs (m, 2), over which the error of answers counts.
     """
 
     inputs: Number
     outputs: Number
     linkage: str = "four-bar"
     absolute: bool = False
+    whole: Number = None
 
     @property
     def in_words(self) -> str:
@@ -305,8 +308,22 @@ def mixed(*, poses: Any, points: Any, link: str = "coupler", tolerance: float = 
 
 
 @checked
-def function(pairs: Any, *, linkage: str = "four-bar", absolute: bool = False, tolerance: float = 0.0) -> FunctionTask:
+def function(
+    pairs: Any,
+    *,
+    between: Any = None,
+    inputs: Any = None,
+    outputs: Any = None,
+    count: int = 3,
+    linkage: str = "four-bar",
+    absolute: bool = False,
+    tolerance: float = 0.0,
+) -> FunctionTask:
     """Return the task of function generation: pairs (n, 2) of an input angle and an output.
+
+    Or `pairs` is a Python function of an array: its argument `between` two numbers becomes the input's angle between
+    those of `inputs`, its value the output between those of `outputs`. It is met at `count` places in Chebyshev's
+    spacing, and the error counts over the whole range.
 
     `linkage` is "four-bar" (output an angle), "slider-crank" (a displacement) or "inverted" (the angle of a swinging
     guide); angles are radians. Only differences of angles and displacements count, unless they are `absolute`: angles
@@ -315,16 +332,64 @@ def function(pairs: Any, *, linkage: str = "four-bar", absolute: bool = False, t
 
     >>> function([(0, 0), (0.5, 0.3), (1, 0.8)]).in_words
     'a four-bar function of 3 pairs'
+    >>> log = function(np.log10, between=(1, 10), inputs=np.deg2rad([45, 105]), outputs=np.deg2rad([45, 135]))
+    >>> np.rad2deg(log.inputs).round(2).tolist()
+    [49.02, 75.0, 100.98]
     """
     known = ("four-bar", "slider-crank", "inverted")
     if linkage not in known:
         raise InvalidInput(Problem("linkage", f"{linkage!r} generates no function", f"one of {', '.join(known)}"))
+    whole = None
+    if callable(pairs):
+        pairs, whole = _tabulated(pairs, between, inputs, outputs, count)
+    elif not (between is None and inputs is None and outputs is None):
+        what = "ranges belong to a Python function, not to pairs"
+        raise InvalidInput(Problem("between, inputs, outputs", what, "leave them out"))
     found = real_numbers("pairs", pairs)
     if found.ndim != 2 or found.shape[1] != 2 or len(found) < 3:
         raise InvalidInput(Problem("pairs", "they are no three or more pairs", "give (input, output) for each"))
     _finite("pairs", found)
     _different("pairs", "input", np.exp(1j * found[:, :1]))
-    return FunctionTask(found[:, 0], found[:, 1], linkage, absolute, tolerance=_tolerance(tolerance))
+    return FunctionTask(found[:, 0], found[:, 1], linkage, absolute, whole, tolerance=_tolerance(tolerance))
+
+
+def _tabulated(law: Any, between: Any, inputs: Any, outputs: Any, count: int) -> tuple[Number, Number]:
+    """Return the pairs of a function at Chebyshev's places, and over its whole range. Raises InvalidInput."""
+    ranges = {}
+    for name, given in (("between", between), ("inputs", inputs), ("outputs", outputs)):
+        if given is None:
+            raise InvalidInput(Problem(name, "a Python function needs this range", "give its first and last value"))
+        found = real_numbers(name, given)
+        if found.shape != (2,) or not np.isfinite(found).all() or found[0] == found[1]:
+            raise InvalidInput(Problem(name, "it is no range", "give the first and the last value"))
+        ranges[name] = found
+    if count < 3:
+        raise InvalidInput(Problem("count", f"{count} precision positions are too few", "give three or more"))
+    low, high = ranges["between"]
+    parts = []
+    for x in (chebyshev_spacing(low, high, count), np.linspace(low, high, WHOLE)):
+        try:
+            y = real_numbers("pairs", law(np.array([low, *x, high])))
+        except (TypeError, ValueError, ArithmeticError) as problem:
+            raise InvalidInput(Problem("pairs", f"the function fails: {problem}")) from None
+        if y.shape != (len(x) + 2,) or not np.isfinite(y).all() or y[0] == y[-1]:
+            what = "the function gives no finite value at each place, or the same at both ends"
+            raise InvalidInput(Problem("pairs", what, "it takes an array, and its ends differ"))
+        phi = np.interp((x - low) / (high - low), (0, 1), ranges["inputs"])
+        start, end = ranges["outputs"]
+        parts.append(np.stack([phi, start + (end - start) * (y[1:-1] - y[0]) / (y[-1] - y[0])], axis=-1))
+    return parts[0], parts[1]
+
+
+def chebyshev_spacing(low: float, high: float, count: int) -> Number:
+    """Return places between two numbers such that the error of what agrees there is spread evenly (Chebyshev).
+
+    >>> chebyshev_spacing(1, 10, 3).round(6).tolist()
+    [1.602886, 5.5, 9.397114]
+    """
+    angles = (2 * np.arange(count) + 1) * np.pi / (2 * count)
+    found: Number = (low + high) / 2.0 - (high - low) / 2.0 * np.cos(angles)
+    return found
 
 
 @checked
