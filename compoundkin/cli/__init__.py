@@ -34,6 +34,7 @@ VERBS = {
     "size": "Which motor drives it, behind which gear.",
     "simulate": "How it moves under its masses and loads, in time.",
     "study": "Many designs: what dimensions do to figures, as a study file says.",
+    "optimise": "Better dimensions: what shall be least, what may change, what must hold.",
     "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
     "import": "A mechanism out of another program's file or link: PMKS+, Linkage, pyslvs and others.",
     "export": "A file for another program, or a function in C, Python, JavaScript or MATLAB.",

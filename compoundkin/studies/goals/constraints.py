@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import TURN, Number, degrees
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.transmission_angle import solver_of_link
@@ -20,12 +20,11 @@ from compoundkin.model.attributes import (
     POSITION,
     TRANSMISSION_ANGLE,
     TRANSMISSION_INDEX,
-    is_angle_word,
     motion_figure,
 )
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.driver_schedule import driver_of
-from compoundkin.studies.goals.goal import DesignConstraint
+from compoundkin.studies.goals.goal import DesignConstraint, value_text
 
 
 @dataclass(frozen=True)
@@ -39,9 +38,7 @@ class FigureBound:
     @property
     def description(self) -> str:
         """The figure and its bound."""
-        is_angle = is_angle_word(motion_figure(self.name)[0].rpartition(".")[2])
-        value = f"{degrees(self.value):g} deg" if is_angle else f"{self.value:g}"
-        return f"{self.name} at {'least' if self.sign > 0 else 'most'} {value}"
+        return f"{self.name} at {'least' if self.sign > 0 else 'most'} {value_text(self.name, self.value)}"
 
     @property
     def figure(self) -> str:

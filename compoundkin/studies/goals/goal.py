@@ -9,11 +9,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import is_real
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, degrees
 from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import is_angle_word, motion_figure
 from compoundkin.studies.goals.design_trial import DesignTrial
+
+
+def value_text(name: str, value: float) -> str:
+    """Return the value of a figure or quantity in words: degrees for angles.
+
+    >>> value_text("rocker.angle.stroke", np.pi / 3), value_text("ram.stroke", 45)
+    ('60 deg', '45')
+    """
+    is_angle = is_angle_word(motion_figure(name)[0].rpartition(".")[2])
+    return f"{degrees(value):g} deg" if is_angle else f"{value:g}"
 
 
 @dataclass(frozen=True)

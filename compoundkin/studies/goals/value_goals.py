@@ -14,7 +14,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import GREATEST, motion_figure
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
-from compoundkin.studies.goals.goal import Goal
+from compoundkin.studies.goals.goal import Goal, value_text
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,8 @@ class TargetGoal(Goal):
     @property
     def description(self) -> str:
         """The figure and its target."""
-        return f"{self.name} {self.value:g}" if not np.ndim(self.value) else f"{self.name} {len(self.value)} values"
+        values = f"{len(self.value)} values" if np.ndim(self.value) else value_text(self.name, self.value)
+        return f"{self.name} {values}"
 
     @property
     def _is_figure(self) -> bool:

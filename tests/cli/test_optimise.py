@@ -1,0 +1,70 @@
+"""The verb `optimise`."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+import compoundkin as ck
+from compoundkin.cli import cli
+
+CRANK_ROCKER = "crank-rocker", "--starts", "4", "--from", "0", "--to", "360", "--step", "30"
+
+
+def run(*args: str) -> Result:
+    return CliRunner().invoke(cli, ["optimise", *args], catch_exceptions=False)
+
+
+def test_a_rocker_swings_as_far_as_it_should(tmp_path: Path) -> None:
+    """The swing of the mechanism that is written, by the cosine theorem at its two dead centres."""
+    path = tmp_path / "better.toml"
+    wanted = "--free", "crank.B.x=1:3", "--target", "rocker.angle.stroke=60", "--full-turn"
+    done = run(*CRANK_ROCKER, *wanted, "-o", str(path))
+    assert done.exit_code == 0
+    assert "rocker.angle.stroke 60 deg" in done.stdout
+    found = ck.load(path)
+    frame, crank, coupler, rocker = (
+        abs(points[1] - points[0]) for link in found.links.values() for points in [list(link.points.values())]
+    )
+    ends = [np.arccos((rocker**2 + frame**2 - r**2) / (2 * rocker * frame)) for r in (coupler + crank, coupler - crank)]
+    assert np.degrees(ends[0] - ends[1]) == pytest.approx(60, abs=1e-6)
+
+
+def test_bounds_and_constraints_hold() -> None:
+    done = run(
+        *CRANK_ROCKER, "--free", "rocker.C.x=3.5:4.5", "--least", "rocker.angle.stroke",
+        "--at-least", "rocker.angle.stroke=58", "--format", "json",
+    )  # fmt: skip
+    assert done.exit_code == 0
+    assert "rocker.angle.stroke at least 58 deg" in done.stdout
+    asked = "--free", "rocker.C.x=3.9:4.1", "--least", "rocker.angle.stroke", "--at-most", "rocker.angle.stroke=20"
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        done = run(*CRANK_ROCKER, *asked)
+    assert done.exit_code == 4
+    assert "Not all constraints hold" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (("--free", "crank.B.x=1:3"), "nothing is said to be least"),
+        (("--least", "rocker.angle.stroke"), "no dimension may change"),
+        (("--free", "crank.B.x=1", "--least", "rocker.angle.stroke"), "this is no dimension with its bounds"),
+        (("--free", "crank.B.x=a:3", "--least", "rocker.angle.stroke"), "a"),
+        (("--free", "crank.Q.x=1:3", "--least", "rocker.angle.stroke"), "did you mean 'crank.B.x'?"),
+        (("--free", "crank.B.x=1:3,crank.B.x=1:2", "--least", "rocker.angle.stroke"), "given twice"),
+        (("--free", "crank.B.x=3:1", "--least", "rocker.angle.stroke"), "crank.B.x"),
+        (("--free", "crank.B.x=1:3", "--target", "rocker.angle.stroke"), "no figure with its value"),
+        (("--free", "crank.B.x=1:3", "--least", "rocker.angle"), "a value at every pose"),
+        (("--free", "crank.B.x=1:3", "--least", "rocker.angle.stroke", "-o", "x.png"), ".png"),
+    ],
+)
+def test_what_is_wrong_is_named(args: tuple[str, ...], said: str) -> None:
+    done = run(*CRANK_ROCKER, *args)
+    assert done.exit_code == 2
+    assert said in done.stderr
