@@ -41,6 +41,8 @@ CALLS = {
     "size": ["size shaper-cutting-force"],
     "simulate": ["simulate engine-gas-pressure --until 0.01"],
     "study": ["study study.toml"],
+    "optimise": ["optimise crank-rocker --free crank.B.x=1:3 --least rocker.angle.stroke --starts 2"],
+    "mcp": ["mcp"],
     "tolerance": ["tolerance crank-rocker --tolerance crank.B=0.05"],
     "import": ["import crank-rocker.linkage2 -o imported.toml"],
     "export": ["export crank-rocker -o again.linkage2", "export crank-rocker --to dxf -o crank-rocker.dxf"],

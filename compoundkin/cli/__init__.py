@@ -43,6 +43,7 @@ VERBS = {
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",
     "new": "Write a commented mechanism file to start from.",
+    "mcp": "A server for programs that talk (Model Context Protocol).",
     "schema": "The JSON Schema of mechanism files and of study files.",
     "completion": "The script that completes commands in your shell.",
 }

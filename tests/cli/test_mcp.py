@@ -1,0 +1,147 @@
+"""The server for programs that talk, asked by the client of the SDK itself."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import io
+import json
+import os
+import sys
+import time
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.cli import mcp as server_module
+from compoundkin.files.mechanism_files import loads
+
+anyio = pytest.importorskip("anyio")
+mcp = pytest.importorskip("mcp")
+
+FOUR_BAR = """\
+format = 1
+title = "Four-bar"
+[links.frame]
+points = { A = [0, 0], D = [4, 0] }
+[links.crank]
+points = { A = [0, 0], B = [1, 0] }
+[links.coupler]
+points = { B = [0, 0], C = [3.5, 0] }
+[links.rocker]
+points = { D = [0, 0], C = [3, 0] }
+[[drives]]
+link = "crank"
+"""
+
+
+def asked(*calls: tuple[str, dict[str, Any]], target: Any = None) -> list[Any]:
+    """The results of calls, one after another, through a client."""
+
+    async def talk() -> list[Any]:
+        async with mcp.Client(target or server_module.server()) as client:
+            return [await client.call_tool(name, given) for name, given in calls]
+
+    results: list[Any] = anyio.run(talk)
+    return results
+
+
+def text(result: Any) -> str:
+    return "\n".join(part.text for part in result.content if part.type == "text")
+
+
+def test_a_client_sees_six_tools_with_strict_schemas() -> None:
+    from jsonschema import Draft202012Validator
+
+    async def listed() -> Any:
+        async with mcp.Client(server_module.server()) as client:
+            return (await client.list_tools()).tools
+
+    found = anyio.run(listed)
+    assert [tool.name for tool in found] == ["describe", "solve", "report", "optimise", "forces", "draw"]
+    for tool in found:
+        Draft202012Validator.check_schema(tool.input_schema)
+        assert tool.input_schema["additionalProperties"] is False
+        assert len(json.dumps(tool.input_schema)) < 12_000
+
+
+def test_a_process_answers_over_its_streams_as_the_package_does() -> None:
+    """The whole way, once: a mechanism as text, solved by the command, against `ck.solve`."""
+    from mcp.client.stdio import StdioServerParameters
+
+    root = str(Path(__file__).parents[2])
+    process = StdioServerParameters(
+        command=sys.executable, args=["-m", "compoundkin", "mcp"], env={**os.environ, "PYTHONPATH": root}
+    )
+    given = {"mechanism": FOUR_BAR, "drive": {"crank": "35"}, "outputs": ["rocker.angle"], "modes": {"rocker": -1}}
+    (result,) = asked(("solve", given), target=process)
+    assert not result.is_error
+    (row,) = csv.DictReader(text(result).splitlines())
+    motion = ck.solve(loads(FOUR_BAR), {"crank": ck.deg(35)}, modes={"rocker": -1})
+    assert float(row["rocker.angle [deg]"]) == pytest.approx(np.degrees(float(motion.links["rocker"].angle)), abs=1e-9)
+
+
+def test_reports_forces_and_better_dimensions() -> None:
+    document = tomllib.loads(FOUR_BAR)
+    hold = {"mechanism": document, "torques": ["rocker=-120"], "units": "mm,kg,N", "statics": True}
+    search = {"mechanism": FOUR_BAR, "free": {"crank.B.x": [0.5, 1.4]}, "target": {"rocker.angle.stroke": 50}}
+    described, forces, better = asked(
+        ("describe", {"mechanism": document}),
+        ("forces", {**hold, "drive": {"crank": "35"}}),
+        ("optimise", {**search, "full_turn": True}),
+    )
+    assert not any(result.is_error for result in (described, forces, better))
+    assert "mobility 1" in text(described)
+    assert "crank" in text(forces)
+    crank = tomllib.loads(better.content[-1].text)["links"]["crank"]["points"]["B"][0]
+    ends = [np.arccos((9 + 16 - (3.5 + side * crank) ** 2) / 24) for side in (1, -1)]
+    assert np.degrees(ends[0] - ends[1]) == pytest.approx(50, abs=1e-6)
+
+
+def test_a_picture_is_an_image() -> None:
+    image = pytest.importorskip("PIL.Image")
+    (result,) = asked(("draw", {"mechanism": "six-bar", "at": ["35"]}))
+    (part,) = (part for part in result.content if part.type == "image")
+    picture = image.open(io.BytesIO(base64.b64decode(part.data)))
+    assert (picture.format, part.mime_type) == ("PNG", "image/png")
+    assert min(picture.size) > 300
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "said"),
+    [
+        ("describe", {"mechanism": "/etc/passwd"}, "neither a file nor in the catalog"),
+        ("describe", {"mechanism": "../../pyproject.toml"}, "neither a file nor in the catalog"),
+        ("describe", {"mechanism": "format = 1\n["}, "mechanism.toml"),
+        ("describe", {"mechanism": {"format": 1, "title": "x", "links": {}, "q": 1}}, "'q' was unexpected"),
+        ("solve", {}, "'mechanism' is a required property"),
+        ("solve", {"mechanism": "six-bar", "drive": {"crank": "35 -o x"}}, "arguments.drive.crank"),
+        ("solve", {"mechanism": "six-bar", "outputs": ["--help"]}, "--help"),
+        ("solve", {"mechanism": "x" * 300_000}, "it does not fit"),
+        ("optimise", {"mechanism": "six-bar", "free": {"crank.D.x": [1]}}, "arguments.free"),
+        ("solved", {}, "did you mean 'solve'?"),
+    ],
+)
+def test_what_is_wrong_is_told_and_no_file_is_read(name: str, given: dict[str, Any], said: str) -> None:
+    (result,) = asked((name, given))
+    assert result.is_error
+    assert said in text(result)
+
+
+def test_a_call_that_takes_too_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server_module, "SECONDS", 0.05)
+    begun = time.monotonic()
+    (result,) = asked(("report", {"mechanism": "six-bar"}))
+    assert result.is_error
+    assert "took longer" in text(result)
+    assert time.monotonic() - begun < 5
+
+
+def test_long_replies_are_cut_and_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server_module, "MOST_TEXT", 500)
+    (result,) = asked(("describe", {"mechanism": "six-bar"}))
+    assert "characters are left out" in text(result)
