@@ -235,7 +235,8 @@ Examples:
 
 \b
 In the settings of a program that talks:
-  {"mcpServers": {"compoundkin": {"command": "compoundkin", "args": ["mcp"]}}}
+  {"mcpServers": {"compoundkin":
+      {"command": "compoundkin", "args": ["mcp"]}}}
 """
 )
 def command() -> int:

@@ -75,21 +75,22 @@ def command(file: str, form: str | None, path: str | None, **options: Any) -> in
 
 def search(structure: Structure, options: dict[str, Any]) -> Optimum:
     """Return the best design of what the options ask for. Raises InvalidInput for what they do not say."""
-    from compoundkin import goals
     from compoundkin.cli.typed_values import read_driver_values, read_rates, read_times
     from compoundkin.model.attributes import RATES
+    from compoundkin.studies.goals.constraints import assembles, at_least, at_most, full_turn
+    from compoundkin.studies.goals.value_goals import greatest, least, target
     from compoundkin.studies.optimisation.design_optimisation import optimise
 
-    aims = [goals.least(name) for name in split_names(options["least"])]
-    aims += [goals.greatest(name) for name in split_names(options["greatest"])]
-    aims += [goals.target(*one) for one in _values("--target", options["target"])]
+    aims = [least(name) for name in split_names(options["least"])]
+    aims += [greatest(name) for name in split_names(options["greatest"])]
+    aims += [target(*one) for one in _values("--target", options["target"])]
     if not aims:
         what = "nothing is said to be least, greatest or at a target"
         raise InvalidInput(Problem("--least, --greatest, --target", what, "such as --least rocker.angle.stroke"))
-    constraints = [goals.at_least(*one) for one in _values("--at-least", options["at_least"])]
-    constraints += [goals.at_most(*one) for one in _values("--at-most", options["at_most"])]
-    constraints += [goals.full_turn()] if options["full_turn"] else []
-    constraints += [goals.assembles()] if options["assembled"] else []
+    constraints = [at_least(*one) for one in _values("--at-least", options["at_least"])]
+    constraints += [at_most(*one) for one in _values("--at-most", options["at_most"])]
+    constraints += [full_turn()] if options["full_turn"] else []
+    constraints += [assembles()] if options["assembled"] else []
     rates: dict[str, Any] = {rate: read_rates(structure, f"--{rate}", options[f"{rate}s"]) for rate in RATES[:2]}
     with counting("searching", "designs") as progress:
         return optimise(
