@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from compoundkin.analysis.singularities import singularities
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
+    from compoundkin.dimensional.cognates import cognates
     from compoundkin.dimensional.dyads import dyads
     from compoundkin.dimensional.synthesis import synthesise
     from compoundkin.dynamics.force_analysis import force_analysis
@@ -95,6 +96,7 @@ __all__ = [
     "cam",
     "characteristics",
     "circuits",
+    "cognates",
     "compile",
     "configurations",
     "cylinder",
@@ -167,6 +169,7 @@ _LATE = {
     "around": "studies.samples.value_ranges",
     "characteristics": "analysis.characteristics.characteristics",
     "circuits": "configurations.circuit_search",
+    "cognates": "dimensional.cognates",
     "compile": "programs.compiled_path",
     "configurations": "configurations.enumeration",
     "decompose": "structure",

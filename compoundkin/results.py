@@ -17,6 +17,7 @@ from compoundkin.analysis.interference import Interference
 from compoundkin.analysis.singularities import Singularities, Singularity
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
+from compoundkin.dimensional.cognates import Cognates
 from compoundkin.dimensional.dyads import Dyads
 from compoundkin.dimensional.synthesis import Answer
 from compoundkin.dynamics.forces import Forces
@@ -51,6 +52,7 @@ __all__ = [
     "Characteristics",
     "Check",
     "Circuits",
+    "Cognates",
     "CompiledPath",
     "Configuration",
     "Configurations",

@@ -16,7 +16,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.dimensional.dyads import PR, RP, RR, Dyad
 from compoundkin.model.attributes import ANGLE, POSITION
-from compoundkin.model.elements import Item, drawn, drive, link
+from compoundkin.model.elements import Item, Link, drawn, drive, link
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
@@ -48,7 +48,7 @@ class Linkage(ShortRepr):
     """
 
     title: str
-    links: tuple[Item, ...]
+    links: tuple[Link, ...]
     pairs: tuple[Item, ...]
     places: Mapping[str, complex]
     z: Mapping[str, Number]
@@ -65,6 +65,14 @@ class Linkage(ShortRepr):
     def span(self) -> float:
         """The sum of all lengths, and the distances of fixed pivots."""
         return float(sum(self.lengths) + abs(self.pivots[0] - self.pivots[-1])) if self.pivots else sum(self.lengths)
+
+    def places_at(self, index: int) -> dict[str, complex]:
+        """Return where every point is at one of the positions."""
+        found = dict(self.places)
+        for item in self.links:
+            z, u = self.z[item.name][index], self.u[item.name][index]
+            found |= {letter: complex(z + u * point) for letter, point in item.points.items()}
+        return found
 
     def driven_by(self, driver: str) -> Linkage:
         """Return the linkage with one of its drivers alone."""
@@ -160,7 +168,7 @@ class _Parts:
     u: dict[str, Number]
     frame: dict[str, complex] = field(default_factory=dict)
     body: dict[str, complex] = field(default_factory=dict)
-    links: list[Item] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
     pairs: list[Item] = field(default_factory=list)
     places: dict[str, complex] = field(default_factory=dict)
     drivers: dict[str, Number] = field(default_factory=dict)
