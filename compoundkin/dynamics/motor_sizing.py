@@ -135,33 +135,38 @@ class Sizing(ShortRepr):
         """Return torques and speeds at the shaft of a motor behind a gear: its rotor is moved too."""
         return _at_shaft(self, motor.inertia, gear)
 
-    def text(self) -> str:
-        """Return what is needed, and the motors with what is against them."""
+    @property
+    def needs(self) -> tuple[tuple[str, float, str], ...]:
+        """What is needed: quantity, value, unit."""
         turn, push = ("rpm", "N m") if self.is_angle else ("m/s", "N")
-        rate = 1.0 / RPM if self.is_angle else 1.0
-        head = [
-            (f"driver {self.driver}",),
+        return (
             ("greatest torque" if self.is_angle else "greatest thrust", self.peak, push),
             ("effective", self.rms, push),
             ("greatest power", self.power, "W"),
-            ("greatest speed", self.speed * rate, turn),
+            ("greatest speed", self.speed / RPM if self.is_angle else self.speed, turn),
             ("inertia that it feels", self.inertia, "kg m^2" if self.is_angle else "kg"),
             ("part of the time in motion", 100.0 * self.duty, "%"),
+        )
+
+    @property
+    def verdict(self) -> str:
+        """The smallest motor that does, in words."""
+        best = self.chosen
+        if best is None:
+            return "No motor of the list does."
+        return f"The smallest that does: {best.motor.name}, gear {best.gear:.3g}."
+
+    def text(self) -> str:
+        """Return what is needed, and the motors with what is against them."""
+        rows: list[tuple[str, ...]] = [
+            ("motor", "gear", "rms N m", "peak N m", "rpm", "use", "reserve", "inertias", "")
         ]
-        columns = ("motor", "gear", "rms N m", "peak N m", "rpm", "use", "reserve", "inertias", "")
-        rows: list[tuple[str, ...]] = [columns]
         for one in self.motors:
             numbers = one.gear, one.rms, one.peak, one.speed / RPM, one.use, one.reserve, one.reflected
             rows.append((one.motor.name, *(f"{number:.3g}" for number in numbers), "; ".join(one.reasons) or "does"))
-        wide = [max(len(row[k]) for row in rows) for k in range(len(columns))]
+        wide = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
         table = "\n".join("  ".join(cell.ljust(wide[k]) for k, cell in enumerate(row)).rstrip() for row in rows)
-        best = self.chosen
-        said = (
-            "No motor of the list does."
-            if best is None
-            else f"The smallest that does: {best.motor.name}, gear {best.gear:.3g}."
-        )
-        return f"{aligned_text(head)}\n\n{table}\n\n{said}"
+        return f"{aligned_text([(f'driver {self.driver}',), *self.needs])}\n\n{table}\n\n{self.verdict}"
 
 
 def listed_motors(source: str | Path | None = None) -> tuple[ListedMotor, ...]:

@@ -14,8 +14,10 @@ import numpy as np
 from compoundkin.analysis.checks import verify
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.errors import InvalidInput
 from compoundkin.dynamics.driver_course import speed_text
 from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.motor_sizing import sizing
 from compoundkin.dynamics.reactions.link_forces import LinkForces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, extremes
@@ -33,24 +35,33 @@ from compoundkin.view.report.wording import counted, listed, number_text, point_
 from compoundkin.view.sketch.picture_options import pose_notes
 
 BALANCES = "balances written anew by Newton and Euler, and virtual work"
+MOTORS = (
+    "Generic motors, each behind the gear with which it is warmed least. The use is its effective torque over the "
+    "rated one, the reserve the least of its greatest torque over what is needed, the inertias are that of the load "
+    "over that of the rotor:"
+)
 # At most so many singular poses, and stretches of self-locking or wedging, are listed.
 MOST_SINGULAR, MOST_STRETCHES = 8, 6
+# The speed of drivers of which none is stated.
+NOMINAL = 1.0
 # A free body of more poses than these is listed at the first pose only.
 MOST_POSES = 8
 # A force below this part of the largest one, or a moment below that part of it times the size, is rounding.
 FORCE_ROUNDING, NEGLIGIBLE = 1e-11, 1e-9
 
 
-def forces_section(forces: Forces, design: int = 0) -> Section:
-    """Return the section on forces, the assumptions first."""
-    return Section("forces", "Forces", tuple(_force_blocks(Sample(forces.motion, design), forces)))
+def forces_sections(forces: Forces, design: int = 0) -> tuple[Section, ...]:
+    """Return the section on forces, the assumptions first, and that on the motors that drive the mechanism."""
+    section = Section("forces", "Forces", tuple(_force_blocks(Sample(forces.motion, design), forces)))
+    motors = tuple(block for name in forces.drives for block in _motor_blocks(forces, name, design))
+    return (section, Section("motors", "Motors that drive it", motors)) if motors else (section,)
 
 
 def forces_report(forces: Forces, design: int = 0, on: str = "") -> Report:
     """Report forces alone, or the free body of the link `on`. Raises UnknownName for an unknown link."""
-    section = free_body_section(forces, on, design) if on else forces_section(forces, design)
+    sections = (free_body_section(forces, on, design),) if on else forces_sections(forces, design)
     outcome = outcome_of(forces.motion, verify(forces))
-    return Report(forces.motion.mechanism.title, (section,), outcome, forces.motion, design=design)
+    return Report(forces.motion.mechanism.title, sections, outcome, forces.motion, design=design)
 
 
 @checked
@@ -349,6 +360,33 @@ def _also_customary(row: tuple[Cell, ...], means: tuple[int, ...]) -> Iterator[t
         name, size = other
         cells = (cell * size if k in numbers and isinstance(cell, float) else cell for k, cell in enumerate(row))
         yield tuple(name if k == 2 else cell for k, cell in enumerate(cells))
+
+
+def _motor_blocks(forces: Forces, name: str, design: int) -> Iterator[Block]:
+    """Yield what a driver needs and which motors give it, where it has a speed of its own and takes power."""
+    if forces.motion.time is None and np.all(np.asarray(forces.motion.drives[name].rate) == NOMINAL):
+        return
+    try:
+        found = sizing(forces, driver=name, design=design)
+    except InvalidInput:  # of what has no accelerations, or poses without forces, there is nothing to say
+        return
+    if not float(np.mean(found.torques * found.speeds)) > NEGLIGIBLE * found.peak * found.speed:
+        return
+    yield Paragraph(f"What the driver {name} needs over the motion:")
+    yield TableBlock((Column("quantity"), Column("value", style="each"), Column("unit")), found.needs)
+    yield Paragraph(MOTORS)
+    rows = tuple(
+        (one.motor.name, *map(_to_three_digits, (one.gear, one.use, one.reserve, one.reflected)),
+         "; ".join(one.reasons) or "does")
+        for one in found.motors
+    )  # fmt: skip
+    numbers = (Column(word, style="each") for word in ("gear", "use", "reserve", "inertias"))
+    yield TableBlock((Column("motor"), *numbers, Column("")), rows, keys=1)
+    yield Paragraph(found.verdict)
+
+
+def _to_three_digits(number: float) -> Cell:
+    return float(f"{number:.3g}")
 
 
 def _drive_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:

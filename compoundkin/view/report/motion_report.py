@@ -14,7 +14,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections, singularities_section
-from compoundkin.view.report.forces_section import force_checks_sections, forces_section
+from compoundkin.view.report.forces_section import force_checks_sections, forces_sections
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.interference_section import (
     interference_or_error,
@@ -76,7 +76,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = ""
         *assembly_sections(motion, 0),
         *moving,
         performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
-        *([forces_section(forces)] if forces is not None else []),
+        *(forces_sections(forces) if forces is not None else ()),
         *interference_sections(sample, touching),
         *gaps_sections(sample),
         *([singularities_section(singular)] if (singular := singular_poses(motion)) else []),

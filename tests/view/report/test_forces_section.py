@@ -103,3 +103,16 @@ def test_what_equilibrium_leaves_open_and_friction_are_told() -> None:
     rows = [line.split() for line in told.splitlines() if line.startswith("guide")]
     assert ["guide", "force", "N", "-2", "-2", "always", "-2", "always"] in rows
     assert ["guide", "power", "W", "-4", "-4", "always", "-4", "always"] in rows
+
+
+def test_motors_that_drive_it_are_those_of_sizing() -> None:
+    """Where a speed is stated and power is taken: not of an engine, nor of a driver without a speed of its own."""
+    shaper = ck.solve(ck.load("shaper-cutting-force"))
+    section = ck.report(shaper).section("motors")
+    needs, motors = (block for block in section.blocks if hasattr(block, "rows"))
+    effort = np.asarray(ck.force_analysis(shaper).drives["crank"].effort)
+    assert needs.rows[0][1] == pytest.approx(np.max(np.abs(effort)) / 1000, rel=1e-9)  # N mm
+    does = [row[0] for row in motors.rows if row[-1] == "does"]
+    assert section.blocks[-1].text.startswith(f"The smallest that does: {does[0]}")
+    for other in (ck.load("engine-gas-pressure"), ck.load("crank-rocker"), crank()):
+        assert "motors" not in [one.key for one in ck.report(ck.solve(other)).sections]
