@@ -72,7 +72,9 @@ class LabelCourse:
     def relative(self, places: Number) -> Number:
         """Return places (poses, ...) relative to this course."""
         shape = (-1, *[1] * (np.ndim(places) - 1))
-        return (places - self.shift.reshape(shape)) / self.turn.reshape(shape)
+        found = places - self.shift.reshape(shape)
+        # points do not turn, and complex numbers are slow to divide
+        return found if np.all(self.turn == 1.0) else found / self.turn.reshape(shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -498,46 +500,61 @@ def beyond(at: Number, half: complex, width: float, height: float) -> Number:
 
 def on_own(label: Label, at: Number, half: complex) -> Number:
     """Return what `on_shapes` counts of lines that a label may be on."""
-    return LINE * lengths_in_boxes(at, half, np.array(label.own)).sum(axis=1) if label.own else 0.0
+    return LINE * lengths_in_boxes(at, half, np.array(label.own)) if label.own else 0.0
 
 
 def on_shapes(at: Number, half: complex, lines: Number, rounds: Number) -> Number:
     """Return what it costs places to be on lines and circles."""
-    costs: Number = np.zeros(len(at))
-    lines = lines[_within(at, half, lines.real.min(axis=1), lines.real.max(axis=1), 1)] if len(lines) else lines
-    lines = lines[_within(at, half, lines.imag.min(axis=1), lines.imag.max(axis=1), 1j)] if len(lines) else lines
-    if len(lines):
-        costs = costs + LINE * lengths_in_boxes(at, half, lines).sum(axis=1)
+    costs: Number = LINE * lengths_in_boxes(at, half, lines)
     if len(rounds):
-        gap = np.abs((at[:, None] - rounds[None, :, 0]).real) - half.real - rounds[None, :, 1].real
-        high = np.abs((at[:, None] - rounds[None, :, 0]).imag) - half.imag - rounds[None, :, 1].real
+        x, y, radius = rounds[:, 0].real, rounds[:, 0].imag, rounds[:, 1].real
+        near = _within(at.real, half.real, x - radius, x + radius) & _within(at.imag, half.imag, y - radius, y + radius)
+        x, y, radius = x[near], y[near], radius[near]
+        gap = np.abs(at.real[:, None] - x) - half.real - radius
+        high = np.abs(at.imag[:, None] - y) - half.imag - radius
         costs = costs + ROUND * ((gap < 0) & (high < 0)).sum(axis=1)
     return costs
 
 
-def _within(at: Number, half: complex, low: Number, high: Number, axis: complex) -> Number:
+def _within(along: Number, reach: float, low: Number, high: Number) -> Number:
     """Return which of some ranges along an axis can be met by any of the places: the others cost nothing."""
-    along, reach = (np.conjugate(axis) * at).real, half.real if axis == 1 else half.imag
     return (low <= along.max() + reach) & (high >= along.min() - reach)
 
 
-def lengths_in_boxes(at: Number, half: complex, lines: Number) -> Number:
-    """Return the length of each line in the box around each place.
+# Lines this near to a box, in picture units, may touch it.
+TOUCHING = 1e-6
 
-    It is in parts of the box's half diagonal, at least one.
+
+def lengths_in_boxes(at: Number, half: complex, lines: Number) -> Number:
+    """Return the lengths of all lines in the box around each place, together.
+
+    Each is in parts of the box's half diagonal, at least one.
     """
-    a, d = lines[None, :, 0] - at[:, None], (lines[:, 1] - lines[:, 0])[None]
-    low: Number = np.zeros(np.broadcast_shapes(a.shape, d.shape))
-    high = np.ones_like(low)
+    one, two = lines[:, 0], lines[:, 1]
+    left, right = np.minimum(one.real, two.real), np.maximum(one.real, two.real)
+    low, high = np.minimum(one.imag, two.imag), np.maximum(one.imag, two.imag)
+    near = np.flatnonzero(
+        _within(at.real, half.real + TOUCHING, left, right) & _within(at.imag, half.imag + TOUCHING, low, high)
+    )
+    left, right, low, high = left[near], right[near], low[near], high[near]
+    x, y, reach = at.real[:, None], at.imag[:, None], half + TOUCHING * (1 + 1j)
+    meets = (left <= x + reach.real) & (right >= x - reach.real) & (low <= y + reach.imag) & (high >= y - reach.imag)
+    # few lines meet few boxes: what follows is of these pairs alone
+    place, line = np.nonzero(meets)
+    start, way = one[near][line] - at[place], (two - one)[near][line]
+    first: Number = np.zeros(len(place))
+    last = np.ones_like(first)
     with np.errstate(divide="ignore", invalid="ignore"):
-        for start, way, reach in ((a.real, d.real, half.real), (a.imag, d.imag, half.imag)):
-            one, two = (-reach - start) / way, (reach - start) / way
-            still = way == 0
-            near, far = np.where(still, -np.inf, np.minimum(one, two)), np.where(still, np.inf, np.maximum(one, two))
-            out = still & (np.abs(start) > reach)
-            low, high = np.maximum(low, np.where(out, np.inf, near)), np.minimum(high, far)
-    length = np.maximum(high - low, 0.0) * np.abs(d)
-    return np.where(high > low, 1.0 + length / abs(half), 0.0)
+        for begin, along, side in ((start.real, way.real, half.real), (start.imag, way.imag, half.imag)):
+            entering, leaving = (-side - begin) / along, (side - begin) / along
+            still = along == 0
+            out = still & (np.abs(begin) > side)
+            entry = np.where(still, -np.inf, np.minimum(entering, leaving))
+            first = np.maximum(first, np.where(out, np.inf, entry))
+            last = np.minimum(last, np.where(still, np.inf, np.maximum(entering, leaving)))
+    length = np.maximum(last - first, 0.0) * np.abs(way)
+    counts = np.where(last > first, 1.0 + length / abs(half), 0.0)
+    return np.bincount(place, counts, len(at))
 
 
 def crowded(gap: Number, half: complex, others: Number) -> Number:
