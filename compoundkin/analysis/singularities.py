@@ -24,7 +24,7 @@ import numpy as np
 
 from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import Number, degrees, wrapped
+from compoundkin.base.arrays import Number, ascending, degrees, wrapped
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase
 from compoundkin.base.errors import ChangePointWarning, InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.linear import one_thread, zeros_of_forms
@@ -581,7 +581,7 @@ class _Search:
     def _alive(self, rows: Number) -> Number:
         """Return the intervals (index of both ends, group) in which the group's block may be singular."""
         kept = np.zeros(len(rows), dtype=bool)
-        for g in np.unique(rows[:, 2]):
+        for g in ascending(rows[:, 2]):
             mine = np.flatnonzero(rows[:, 2] == g)
             a, b = rows[mine, 0], rows[mine, 1]
             change = np.linalg.norm(self.blocks[g][a] - self.blocks[g][b], axis=(1, 2))

@@ -99,6 +99,21 @@ def symmetric_convolution(
     return convolution(a[:half], b[half + 1 : k + 1], product) * 2.0 + product(a[half], b[half])
 
 
+# --- values in order ---
+
+
+def ascending(*arrays: Any) -> Number:
+    """Return the distinct values of some arrays in order; no value may be NaN.
+
+    NumPy's functions of sets load masked arrays when they are first called, which takes as long as to solve a motion.
+
+    >>> ascending([2.0, 1.0], [1.0]).tolist()
+    [1.0, 2.0]
+    """
+    found = np.sort(np.concatenate([np.ravel(one) for one in arrays]))
+    return found[np.append(True, found[1:] != found[:-1])] if len(found) else found
+
+
 # --- angles ---
 
 

@@ -6,6 +6,7 @@ Results go to stdout, everything else to stderr. A verb imports NumPy and the ro
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -144,6 +145,11 @@ def cli() -> None:
     """
 
 
+# Objects that Python makes before it looks for cycles among them: a command makes many, few cycles, and ends soon.
+COLLECTED_AFTER = 50_000
+
+
 def main() -> None:
     """Run the command `compoundkin`."""
+    gc.set_threshold(COLLECTED_AFTER)
     cli.main(prog_name="compoundkin")

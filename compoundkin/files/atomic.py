@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 from collections.abc import Callable
 from contextlib import suppress
@@ -41,7 +40,7 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], A
 
 
 def _replace(target: Path, write: Callable[[BinaryIO], Any]) -> None:
-    beside = target.with_name(f".{target.name[:40]}.{secrets.token_hex(6)}.tmp")
+    beside = target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")
     try:
         with beside.open("xb") as file:
             write(file)

@@ -24,6 +24,7 @@ from compoundkin.analysis.characteristics.transmission import (
     ratio_names,
 )
 from compoundkin.base.arguments import check_design, checked
+from compoundkin.base.arrays import ascending
 from compoundkin.base.display import count_phrase, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
@@ -208,7 +209,7 @@ def dead_points_of_driver(motion: Motion, design: int, outputs: Iterable[OutputF
     if motion.inputs.poses < 2:
         return ()
     found = driver_dead_points(motion)
-    places = np.unique(found.place[found.design == design])
+    places = ascending(found.place[found.design == design])
     if not len(places):
         return ()
     there = between(motion, design, places, 0)

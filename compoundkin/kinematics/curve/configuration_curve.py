@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number, cross, whole_turns, wrapped
+from compoundkin.base.arrays import TURN, Number, ascending, cross, whole_turns, wrapped
 from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
@@ -258,7 +258,7 @@ def _choose(
     first = curve.path.at_home()
     block = curve.solving_order.start(first.ends, first.series(0), 0, (curve.path.designs, 1), NEAREST)
     begin, samples = 0, curve.path.samples
-    between = np.union1d(samples, (samples[1:] + samples[:-1]) / 2.0)
+    between = ascending(samples, (samples[1:] + samples[:-1]) / 2.0)
     ways = (*both_ways(curve), KnownSurroundings(curve, between, order=1))
     for k in sorted(k for k in curve.solving_order.followable - curve.fixed.keys() if k >= since):
         run(curve.solving_order, block, _First(curve, since, ways, known or {}), k, begin)

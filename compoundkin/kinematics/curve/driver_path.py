@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number, whole_turns
+from compoundkin.base.arrays import TURN, Number, ascending, whole_turns
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics.block import between_poses, picked, picked_slope, slope
@@ -77,7 +77,7 @@ class DriverPath:
         """Places no farther than one from each other, with all knots and the home."""
         if len(self.places) == 1:
             return self.places
-        knots = np.union1d(self.places, [self.home])
+        knots = ascending(self.places, [self.home])
         lengths = np.diff(knots)
         sides = np.where(knots[1:] > self.home, knots[-1] - self.home, self.home - knots[0])
         counts = np.maximum(np.ceil(np.maximum(lengths, self.fewest * lengths / sides) - CLOSE).astype(int), 1)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, ascending
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, Offers, SoughtPeaks, Windows, best_of, peaks
@@ -130,7 +130,7 @@ def _piece_groups(motion: Motion) -> tuple[Number, Number, Number]:
         if len(mine) > 1:
             group[group == mine[-1]] = mine[0]
             first[mine[0]] = first[mine[-1]]
-    kept = np.unique(group)
+    kept = ascending(group)
     return np.searchsorted(kept, group), first[kept], last[kept]
 
 

@@ -7,7 +7,6 @@ from importlib.util import find_spec
 
 from compoundkin.base.errors import InvalidInput, Problem, missing_extra
 from compoundkin.programs.backends.runner import BackEnd, Runner
-from compoundkin.programs.backends.tape_backend import Tape
 from compoundkin.programs.graph.flat_program import FlatProgram
 
 
@@ -18,10 +17,17 @@ def _llvm() -> BackEnd:
     return Llvm()
 
 
+def _tape() -> BackEnd:
+    """Return the back end that NumPy alone needs; pages record programs and run none."""
+    from compoundkin.programs.backends.tape_backend import Tape
+
+    return Tape()
+
+
 # By their names, the fastest first: the module that must be installed, and what makes one.
 BACK_ENDS: dict[str, tuple[str, Callable[[], BackEnd]]] = {
     "llvm": ("llvmlite", _llvm),
-    "numpy": ("numpy", Tape),
+    "numpy": ("numpy", _tape),
 }
 
 

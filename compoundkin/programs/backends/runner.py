@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from compoundkin.programs.graph.flat_program import FlatProgram
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
 
 
 class Runner(Protocol):
@@ -33,6 +35,8 @@ class BackEnd(Protocol):
 
 @cache
 def _thread_pool(threads: int) -> ThreadPoolExecutor:
+    from concurrent.futures import ThreadPoolExecutor  # late: most programs run in one thread
+
     return ThreadPoolExecutor(threads, "compoundkin")
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.centres import Centres, instant_centres
-from compoundkin.base.arrays import Number, degrees
+from compoundkin.base.arrays import Number, ascending, degrees
 from compoundkin.dynamics.force_analysis import loaded_forces
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion
@@ -79,7 +79,7 @@ class MotionData:
         links = len(self.motion.mechanism.links)
         most = min(self.most, max(FEWEST_POSES, MOST_NUMBERS // (OF_A_LINK * links)))
         places = np.linspace(0, self.sample.poses - 1, min(most, self.sample.poses)).round().astype(int)
-        return np.union1d(places, self.sketch.pose)
+        return ascending(places, self.sketch.pose)
 
     @cached_property
     def start(self) -> int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-import webbrowser
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -196,6 +195,8 @@ def temporary_page() -> Path:
 
 def open_in_browser(path: Path) -> bool:
     """Return whether a browser could be started to show a file."""
+    import webbrowser  # few pages are opened, and it starts processes
+
     try:
         return webbrowser.open(path.resolve().as_uri())
     except (OSError, webbrowser.Error):

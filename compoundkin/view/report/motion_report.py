@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from compoundkin.analysis.characteristics.characteristics import characteristics
 from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
 from compoundkin.analysis.singularities import singular_poses
 from compoundkin.base.arguments import check_design
-from compoundkin.dynamics.force_analysis import loaded_forces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections, singularities_section
-from compoundkin.view.report.forces_section import force_checks_sections, forces_sections
 from compoundkin.view.report.groups_section import drivers_section, solving_section
-from compoundkin.view.report.interference_section import (
-    interference_or_error,
-    interference_sections,
-    touch_sentences,
-    with_interference,
-)
 from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
 from compoundkin.view.report.performance_section import performance_section
 from compoundkin.view.report.pose_sample import Sample
@@ -38,6 +31,11 @@ from compoundkin.view.report.verification_sections import (
     with_force_findings,
 )
 from compoundkin.view.report.wording import counted
+
+if TYPE_CHECKING:
+    from compoundkin.analysis.interference import Interference
+    from compoundkin.base.errors import InvalidInput
+    from compoundkin.dynamics.forces import Forces
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
@@ -65,8 +63,8 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = ""
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
     check, published = verify(motion), comparisons(structure)
-    forces, touching = loaded_forces(motion), interference_or_error(motion)
-    outcome = with_interference(outcome_of(motion, with_force_findings(check, forces), published), touching)
+    forces, touching = _forces(motion), _touching(motion)
+    outcome = _with_touches(outcome_of(motion, with_force_findings(check, forces), published), touching)
     sections = (
         about_section(structure, motion_summary(outcome), note),
         *counted_sections(structure, motion=motion),
@@ -76,14 +74,57 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = ""
         *assembly_sections(motion, 0),
         *moving,
         performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
-        *(forces_sections(forces) if forces is not None else ()),
-        *interference_sections(sample, touching),
+        *_force_sections(forces),
+        *_touch_sections(sample, touching),
         *gaps_sections(sample),
         *([singularities_section(singular)] if (singular := singular_poses(motion)) else []),
         checks_section(sample, check),
         *([published_section(structure, published)] if published else []),
     )
     return Report(motion.mechanism.title, sections, outcome, motion, outputs)
+
+
+# What computes and reports forces and interference is loaded for mechanisms that have loads and outlines.
+
+
+def _forces(motion: Motion) -> Forces | None:
+    if motion.mechanism.units is None:
+        return None
+    from compoundkin.dynamics.force_analysis import loaded_forces
+
+    return loaded_forces(motion)
+
+
+def _force_sections(forces: Forces | None) -> tuple[Section, ...]:
+    if forces is None:
+        return ()
+    from compoundkin.view.report.forces_section import forces_sections
+
+    return tuple(forces_sections(forces))
+
+
+def _touching(motion: Motion) -> Interference | InvalidInput | None:
+    if not motion.mechanism.outlines:
+        return None
+    from compoundkin.view.report.interference_section import interference_or_error
+
+    return interference_or_error(motion)
+
+
+def _touch_sections(sample: Sample, found: Interference | InvalidInput | None) -> tuple[Section, ...]:
+    if found is None:
+        return ()
+    from compoundkin.view.report.interference_section import interference_sections
+
+    return interference_sections(sample, found)
+
+
+def _with_touches(outcome: Outcome, found: Interference | InvalidInput | None) -> Outcome:
+    if found is None:
+        return outcome
+    from compoundkin.view.report.interference_section import with_interference
+
+    return with_interference(outcome, found)
 
 
 def motion_summary(outcome: Outcome) -> str:
@@ -108,16 +149,23 @@ def _outcome_clauses(outcome: Outcome) -> Iterator[str]:
 
 def check_report(motion: Motion) -> Report:
     """Report all findings about a motion, the failed ones in words, and where its first design is not assembled."""
-    sample, check, forces = Sample(motion), verify(motion), loaded_forces(motion)
+    sample, check, forces = Sample(motion), verify(motion), _forces(motion)
     both = with_force_findings(check, forces)
-    touching = interference_or_error(motion)
-    outcome = with_interference(outcome_of(motion, both), touching)
+    touching = _touching(motion)
+    outcome = _with_touches(outcome_of(motion, both), touching)
     alerts = tuple(Alert(f"{finding_sentence(motion, f)}.") for f in both.findings if not f.passed)
-    alerts += tuple(Alert(f"{sentence}.") for sentence in touch_sentences(motion, touching))
+    of_forces: tuple[Section, ...] = ()
+    if forces is not None:
+        from compoundkin.view.report.forces_section import force_checks_sections
+
+        of_forces = force_checks_sections(sample, forces)
+    if touching is not None:
+        from compoundkin.view.report.interference_section import touch_sentences
+
+        alerts += tuple(Alert(f"{sentence}.") for sentence in touch_sentences(motion, touching))
     failed = (Section("failed", "What failed", alerts),) if alerts else ()
     about = Section("about", "", (Paragraph(motion_summary(outcome)),))
-    of_forces = force_checks_sections(sample, forces)
-    outlines = interference_sections(sample, touching)
+    outlines = _touch_sections(sample, touching)
     sections = (about, *gaps_sections(sample), checks_section(sample, check), *of_forces, *outlines, *failed)
     return Report(motion.mechanism.title, sections, outcome, motion)
 

@@ -11,14 +11,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import degrees, isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compoundkin.analysis.checks import Check, Finding, verify
 from compoundkin.base.arrays import first_entry, wrapped
 from compoundkin.base.errors import InvalidInput, NotAssembled, UnassembledPoses, UnknownName
-from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.gaps import Gap, gaps
 from compoundkin.kinematics.quantities import Quantity, quantity
@@ -28,6 +27,9 @@ from compoundkin.structure import Structure
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import brief, counted, listed, number_text
+
+if TYPE_CHECKING:
+    from compoundkin.dynamics.forces import Forces
 
 # A report lists this many gaps; a sweep may have thousands.
 MOST_GAPS = 10
