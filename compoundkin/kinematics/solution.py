@@ -46,6 +46,8 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import constraint_scales
 from compoundkin.structure import decompose
 from compoundkin.structure.kinematic_structure import Structure
+from compoundkin.structure.redundancy import mobility_analysis
+from compoundkin.structure.redundancy.constraint_equations import ROUNDED
 
 
 @checked
@@ -423,8 +425,6 @@ def rank_diagnosis(structure: Structure) -> str:
     """Say what the dimensions make of an overconstrained mechanism. The words are to be added to a heading."""
     if not any(fault.kind == "over" for fault in structure.faults):
         return ""
-    from compoundkin.structure.redundancy import mobility_analysis  # late: of what cannot be solved alone
-
     found = mobility_analysis(structure)
     return f" ({found.verdict})" if found.finite is not None or found.gap else ""
 
@@ -435,8 +435,6 @@ def diagnosing(structure: Structure) -> Iterator[None]:
     try:
         yield
     except NotAssembled as error:
-        from compoundkin.structure.redundancy import mobility_analysis  # late: of what has no pose alone
-
         found = mobility_analysis(structure)
         if found.finite is None or found.finite == found.gruebler:
             raise error
@@ -446,8 +444,6 @@ def diagnosing(structure: Structure) -> Iterator[None]:
 
 def check_redundant(motion: Motion) -> None:
     """Raise NotAssembled, naming them, unless every redundant pair is closed at all assembled poses."""
-    from compoundkin.structure.redundancy.constraint_equations import ROUNDED
-
     opened = [(pair, opening(motion, pair)) for pair in motion.structure.redundant]
     wrong = [_problem(motion, pair, gap) for pair, gap in opened if np.any(gap > ROUNDED.closed * motion.sizes)]
     if wrong:

@@ -12,6 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import constant
+from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block, size_in
 from compoundkin.kinematics.configuration import Configurations, state_distance
 from compoundkin.kinematics.groups.contract import GroupSolver
@@ -167,9 +168,6 @@ def known_configurations(group: Group, block: Block, size: float, most: int = MO
     """
     if len(group.bodies) > most:
         return None
-    # loaded for groups without a closed form alone
-    from compoundkin.kinematics.assembly import all_configurations, from_group
-
     try:
         return all_configurations(from_group(group, block, size))
     except InvalidInput:
