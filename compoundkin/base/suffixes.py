@@ -10,7 +10,9 @@ from typing import Literal, TypeAlias
 
 from compoundkin.base.errors import InvalidInput, Problem
 
-Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study"]
+Kind: TypeAlias = Literal[
+    "mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study", "task"
+]
 # Of each kind its suffixes and the format that each means; messages name the first suffix of a format.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
     {
@@ -30,10 +32,11 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
         },
         "program": {".c": "c", ".py": "python", ".js": "javascript", ".m": "matlab"},
         "study": {".toml": "toml", ".json": "json"},
+        "task": {".toml": "toml", ".json": "json"},
     }
 )
 # Kinds that messages call "mechanism files", not "mechanisms".
-_OF_FILES: tuple[Kind, ...] = ("mechanism", "study")
+_OF_FILES: tuple[Kind, ...] = ("mechanism", "study", "task")
 # What a name without a suffix means, where there is one form that everybody expects.
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 

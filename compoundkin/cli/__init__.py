@@ -37,6 +37,7 @@ VERBS = {
     "study": "Many designs: what dimensions do to figures, as a study file says.",
     "optimise": "Better dimensions: what shall be least, what may change, what must hold.",
     "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
+    "synthesise": "Mechanisms that do a task: poses, points, functions, swings, strokes.",
     "import": "A mechanism out of another program's file or link: PMKS+, Linkage, pyslvs and others.",
     "export": "A file for another program, or a function in C, Python, JavaScript or MATLAB.",
     "compare": "Two mechanisms side by side: structure, dimensions, how far apart they move.",
@@ -51,6 +52,9 @@ VERBS = {
 
 # Verbs that are not `command` of the file of their name, as `import` is a word of Python.
 _COMMANDS = {
+    "centres": ("characteristics", "centres_command"),
+    "configurations": ("circuits", "configurations_command"),
+    "workspace": ("circuits", "workspace_command"),
     "completion": ("schema", "completion_command"),
     "atlas": ("catalog", "atlas_command"),
     "import": ("import_command", "command"),

@@ -5,7 +5,7 @@ A task has so many precision positions, which answers meet exactly, or within it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
@@ -13,8 +13,8 @@ import numpy as np
 
 from compoundkin.base.arguments import checked, planar_numbers, real_numbers
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr, count_phrase
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.display import ShortRepr, count_phrase, short_repr
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
 
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
@@ -498,3 +498,100 @@ def _time_ratio(ratio: float) -> float:
     if not 0.0 < ratio < np.inf:
         raise InvalidInput(Problem("time_ratio", f"{ratio:g} is no ratio of times", "give 1 or more"))
     return float(max(ratio, 1.0 / ratio))
+
+
+FORMAT = 1
+# What each kind of task takes from a file; numbers that are angles are degrees there.
+_OF_KIND = {
+    "poses": ("link", "poses", "velocities", "accelerations", "tolerance"),
+    "points": ("points", "at", "tolerance"),
+    "mixed": ("link", "poses", "points", "tolerance"),
+    "function": ("pairs", "linkage", "absolute", "tolerance"),
+    "swing": ("angle", "time_ratio"),
+    "stroke": ("length", "time_ratio", "linkage", "offset"),
+}
+_MAKERS: Mapping[str, Callable[..., Task]] = {
+    "poses": poses,
+    "points": points,
+    "mixed": mixed,
+    "function": function,
+    "swing": swing,
+    "stroke": stroke,
+}
+_CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer")
+
+
+def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:
+    """Return the task of a document, and the conditions as arguments of `synthesise`. Angles are degrees.
+
+    Raises InvalidInput for keys that do not belong there, with the nearest there is, and what the tasks raise.
+
+    >>> read_task({"format": 1, "task": "swing", "angle": 45, "conditions": {"transmission": 30}})[0].in_words
+    'a swing of 45 degrees in the time ratio 1'
+    """
+    kind = document.get("task")
+    if document.get("format") != FORMAT:
+        raise InvalidInput(Problem("format", "it is no known version of the format", f"write format = {FORMAT}"))
+    if kind not in _OF_KIND:
+        raise InvalidInput(Problem("task", f"{short_repr(kind)} is no task", f"one of {', '.join(_OF_KIND)}"))
+    given = {key: value for key, value in document.items() if key not in ("format", "task", "conditions")}
+    _known("", given, _OF_KIND[kind])
+    said = document.get("conditions", {})
+    if not isinstance(said, Mapping):
+        raise InvalidInput(Problem("conditions", "it is no table", "write [conditions], then a line for each"))
+    _known("conditions.", said, _CONDITIONS)
+    conditions = dict(said)
+    if "transmission" in conditions:
+        conditions["transmission"] = float(_radians("conditions.transmission", conditions["transmission"]))
+    missing = [key for key in _required(kind) if key not in given]
+    if missing:
+        raise InvalidInput(Problem(missing[0], "it is missing", f"a task of {kind} needs {', '.join(_required(kind))}"))
+    return _MAKERS[kind](**_in_radians(kind, given)), conditions
+
+
+def _required(kind: str) -> tuple[str, ...]:
+    return {"poses": ("link", "poses"), "points": ("points",), "mixed": ("poses", "points"), "function": ("pairs",),
+            "swing": ("angle",), "stroke": ("length",)}[kind]  # fmt: skip
+
+
+def _known(where: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
+    for key in given:
+        if key not in known:
+            raise InvalidInput(Problem(f"{where}{key}", "there is no such key", suggestion(key, list(known))))
+
+
+def _in_radians(kind: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a task with its angles in radians."""
+    found = dict(given)
+    if "poses" in found:
+        found["poses"] = _last_in_radians("poses", found["poses"])
+    for key in ("velocities", "accelerations"):
+        if isinstance(found.get(key), Mapping):
+            found[key] = {_index(key, name): _last_in_radians(key, [twist])[0] for name, twist in found[key].items()}
+    for key in ("at", "angle"):
+        if key in found:
+            value = _radians(key, found[key])
+            found[key] = float(value) if value.ndim == 0 else value
+    if kind == "function":
+        pairs = real_numbers("pairs", found["pairs"])
+        angular = found.get("linkage", "four-bar") != "slider-crank"
+        found["pairs"] = pairs * np.deg2rad(1.0) if angular else pairs * np.array([np.deg2rad(1.0), 1.0])
+    return found
+
+
+def _radians(where: str, value: Any) -> Number:
+    return np.deg2rad(real_numbers(where, value))
+
+
+def _last_in_radians(where: str, given: Any) -> Number:
+    found = real_numbers(where, given).copy()
+    if found.ndim != 2 or found.shape[1] != 3:
+        raise InvalidInput(Problem(where, "they are not three numbers each", "write [x, y, degrees]"))
+    found[:, 2] = np.deg2rad(found[:, 2])
+    return found
+
+
+def _index(where: str, name: str) -> int:
+    if not name.isdecimal():
+        raise InvalidInput(Problem(f"{where}.{name}", "it is no index of a pose", "write 0 = [x, y, degrees]"))
+    return int(name)
