@@ -119,6 +119,46 @@ def test_a_train_that_runs_down() -> None:
     assert run.energy.worst < 1e-9
 
 
+def rack_and_pinion(*more: object) -> ck.Mechanism:
+    """A pinion of radius 0.1 m above a bar of 2 kg that slides on the frame."""
+    return ck.Mechanism(
+        "Rack and pinion",
+        ck.link("frame", O=0, Q=(0, -0.1)),
+        ck.link("pinion", O=0),
+        ck.link("bar", S=(0, 0)),
+        ck.slide("bar", on="frame", at="S", through="Q", angle=0, name="guide"),
+        ck.rack("bar", "pinion", through="S", at="O", radius=0.1, name="mesh"),
+        ck.drive("pinion"),
+        ck.mass("pinion", 1.0, at="O", inertia=0.02),
+        ck.mass("bar", 2.0, at="S"),
+        ck.friction("mesh", efficiency=0.9),
+        *more,
+        units=SI,
+    )
+
+
+@pytest.mark.parametrize("speed", [2.0, -2.0])
+@pytest.mark.parametrize("load", [10.0, -10.0])
+def test_a_rack_loses_a_part_of_its_moment_on_the_pinion(load: float, speed: float) -> None:
+    """Steady motion: the load's torque and a tenth of it, which is lost whichever side drives."""
+    motion = ck.solve(rack_and_pinion(ck.force("bar", (load, 0), at="S")), {"pinion": [0.3]}, speed=speed)
+    forces = ck.force_analysis(motion)
+    into = -load * float(motion.points["S"].velocity.xy[..., 0])  # what the driver would give without losses
+    given = float(forces.drives["pinion"].effort[0]) * speed
+    assert given == pytest.approx(into + 0.1 * abs(into), rel=1e-12)
+    assert float(forces.friction.pairs["mesh"].power[0]) == pytest.approx(-0.1 * abs(into), rel=1e-12)
+    assert ck.verify(forces).passed
+
+
+def test_a_pinion_that_is_let_go_is_slowed_by_its_rack() -> None:
+    """A constant force draws the bar from rest, with nine tenths of the rack's force on the pinion."""
+    run = ck.simulate(rack_and_pinion(ck.force("bar", (10.0, 0), at="S")), start={"pinion": 0.0}, until=0.5)
+    # 10 = 2 a + F, 0.9 F 0.1 = 0.02 a / 0.1
+    acceleration = 10.0 / (2.0 + 0.02 / 0.1**2 / 0.9)
+    assert abs(float(run.motion.points["S"].x[-1])) == pytest.approx(acceleration * 0.5**2 / 2.0, rel=1e-8)
+    assert run.energy.worst < 1e-9
+
+
 def test_files_there_and_back() -> None:
     one = train(PAIRS["gear"][0], 0.9)
     assert loads(dumps(one)).frictions["a/b"].efficiency == 0.9

@@ -33,7 +33,7 @@ class Friction(PairProperty):
 
     efficiency: Number | None = field(
         default=None,
-        metadata=value_key("length", "Of gears and belts, the part of the torque that reaches the second wheel."),
+        metadata=value_key("length", "Of gears, belts and racks, the part of the torque that reaches the second one."),
     )
 
     title: ClassVar[str] = "friction"
@@ -57,7 +57,9 @@ class Friction(PairProperty):
             yield Problem(f"{where}.pair", what, "leave it out")
         elif self.title not in pair.takes:
             what = f"{self.pair!r} is a {pair.title}, whose friction is not known here"
-            yield Problem(f"{where}.pair", what, "name a pin, a slide, a slot, a cam, a wheel, a gear pair or a belt")
+            yield Problem(
+                f"{where}.pair", what, "name a pin, a slide, a slot, a cam, a wheel, a gear pair, a rack or a belt"
+            )
         elif "efficiency" in pair.takes:
             yield from self._problems_of_mesh(pair.title, where)
         elif self.efficiency is not None:
@@ -98,9 +100,9 @@ def friction(
 ) -> Friction:
     """Return Coulomb friction in a pair. A pin needs its `radius`; a slide may have the `length` of its guide.
 
-    A wheel that rolls has a coefficient of rolling resistance: the moment over normal force and radius. Gears and belts
-    have an `efficiency`: where the first wheel drives, the second gives that part of the torque without losses, seen
-    from the carrier.
+    A wheel that rolls has a coefficient of rolling resistance: the moment over normal force and radius. Gears, belts
+    and racks have an `efficiency`: where the first wheel or the rack drives, the second or the pinion gives that part
+    of the torque without losses, seen from the carrier or the rack.
 
     The letter of a multiple pin stands for every pair of that pin. Numbers, or arrays for designs.
 

@@ -14,6 +14,7 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TANGENTIAL
 from compoundkin.model.fields import constructor, link_key, point_key, value_key
+from compoundkin.model.pairs.contact import FrictionPair
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, TransmittingPair, jacobian_of_rows
 from compoundkin.model.pairs.gear import STANDARD, UNCOUNTED
 from compoundkin.model.pairs.geared import FITS, pressure_problems, radius_problems
@@ -23,7 +24,7 @@ from compoundkin.model.pairs.revolute import Revolute
 
 
 @dataclass(frozen=True, eq=False)
-class Rack(PitchLinePair, TransmittingPair):
+class Rack(PitchLinePair, TransmittingPair, FrictionPair):
     """The link `pinion` rolls without slip along the pitch line of the link `rack`.
 
     The pitch line runs through the point `through` of the rack, in the direction `angle` (radians, from the rack's x
@@ -37,7 +38,8 @@ class Rack(PitchLinePair, TransmittingPair):
     The tooth force acts at the pitch point, along the line, and parts the two by the tangent of the `pressure_angle`
     (radians). A cable that a drum winds up and that pulls a block is the same pair, of pressure angle 0. Source: e.g.
     J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapter 7 (a rack is a gear of
-    infinite radius).
+    infinite radius). Teeth with an efficiency lose a part of their moment about the axis, against the pinion's turning
+    on the rack.
 
     >>> rack("bar", "wheel", through="Q", at="C", radius=12).size
     12
@@ -76,6 +78,8 @@ class Rack(PitchLinePair, TransmittingPair):
     held: ClassVar[int] = 1
     force_words: ClassVar[tuple[str, ...]] = (TANGENTIAL,)
     table: ClassVar[str] = "racks"
+    takes: ClassVar[tuple[str, ...]] = ("friction", "efficiency")
+    is_couple: ClassVar[bool] = True
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -137,6 +141,19 @@ class Rack(PitchLinePair, TransmittingPair):
         place, e = self.pitch_point(ends, poses)
         apart = np.sign(ends[1].measure) * np.tan(self.pressure_angle)
         return Wrench.at(place, 1j * e * (np.abs(transmitted) * apart))
+
+    @property
+    def arm(self) -> Number:
+        """One: its normal force is a moment."""
+        return 1.0
+
+    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
+        """Return a couple."""
+        return Wrench(0j, radius)
+
+    def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
+        """Return the moment of the teeth about the axis of the pinion."""
+        return (wrench.about(poses[1].at(ends[1].point).c[0]),)
 
     def distance_error(self, ends: Ends, poses: Poses) -> Series:
         """Return the distance of the axis from the pitch line less the radius."""
