@@ -97,6 +97,21 @@ def with_ghosts(motion: ck.results.Motion, *others: ck.results.Motion) -> ck.res
     return ck.results.Picture(shapes, window.width, window.height, motion.mechanism.title, window=window)
 
 
+def burmester() -> ck.results.Picture:
+    """The curves of centre and circle points through four poses."""
+    poses = [(0.0, 0.0, 0.0), (1.2, 0.5, 35.0), (1.9, 1.5, 80.0), (1.6, 2.6, 130.0)]
+    found: ck.results.Picture = ck.dyads([(x, y, ck.deg(angle)) for x, y, angle in poses]).draw()
+    return found
+
+
+def cognates() -> ck.results.Picture:
+    """Roberts' three linkages of one coupler curve."""
+    links = ck.link("crank", A=0, B=2), ck.link("coupler", B=0, C=5, P=(2, 1.5)), ck.link("rocker", D=0, C=4)
+    four_bar = ck.Mechanism("Crank-rocker", ck.link("frame", A=0, D=5), *links, ck.drive("crank"))
+    found: ck.results.Picture = ck.cognates(four_bar, "P").draw()
+    return found
+
+
 FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "moving": lambda: ck.animate(SIX_BAR, paths="G"),
     "crank-rocker": crank_rocker,
@@ -117,6 +132,8 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "constant-breadth-yoke": lambda: ck.draw(load("constant-breadth-yoke"), ck.deg(60)),
     "free-bodies": lambda: ck.draw(load("engine-gas-pressure"), ck.deg(30), kind="free-bodies"),
     "along-bars": lambda: ck.draw(load("engine-gas-pressure"), ck.deg(75), kind="bending-moment"),
+    "burmester": burmester,
+    "cognates": cognates,
     "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 

@@ -32,6 +32,14 @@ def test_the_page_on_loads_prints_what_it_shows(capsys: pytest.CaptureFixture[st
     assert "mass centre and inertia of a uniform bar A-B\n(15+0j) 30.0\n" in printed
 
 
+def test_the_page_on_synthesis_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (DOCS / "synthesis.md").read_text("utf-8")
+    names: dict[str, Any] = {}
+    for code, shown in re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL):
+        exec(code, names)
+        assert capsys.readouterr().out == shown
+
+
 def test_the_page_on_outlines_prints_what_it_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

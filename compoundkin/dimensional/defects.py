@@ -35,7 +35,7 @@ ORDER, BRANCH, CIRCUIT, TURNING, TRANSMISSION, REGION, LENGTH, ASSEMBLY, ACCURAC
     "order", "branch", "circuit", "no full turn", "transmission", "region", "length", "assembly", "accuracy",
 )  # fmt: skip
 # The least of defects first: of several drivers the one whose defect is least tells.
-SEVERITY = (TRANSMISSION, TURNING, BRANCH, ORDER, CIRCUIT, LENGTH, REGION, ACCURACY, ASSEMBLY)
+SEVERITY = (ACCURACY, TRANSMISSION, TURNING, BRANCH, ORDER, CIRCUIT, LENGTH, REGION, ASSEMBLY)
 # A solved position may miss its place by so much, in parts of the linkage: next to limit positions rounding grows to
 # its root.
 MISSED = 1e-6
@@ -274,9 +274,9 @@ def _solved(candidate: Linkage, course: _Course, conditions: Conditions, toleran
         return Rejection(ACCURACY, text, candidate, driver)
     if not np.isfinite(candidate.error):
         return Rejection(ACCURACY, "it does not assemble over the whole range", candidate, driver)
-    if 0.0 < tolerance < candidate.error:
-        text = f"it misses the task by {candidate.error:.3g}, more than {tolerance:.3g}"
-        return Rejection(ACCURACY, text, candidate, driver)
+    if candidate.error > tolerance:
+        allowed = f"more than {tolerance:.3g}" if tolerance else "and no tolerance is given"
+        return Rejection(ACCURACY, f"it misses the task by {candidate.error:.3g}, {allowed}", candidate, driver)
     least = least_transmission(motion, between=False)
     if least < conditions.transmission:
         return _poor(least, candidate, driver)

@@ -11,6 +11,7 @@ London Math. Soc. 7 (1875) 14-23; J. M. McCarthy and G. S. Soh, Geometric Design
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 
 import numpy as np
 
@@ -26,6 +27,11 @@ from compoundkin.dimensional.tasks import Conditions, PoseTask, TimedPointTask, 
 OF_CURVE = 16
 # Of the pairs of a family so many are tried at most, spread over all.
 MOST_PAIRS = 96
+# Poses that cannot be met are approached from so many starts, and so many of the nearest linkages are told.
+STARTS, TOLD = 12, 6
+# Linkages whose pivots and joints differ by less than this part of them are one.
+ALIKE = 1e-3
+_MANY = "so many poses are approached: the error is a length, of places and of angles by the extent of the poses"
 # Fixed pivots are tried on a grid of so many places each way.
 GRID = 4
 # Without a region pivots are sought so many extents of the poses around their middle.
@@ -41,7 +47,12 @@ def five_poses(task: PoseTask) -> Candidates:
         return _family(task, found)
     pairs = pairs_of(found.found)
     complete = f"{count_phrase(len(found), 'real dyad')} of 4, {count_phrase(len(pairs), 'linkage')}"
-    return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, found.note, found)
+    made = of_dyads(task.z, task.u, pairs, task.link)
+    if len(task.z) < task.count or (pairs and not task.tolerance):
+        return Candidates(made, complete, found.note, found)
+    # none is exact, or others are near enough: those that come nearest, and which tolerance would do
+    note = found.note if pairs else "no linkage takes these poses exactly"
+    return Candidates([*made, *islice(nearest_linkages(task), TOLD)], complete, note, found)
 
 
 def four_poses(task: PoseTask) -> Candidates:
@@ -56,6 +67,127 @@ def four_poses(task: PoseTask) -> Candidates:
     complete = f"{len(chosen)} dyads of a curve with 2 sliders, {count_phrase(len(pairs), 'linkage')}"
     note = "the dyads through four poses form a curve: any two of it are a linkage"
     return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, note, found, is_family=True)
+
+
+def many_poses(task: PoseTask) -> Candidates:
+    """Return the four-bars and slider-cranks that come nearest to more poses than can be met, in the mean square."""
+    return Candidates(list(nearest_linkages(task)), f"the best of {STARTS} starts at most", _MANY, is_family=True)
+
+
+def nearest_linkages(task: PoseTask) -> Iterator[Linkage]:
+    """Yield linkages that come nearest to poses, the nearest first.
+
+    Of each start, two dyads through some of the poses, the sum of squares of the distances from all is least: how far
+    the body is from a pose that both dyads allow, lengths and angles by the extent of the poses together. `error` is
+    the greatest of these.
+    """
+    from scipy.optimize import least_squares
+
+    z, u, size = task.z, task.u, extent(task.z)
+    found = []
+    for pair in _starts(task):
+        start = np.concatenate([_numbers(dyad) for dyad in pair])
+
+        def distances(x: Number, pair: tuple[Dyad, Dyad] = pair) -> Number:
+            return _distances(z, u, _with_numbers(pair, x), size)
+
+        best = least_squares(distances, start, x_scale="jac", max_nfev=120)
+        dyads = _with_numbers(pair, best.x)
+        there = _allowed(z, u, dyads, size)
+        if there is not None:
+            w, v = there
+            error = float(np.max(np.hypot(np.abs(w - z), size * np.abs(np.angle(v / u)))))
+            found.append((error, dyads, w, v))
+    found.sort(key=lambda one: one[0])
+    taken = list[Number]()
+    for error, dyads, w, v in found:
+        ordered = sorted(dyads, key=lambda dyad: (dyad.kind, dyad.fixed.real))
+        ends = np.array([place for dyad in ordered for place in (dyad.fixed, dyad.moving)])
+        spread = max(extent(ends), *(dyad.length for dyad in dyads))
+        if spread < LONGEST * size and all(np.max(np.abs(ends - other)) > ALIKE * spread for other in taken):
+            taken.append(ends)
+            yield from of_dyads(w, v, [dyads], task.link, error=error)
+
+
+def _starts(task: PoseTask) -> list[tuple[Dyad, Dyad]]:
+    """Return pairs of dyads through some of the poses, those with the least distances from all."""
+    count, size = len(task.z), extent(task.z)
+    indices = np.arange(count)
+    chosen = [np.unique(np.linspace(0, count - 1, 4).round().astype(int))]
+    chosen += [np.delete(indices, k) for k in indices] if count == 5 else []
+    dyads = list[Dyad]()
+    for some in chosen:
+        part = PoseTask(task.link, task.z[some], task.u[some])
+        found = dyads_of(part)
+        if found.freedom == 1 and found.basis.shape[0] != found.basis.shape[1]:
+            dyads += [*found, *_spread(part, found)]
+    good = [dyad for dyad in dyads if dyad.kind != "RP" and np.max(np.abs(dyad.residual(task.z, task.u))) < size]
+    good.sort(key=lambda dyad: float(np.sum(dyad.residual(task.z, task.u) ** 2)))
+    pairs = [pair for pair in pairs_of(good[: 2 * STARTS]) if {dyad.kind for dyad in pair} != {PR}]
+    pairs.sort(key=lambda pair: float(np.sum(_distances(task.z, task.u, pair, size) ** 2)))
+    return pairs[:STARTS]
+
+
+def _numbers(dyad: Dyad) -> Number:
+    """Return the numbers of a dyad that may change: of a slider the line's angle in the place of the length."""
+    last = dyad.length if dyad.direction is None else float(np.angle(dyad.direction))
+    return np.array([dyad.fixed.real, dyad.fixed.imag, dyad.moving.real, dyad.moving.imag, last])
+
+
+def _with_numbers(pair: tuple[Dyad, Dyad], x: Number) -> tuple[Dyad, Dyad]:
+    made = []
+    for dyad, (a, b, c, d, last) in zip(pair, x.reshape(2, 5), strict=True):
+        fixed, moving = complex(a, b), complex(c, d)
+        if dyad.direction is None:
+            made.append(Dyad(RR, fixed, moving, None, float(abs(last))))
+        else:
+            made.append(Dyad(dyad.kind, fixed, moving, complex(np.exp(1j * last))))
+    return made[0], made[1]
+
+
+def _closure(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> tuple[Number, Number]:
+    """Return by how much both dyads are open at poses (n, 2), and the slopes by x, y and the angle (n, 2, 3)."""
+    values, slopes = [], []
+    for dyad in pair:
+        arm = u * dyad.moving
+        off = z + arm - dyad.fixed
+        if dyad.direction is None:
+            way = off / np.maximum(np.abs(off), 1e-300)
+            values.append(np.abs(off) - dyad.length)
+        else:
+            way = np.full(len(z), 1j * dyad.direction)
+            values.append((np.conj(dyad.direction) * off).imag)
+        slopes.append(np.stack([way.real, way.imag, (np.conj(way) * 1j * arm).real / size], axis=-1))
+    return np.stack(values, axis=-1), np.stack(slopes, axis=-2)
+
+
+def _distances(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> Number:
+    """Return the distances of poses from those that two dyads allow, to first order: two for each pose."""
+    values, slopes = _closure(z, u, pair, size)
+    gram = slopes @ np.swapaxes(slopes, -1, -2) + 1e-12 * np.eye(2)
+    found: Number = np.linalg.solve(np.linalg.cholesky(gram), values[..., None]).ravel()
+    return found
+
+
+def _allowed(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> tuple[Number, Number] | None:
+    """Return the nearest poses that two dyads allow, exactly; None where there is none near."""
+    start = z, u
+    for _ in range(60):
+        values, slopes = _closure(z, u, pair, size)
+        # what remains along the allowed motion is taken back, so that the nearest is found
+        back = np.stack([(start[0] - z).real, (start[0] - z).imag, size * np.angle(start[1] / u)], axis=-1)
+        turned = np.linalg.pinv(slopes)
+        step = np.einsum("nij,nj->ni", turned, -values - np.einsum("nij,nj->ni", slopes, back)) + back
+        z = z + step[:, 0] + 1j * step[:, 1]
+        u = u * np.exp(1j * step[:, 2] / size)
+        if np.max(np.abs(step)) < 1e-14 * size:
+            break
+    for _ in range(4):
+        values, slopes = _closure(z, u, pair, size)
+        step = np.einsum("nij,nj->ni", np.linalg.pinv(slopes), -values)
+        z, u = z + step[:, 0] + 1j * step[:, 1], u * np.exp(1j * step[:, 2] / size)
+    values, _ = _closure(z, u, pair, size)
+    return (z, u) if np.isfinite(z).all() and np.max(np.abs(values)) < 1e-12 * size else None
 
 
 def three_poses(task: PoseTask) -> Candidates:

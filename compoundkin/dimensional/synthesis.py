@@ -13,6 +13,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.display import DisplaysPicture, aligned_text, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
+from compoundkin.dimensional.defects import ACCURACY as ACCURACY_DEFECT
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
 from compoundkin.dimensional.function_generation import (
     approached_function,
@@ -21,7 +22,13 @@ from compoundkin.dimensional.function_generation import (
     stroke_linkage,
 )
 from compoundkin.dimensional.linkages import Candidates
-from compoundkin.dimensional.motion_generation import few_poses_with_timing, five_poses, four_poses, three_poses
+from compoundkin.dimensional.motion_generation import (
+    few_poses_with_timing,
+    five_poses,
+    four_poses,
+    many_poses,
+    three_poses,
+)
 from compoundkin.dimensional.tasks import (
     ACCURACY,
     COMPACTNESS,
@@ -54,6 +61,7 @@ METHODS: tuple[Method, ...] = (
     Method(PoseTask, five_poses, lambda task: task.count == 5),
     Method(PoseTask, four_poses, lambda task: task.count == 4),
     Method(PoseTask, three_poses, lambda task: task.count == 3),
+    Method(PoseTask, many_poses, lambda task: task.count > 5 and len(task.z) == task.count),
     Method(FunctionTask, exact_function, lambda task: len(task.inputs) <= 5),
     Method(FunctionTask, approached_function),
     Method(SwingTask, crank_rocker),
@@ -154,7 +162,9 @@ def synthesise(
     if method is None:
         raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
     candidates = method.run(asked)
-    found = [judged(one, asked.conditions, asked.tolerance) for one in candidates]
+    # functions are approached anyhow; of any other task without a tolerance nothing is allowed
+    tolerance = np.inf if isinstance(task, FunctionTask) and not task.tolerance else task.tolerance
+    found = [judged(one, asked.conditions, tolerance) for one in candidates]
     bad = [one for one in found if isinstance(one, Rejection)]
     good = sorted((one for one in found if isinstance(one, SolvedLinkage)), key=_rank(asked.conditions.prefer))
     complete = candidates.complete
@@ -165,12 +175,26 @@ def synthesise(
     bad += [one for one in checks if isinstance(one, Rejection)]
     solutions = (one for one in checks if isinstance(one, SolvedLinkage))
     ranked = tuple(sorted(solutions, key=_rank(asked.conditions.prefer)))
-    return Answer(asked, ranked, tuple(bad), complete, candidates.note, candidates.nearest, candidates)
+    nearest = candidates.nearest or ("" if ranked else _nearest(bad))
+    return Answer(asked, ranked, tuple(bad), complete, candidates.note, nearest, candidates)
+
+
+def _nearest(rejected: list[Rejection]) -> str:
+    """Return which tolerance would do, where a linkage misses the task alone."""
+    near = [one for one in rejected if one.candidate.error and np.isfinite(one.candidate.error)]
+    errors = [one.candidate.error for one in near if one.reason == ACCURACY_DEFECT]
+    if errors:
+        return f"a tolerance of {min(errors) * 1.001:.4g} would do"
+    if not near:
+        return ""
+    least = min(near, key=lambda one: one.candidate.error)
+    return f"the nearest linkage misses the task by {least.candidate.error:.4g}, and has a defect: {least.reason}"
 
 
 def _usual(task: Task) -> str:
     """Return what answers are ranked by where nothing is said: accuracy where they approach a task."""
     approached = isinstance(task, FunctionTask) and (task.whole is not None or len(task.inputs) > 5)
+    approached = approached or (isinstance(task, PoseTask) and task.count > 5)
     return ACCURACY if approached else TRANSMISSION
 
 

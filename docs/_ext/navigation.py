@@ -17,7 +17,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
         *("press-drive", "outlines", "loads", "machine", "simulation"),
     ),
     "Use it": (
-        *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
+        *("pairs", "cams", "laws", "circuits", "composing", "synthesis", "pictures", "animation", "plots", "page"),
         *("studies", "clusters", "tolerances", "optimisation", "compiled"),
         *("cli", "file-format", "exchange/index", "study-files", "programs_in_other_languages"),
     ),

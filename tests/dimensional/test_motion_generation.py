@@ -328,3 +328,48 @@ def test_a_region_is_a_polygon():
     shape = np.array([0, 2, 2 + 2j, 1 + 1j, 2j])
     places = np.array([1 + 0.5j, 1 + 1.5j, 0.2 + 1j, 3 + 1j, -0.1 + 0.1j])
     assert inside(places, shape).tolist() == [True, False, True, False, False]
+
+
+def coupler_poses(count, noise):
+    """Poses of the coupler of a known crank-rocker, with errors."""
+    links = ck.link("crank", A=0, B=2), ck.link("rocker", D=0, C=4), ck.link("coupler", B=0, C=5, P=(2, 1.5))
+    mechanism = ck.Mechanism("m", ck.link("frame", A=0, D=5), *links, ck.drive("crank"))
+    motion = ck.solve(mechanism, {"crank": np.linspace(0.2, 2.5, count)})
+    place, angle = motion.points["P"].position, motion.links["coupler"].angle
+    exact = np.column_stack([place.real, place.imag, angle])
+    return exact + noise * np.random.default_rng(0).normal(size=exact.shape) * [1, 1, 0.3]
+
+
+def test_many_poses_of_one_linkage_give_it_back():
+    answer = ck.synthesise(ck.tasks.poses("plate", coupler_poses(12, 0.0), tolerance=1e-6))
+    best = answer[0]
+    assert sorted(np.round(best.candidate.lengths, 6)) == [2, 4, 5]
+    assert best.error < 1e-9
+
+
+def test_poses_with_errors_are_approached_and_the_tolerance_that_would_do_is_said():
+    poses = coupler_poses(12, 1e-3)
+    exact = ck.synthesise(ck.tasks.poses("plate", poses))
+    assert not len(exact)
+    enough = float(exact.nearest.split()[3])
+    assert exact.nearest == f"a tolerance of {enough:.4g} would do"
+    assert enough < 5e-3
+    answer = ck.synthesise(ck.tasks.poses("plate", poses, tolerance=enough))
+    assert len(answer)
+    best = answer[0]
+    # by another way: the distance of each pose from a dense motion is the error, or less
+    dense = ck.solve(
+        best.mechanism, {best.driver: np.linspace(best.values[0] - 0.2, best.values[-1] + 0.2, 20001)}, order=0
+    )
+    z, u = parts(poses)
+    place, turn = dense.links["plate"].origin.position, np.exp(1j * dense.links["plate"].angle)
+    size = max(abs(a - b) for a in z for b in z)
+    apart = [np.min(np.hypot(np.abs(place - a), size * np.abs(turn - b))) for a, b in zip(z, u, strict=True)]
+    assert max(apart) < best.error * 1.001
+    assert max(apart) > best.error * 0.9
+
+
+def test_poses_that_nothing_takes_have_a_nearest_linkage():
+    answer = ck.synthesise(ck.tasks.poses("plate", radians(NONE[0])))
+    assert answer.note == "no linkage takes these poses exactly"
+    assert "the nearest linkage misses the task by" in answer.nearest or "would do" in answer.nearest

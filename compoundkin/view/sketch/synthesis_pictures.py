@@ -70,7 +70,7 @@ def dyads_picture(found: Dyads, *, size: float | None = None) -> Picture:
     notes = [repr(found).removeprefix("Dyads(").removesuffix(")")]
     if found.freedom == 1:
         notes += [
-            "red: fixed centres, with a black edge where a crank passes the poses in order",
+            "red: fixed centres, edged black: crank in order",
             "blue: moving points, first pose",
         ]
     return with_notes(shapes, width, height, notes, "Dyads", found.task.in_words, size, legible=True)
