@@ -218,7 +218,8 @@ def test_block_falls_to_the_end_of_its_guide() -> None:
     stopped = ck.simulate(fall, start={"block": 0.0}, until=3.0)
     assert stopped.times[-1] == pytest.approx(first, rel=1e-9)
     assert [event.stops for event in stopped.events] == [True]
-    back = ck.simulate(fall, start={"block": 0.0}, until=2.0 * first, restitution=0.5)
+    # it is at the end again at twice that time, and the rest is too short for a step to tell anything
+    back = ck.simulate(fall, start={"block": 0.0}, until=2.0 * first + 1e-9, restitution=0.5)
     assert [event.time for event in back.events] == pytest.approx([first, 2.0 * first], rel=1e-8)
     top = back.motion.points["P"].y[back.times > 1.2 * first].max()
     assert top == pytest.approx(-0.75, abs=1e-4)

@@ -13,7 +13,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
-from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, inertia_terms
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
@@ -64,6 +64,15 @@ def first_angle(start: Motion, name: str) -> float:
         return float(np.ravel(start.pairs[name].value)[0])
     first, second = (float(np.ravel(start.links[link].angle)[0]) for link in pair_named(start, name).members[:2])
     return second - first
+
+
+def needs_time(start: Motion, load: Load) -> bool:
+    """Return whether a load depends on the time, which a motion of one pose does not have."""
+    try:
+        list(load.wrenches(next(iter(loaded_blocks(start)))))
+    except InvalidInput:
+        return True
+    return False
 
 
 class StateChart(Protocol):

@@ -223,9 +223,7 @@ def _holding(course: SimulatedCourse, phase: int, times: Number) -> tuple[Effort
 
 def _farthest(step: Step) -> float:
     """Return the greatest scaled step of a free driver."""
-    n = len(step.chart.free)
-    first, last = (step.between(time)[:n] for time in (step.first, step.last))
-    return float(np.max(np.abs(last - first) / step.chart.scales))
+    return float(np.max(np.abs(step.moved) / step.chart.scales))
 
 
 def _requested_events(times: Any, course: SimulatedCourse) -> Number:

@@ -33,7 +33,7 @@ from compoundkin.dynamics.friction.coulomb_friction import (
 )
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact, friction_contacts_of
 from compoundkin.dynamics.simulation.body_chart import NO_MASS, BodyChart, BodyState
-from compoundkin.dynamics.simulation.driver_state import Rates
+from compoundkin.dynamics.simulation.driver_state import Rates, needs_time
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.attachments import Effort
 from compoundkin.model.pairs import Pair
@@ -331,6 +331,8 @@ class FrictionChart(BodyChart):
 
     def released(self, time: float, values: Number, until: float) -> float:
         """Return the time at which loads overcome friction at rest, at the latest the end."""
+        if not any(needs_time(self.start, load) for loads in self.loads for load in loads):
+            return until
         still = np.zeros_like(values)
 
         def push(at: float) -> Number:

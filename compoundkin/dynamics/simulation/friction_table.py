@@ -41,7 +41,7 @@ from compoundkin.dynamics.friction.friction_contacts import (
 )
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.reactions.reverse_pass import reverse_pass
-from compoundkin.dynamics.simulation.driver_state import DriverState, Rates, accelerated_motion
+from compoundkin.dynamics.simulation.driver_state import DriverState, Rates, accelerated_motion, needs_time
 from compoundkin.dynamics.simulation.tabulated_chart import (
     DRIVE_SCALES,
     POINTS,
@@ -288,7 +288,7 @@ class FrictionTable(TabulatedChart):
 
     def released(self, time: float, values: Number, until: float) -> float:
         """Return the time at which loads overcome friction at rest, at the latest the end."""
-        if not self.has_others:
+        if not any(needs_time(self.start, load) for loads in self.others for load in loads):
             return until
 
         def moves(at: float) -> bool:

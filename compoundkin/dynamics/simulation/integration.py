@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.friction.coulomb_friction import NotUniqueMotion
+from compoundkin.dynamics.friction.coulomb_friction import TINY, NotUniqueMotion
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
+from compoundkin.dynamics.simulation.dormand_prince import PlainSolver, PlainStep, states_between
 from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
@@ -87,12 +90,13 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
     while solver is not None and solver.status == "running":
         n = len(chart.free)
         longest = course.until if chart.held is None and not chart.closed else course.until / HELD_STEPS
-        solver.max_step = min(longest, longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n]))
+        y, f = solver.y, solver.f
+        solver.max_step = min(longest, longest_step(chart, y[n : 2 * n], f[n : 2 * n]))
         solver.h_abs = min(solver.h_abs, solver.max_step)
         # next to a change point no tolerance is kept that is below the rounding there
-        loosened = max(1.0, min(chart.digits_lost(solver.t, solver.y), LOOSEST) / course.tolerance)
+        loosened = max(1.0, min(chart.digits_lost(solver.t, y), LOOSEST) / course.tolerance)
         solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
-        before = _Begin(solver.t, solver.y, solver.f)
+        before = _Begin(solver.t, y, f)
         _step(solver, course)
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
@@ -111,9 +115,10 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
         if released is not None:
             solver = _begun(chart, course.last, released, course)
         elif passed is None:
-            chart.accept(solver.t, solver.y[:n], solver.y[n : 2 * n])
-            settled = chart.settled(solver.t, solver.y)
-            if settled is not solver.y:
+            y = solver.y
+            chart.accept(solver.t, y[:n], y[n : 2 * n])
+            settled = chart.settled(solver.t, y)
+            if settled is not y:
                 solver.y, solver.f = settled, solver.fun(solver.t, settled)
             changed = _changed(chart, solver, course)
             if changed is not None:
@@ -140,8 +145,10 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
 def _step(solver: Any, course: SimulatedCourse) -> None:
     """Make a step, a shorter one where friction has no motion, or several, within it."""
     while True:
+        asked = solver.nfev
         try:
             solver.step()
+            course.evaluations += solver.nfev - asked
             return
         except NotUniqueMotion:
             solver.h_abs = min(solver.h_abs, solver.max_step) / 2.0
@@ -258,8 +265,10 @@ def _changed(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart,
     """Return another chart and its state to continue with; None where the present one is regular or none is better.
 
     Next to a limit position of the driver another pair is the coordinate, where one is regular. Else, and where none
-    stays regular for long, the coordinates of all links are.
+    stays regular for long, the coordinates of all links are. Behind the last step nothing is to be continued.
     """
+    if solver.status == "finished":
+        return None
     n = len(chart.free)
     is_regular = chart.is_regular(solver.y[:n])
     if _stalls(solver, course) and solver.status != "failed" and solver.step_size * _decay(chart, solver) > DYING:
@@ -550,12 +559,9 @@ def _stop(course: SimulatedCourse, name: str, text: str) -> None:
 
 def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse, step: float | None = None) -> Any:
     """Return the integrator at a state of a chart, with a first step where one is known."""
-    from scipy.integrate import DOP853, Radau
-
     n = len(chart.free)
 
     def grown(at: float, y: Number) -> Number:
-        course.evaluations += 1
         found = chart.followed_rates(at, y[:n], y[n : 2 * n])
         return np.concatenate([y[n : 2 * n], found.accelerations, [found.power]])
 
@@ -564,8 +570,12 @@ def _solver(chart: Chart, time: float, state: Number, course: SimulatedCourse, s
     energy = chart.state(time, state[:n], pace).kinetic
     allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
     end = next((one.before for one in course.breaks if one.before > time), course.until)
-    method = Radau if course.implicit else DOP853
     first = None if step is None else min(step, end - time)
+    if isinstance(chart, TabulatedChart) and not course.implicit:
+        return PlainSolver(chart.plain_rates(), time, state, end, course.tolerance, allowed, first)
+    from scipy.integrate import DOP853, Radau
+
+    method = Radau if course.implicit else DOP853
     solver: Any = method(grown, time, state, end, rtol=course.tolerance, atol=allowed, first_step=first)
     solver.allowed, solver.is_implicit = allowed, course.implicit
     return solver
@@ -621,7 +631,11 @@ def _decay(chart: Chart, solver: Any) -> float:
         if not size > 0.0:
             return 0.0
         step = APART * pace * way / size
-        beside = chart.followed_rates(float(solver.t), y[:n], y[n : 2 * n] + scales * step).accelerations
+        speeds = y[n : 2 * n] + scales * step
+        if isinstance(solver, PlainSolver):
+            beside = np.array([solver.rates(solver.t, float(y[0]), float(speeds[0]))[0]])
+        else:
+            beside = chart.followed_rates(float(solver.t), y[:n], speeds).accelerations
         change = (beside - f[n : 2 * n]) / scales
         found = -float(step @ change) / float(step @ step)
         way = change
@@ -638,12 +652,14 @@ def _driver_paces(chart: Chart, speeds: Number, accelerations: Number, duration:
 
 def longest_step(chart: Chart, speeds: Number, accelerations: Number) -> float:
     """Return the longest time step in which no driver exceeds LONGEST_MOVE."""
-    rate = np.max(np.abs(speeds) / chart.scales)
-    growth = np.max(np.abs(accelerations) / chart.scales)
+    if len(speeds) == 1:
+        scale = float(chart.scales[0])
+        rate, growth = abs(float(speeds[0])) / scale, abs(float(accelerations[0])) / scale
+    else:
+        rate = float(np.max(np.abs(speeds) / chart.scales))
+        growth = float(np.max(np.abs(accelerations) / chart.scales))
     # s = v t + a t^2 / 2, solved for the time without cancellation
-    return float(
-        2.0 * LONGEST_MOVE / (rate + np.sqrt(rate * rate + 2.0 * growth * LONGEST_MOVE) + np.finfo(float).tiny)
-    )
+    return 2.0 * LONGEST_MOVE / (rate + sqrt(rate * rate + 2.0 * growth * LONGEST_MOVE) + TINY)
 
 
 # The nodes of a quadrature over a step: exact to the order 16, above that of the method.
@@ -701,6 +717,8 @@ class Step:
 
     def holding(self, time: float) -> list[tuple[StopContact, float]]:
         """Return the contacts that hold a coordinate at a time in the step, with their forces."""
+        if not self.memory[0][1]:  # none is closed
+            return []
         chart, memory, n = self.chart, self.chart.memory, len(self.chart.free)
         chart.recall(self.memory)
         rigid, y, forces = chart.rigid, self.between(np.array(time)), np.empty(0)
@@ -718,10 +736,22 @@ class Step:
 
     def accelerations_at(self, times: Number, states: Number) -> Number:
         """Return the accelerations of the free drivers at times in the step, in columns."""
-        n = len(self.chart.free)
-        self.chart.recall(self.memory)
-        found = [self.chart.accelerations_at(t, y[:n], y[n : 2 * n]) for t, y in zip(times, states.T, strict=True)]
+        n, chart = len(self.chart.free), self.chart
+        chart.recall(self.memory)
+        if type(chart) is TabulatedChart:
+            plain = chart.plain_rates()
+            return np.array([[plain(t, *y)[0] for t, y in zip(times.tolist(), states[:2].T.tolist(), strict=True)]])
+        found = [chart.accelerations_at(t, y[:n], y[n : 2 * n]) for t, y in zip(times, states.T, strict=True)]
         return np.array(found).T
+
+    @property
+    def moved(self) -> Number:
+        """How far each free driver has moved."""
+        n, between = len(self.chart.free), self.between
+        if isinstance(between, PlainStep) and self.last == between.first + between.length:
+            return np.array([between.end[0] - between.begin[0]])
+        found: Number = between(np.array(self.last))[:n] - between(np.array(self.first))[:n]
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -857,10 +887,12 @@ def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
     own = times[((times >= first) if is_first else (times > first)) & (times <= last)]
     whole = np.unique(np.concatenate([[first], own, [last]]))
     index = np.minimum(np.searchsorted([step.last for step in steps], whole), len(steps) - 1)
-    states, accelerations = [], []
-    for k in np.unique(index):
-        here = whole[index == k]
-        states.append(steps[k].settled(here))
-        accelerations.append(steps[k].accelerations_at(here, states[-1]))
-    whole_states, rates = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
-    return ChartStretch(steps[0].chart, whole, whole_states, rates, np.isin(whole, own))
+    used, firsts = np.unique(index, return_index=True)
+    cuts = [slice(a, b) for a, b in pairwise([*firsts.tolist(), len(whole)])]
+    plain = [step.between for step in steps if isinstance(step.between, PlainStep)]
+    if len(plain) == len(steps):
+        states = states_between(plain, index, whole)
+    else:
+        states = np.concatenate([steps[k].settled(whole[cut]) for k, cut in zip(used, cuts, strict=True)], axis=1)
+    rates = [steps[k].accelerations_at(whole[cut], states[:, cut]) for k, cut in zip(used, cuts, strict=True)]
+    return ChartStretch(steps[0].chart, whole, states, np.concatenate(rates, axis=1), np.isin(whole, own))

@@ -20,11 +20,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, first_entry
-from compoundkin.base.errors import CompoundkinError, InvalidInput
+from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import mass_motions
+from compoundkin.dynamics.simulation.dormand_prince import PlainRates
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import (
     KnownCoordinate,
@@ -32,6 +33,7 @@ from compoundkin.dynamics.simulation.driver_state import (
     Rates,
     SeenState,
     loaded_state,
+    needs_time,
     rotors_that_lose,
 )
 from compoundkin.kinematics import solve
@@ -39,7 +41,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.loads.attachments import PairLoad
+from compoundkin.model.loads.attachments import PairLoad, PlainEffort
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
@@ -70,13 +72,9 @@ class TabulatedChart(DriverChart):
 
     def _is_timeless(self, load: Load) -> bool:
         """Whether a load depends on the pose alone, not on how many turns were made."""
-        if load.needs_rates:
+        if load.needs_rates or needs_time(self.start, load):
             return False
         block = next(iter(loaded_blocks(self.start)))
-        try:
-            list(load.wrenches(block))
-        except InvalidInput:  # it needs the time, and the first pose has none
-            return False
         amounts = load.amounts_held
         comes_again = bool(amounts) and all(map(_comes_again, amounts))
         return comes_again or not counted_angles(load, block)
@@ -93,6 +91,62 @@ class TabulatedChart(DriverChart):
             more = self._exact(piece, basis, time, values, speed)
             stored, other = stored + more[0], other + more[1]
         return Rates(np.array([(stored + other - bias * speed * speed) / inertia]), other * speed)
+
+    def plain_rates(self) -> PlainRates:
+        """Return the acceleration and the power as a function of plain numbers, until contacts change."""
+
+        def asked(time: float, value: float, speed: float) -> tuple[float, float]:
+            found = self.followed_rates(time, np.array([value]), np.array([speed]))
+            return float(found.accelerations[0]), float(found.power)
+
+        if type(self) is not TabulatedChart or self.held is not None or self._added or self.rotors_lose:
+            return asked
+        efforts = self.plain_efforts
+        if efforts is None:
+            return asked
+
+        table, piece = self.table, None
+        idle = not efforts and not self.timeless[1]
+
+        def known(time: float, value: float, speed: float) -> tuple[float, float]:
+            nonlocal table, piece
+            if table is not self.table:
+                table, piece = self.table, None
+            if table is None:
+                return asked(time, value, speed)
+            inside = table.low + (value - table.low) % TURN if self.wraps else value
+            if piece is None or not piece.low <= inside <= piece.high:
+                piece = table.piece(inside)
+                if piece is None:
+                    return asked(time, value, speed)
+            x = (inside - piece.low) * piece.pace
+            k = min(int(x), CELLS - 1)
+            place, cell = 2.0 * (x - k) - 1.0, piece.cells[k]
+            pushed, bias = _both(cell[0], place)
+            if idle:
+                return pushed - bias * speed * speed, 0.0
+            mobility, other = _both(cell[1], place)
+            for push, sign in efforts:
+                more = sign * push(sign * value, sign * speed, time)
+                pushed, other = pushed + more * mobility, other + more
+            return pushed - bias * speed * speed, other * speed
+
+        return known
+
+    @cached_property
+    def plain_efforts(self) -> tuple[tuple[PlainEffort, float], ...] | None:
+        """The loads that depend on time or speed as functions of plain numbers; None where one is no such function."""
+        stored, others = self.others
+        if stored:
+            return None
+        own, found = self.start.structure.driven[self.free[0]], []
+        for load in others:
+            plain = load.plain_effort() if isinstance(load, PairLoad) else None
+            meant = self.order.pair_meant(load.pair) if isinstance(load, PairLoad) else None
+            if plain is None or meant is None or meant[0].name != own.pair.name:
+                return None
+            found.append((plain, meant[1] * own.pair.driven_by(own.drive.link)))
+        return tuple(found)
 
     @cached_property
     def rotors_lose(self) -> bool:
@@ -418,6 +472,16 @@ TO_COEFFICIENTS[0] /= 2.0
 
 _DEGREES = np.arange(POINTS)
 
+# A piece has so many cells, each a polynomial through so many points: polynomials that hold in a piece have singular
+# points at a half of it or more, and errors there fall by the width of a cell over four times that.
+CELLS, CELL_POINTS = 64, 8
+_CELL_NODES = np.cos((np.arange(CELL_POINTS) + 0.5) * np.pi / CELL_POINTS)
+CELL_BASES = np.polynomial.chebyshev.chebvander(
+    np.ravel((2.0 * np.arange(CELLS)[:, None] + 1.0 + _CELL_NODES) / CELLS - 1.0), POINTS - 1
+).T
+# To the coefficients of powers, the highest first.
+TO_POWERS = np.linalg.inv(np.vander(_CELL_NODES))
+
 
 @dataclass(eq=False)
 class TablePiece:
@@ -452,6 +516,23 @@ class TablePiece:
             self.known[link] = self.polynomials(link)
         return self.known[link]
 
+    @cached_property
+    def pace(self) -> float:
+        """The number of cells in a unit of the driver."""
+        return CELLS / (self.high - self.low)
+
+    @cached_property
+    def cells(self) -> list[list[list[float]]]:
+        """The polynomials in each of equal parts, in powers of a place from -1 to 1, the highest first.
+
+        They are those of forces and bias over the inertia, of one over it and of the forces without a potential.
+        """
+        inertia, bias, stored, other = self.terms[:4] @ CELL_BASES
+        rows = np.array([(stored + other) / inertia, bias / inertia, 1.0 / inertia, other])
+        powers = rows.reshape(4, CELLS, CELL_POINTS) @ TO_POWERS.T
+        found: list[list[list[float]]] = powers.transpose(1, 0, 2).reshape(CELLS, 2, 2 * CELL_POINTS).tolist()
+        return found
+
     def coordinate(self, pair: Pair, ends: Ends) -> Number:
         """Return the polynomials of a pair's coordinate, its rate and its acceleration at unit rate; angles go on."""
         if pair.name not in self.pairs:
@@ -473,6 +554,15 @@ class TablePiece:
         value = series.c[k] if k < len(series.c) else 0.0
         row = np.ravel(value)
         return np.broadcast_to(row, POINTS) if row.size == 1 else row[self.place]
+
+
+def _both(row: Sequence[float], s: float) -> tuple[float, float]:
+    """Return two polynomials of a cell at a place in it."""
+    a7, a6, a5, a4, a3, a2, a1, a0, b7, b6, b5, b4, b3, b2, b1, b0 = row
+    return (
+        ((((((a7 * s + a6) * s + a5) * s + a4) * s + a3) * s + a2) * s + a1) * s + a0,
+        ((((((b7 * s + b6) * s + b5) * s + b4) * s + b3) * s + b2) * s + b1) * s + b0,
+    )
 
 
 # A bridge is fitted to so many widths of the gap on both sides, with a polynomial of this degree.

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import isfinite, nan
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeAlias
 
@@ -209,6 +211,22 @@ class LoadTable(ShortRepr, ComparedByValue, CopiesFields):
         x = np.clip(x, at[0], at[-1])
         return self._spline(x) if self.smooth else np.interp(x, at, values)
 
+    def plain(self, where: str, k: int) -> Callable[..., float]:
+        """Return the amount at the k-th of plain numbers."""
+        if self.smooth or self.period is not None:
+            return lambda *given: float(self.value(where, given[k]))
+        at, values = self.at.tolist(), self.values.tolist()
+        slopes = (np.diff(self.values) / np.diff(self.at)).tolist()
+
+        def lined(*given: float) -> float:
+            x = given[k]
+            if not at[0] <= x <= at[-1]:
+                return float(self.value(where, x))
+            i = min(bisect_right(at, x) - 1, len(slopes) - 1)
+            return float(values[i] + slopes[i] * (x - at[i]))
+
+        return lined
+
 
 # What a load holds: a number, an array over the motion, a function or a table.
 Amount: TypeAlias = Number | LoadFunction | LoadTable
@@ -227,6 +245,33 @@ def as_amount(where: str, given: Any, *variables: str) -> Amount:
     if callable(given):
         return LoadFunction(given, _taken(where, given, variables))
     return given if isinstance(given, LoadFunction | LoadTable) else real(where, given)
+
+
+def plain_amount(where: str, amount: Amount, variables: Sequence[str]) -> Callable[..., float] | None:
+    """Return an amount as a function of plain numbers, the variables in this order; None for what is asked of poses.
+
+    >>> plain_amount("x", LoadFunction(lambda t: 2.0 * t, ("time",)), ("rate", "time"))(5.0, 3.0)
+    6.0
+    """
+    if isinstance(amount, LoadFunction):
+        if not set(amount.takes) <= {*variables}:
+            return None
+        known = [variables.index(one) for one in amount.takes]
+
+        def called(*given: float) -> float:
+            places = [np.array((given[k],)) for k in known]
+            if not all(isfinite(given[k]) for k in known):
+                return nan
+            return float(amount._called(where, places)[0])
+
+        return called
+    if isinstance(amount, LoadTable):
+        over = amount.over or variables[0]
+        return amount.plain(where, variables.index(over)) if over in variables else None
+    if np.size(amount) != 1:
+        return None
+    number = float(np.ravel(amount)[0])
+    return lambda *given: number
 
 
 def as_planar_amount(where: str, given: Any) -> Amount | tuple[Amount, Amount]:

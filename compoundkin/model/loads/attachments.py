@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -17,7 +17,7 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import DeclaredKeys, link_key, spot_key, value_key
 from compoundkin.model.geometry import FRAME, vector
-from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, value_of
+from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, plain_amount, value_of
 from compoundkin.model.loads.contract import NO_RENAMING, Load, LoadedPoses, NamedParts
 from compoundkin.model.pairs.revolute import SEPARATORS
 
@@ -25,6 +25,8 @@ from compoundkin.model.pairs.revolute import SEPARATORS
 COORDINATE = "coordinate"
 VARIABLES = (COORDINATE, "rate", "time")
 FORWARD, BACK = "forward", "back"
+# An effort as a function of a coordinate, its rate and the time.
+PlainEffort = Callable[[float, float, float], float]
 
 
 def rate_of(series: Series) -> Number:
@@ -80,6 +82,13 @@ class PairLoad(Load):
     @abstractmethod
     def effort(self, at: LoadedPoses) -> Number:
         """Return the effort: positive where it drives the coordinate up."""
+
+    def plain_effort(self) -> PlainEffort | None:
+        """Return the effort as a function of plain numbers: coordinate, rate and time; None where it is asked of poses.
+
+        It serves simulations, which ask at every state.
+        """
+        return None
 
     def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
         """Find an unknown pair, or one that takes no effort."""
@@ -146,6 +155,13 @@ class Effort(PairLoad):
             return amount
         rate = rate_of(series) * (1.0 if self.only == FORWARD else -1.0)
         return np.where(rate > 0.0, amount, np.where(np.isnan(rate), np.nan, 0.0))
+
+    def plain_effort(self) -> PlainEffort | None:
+        """Return the thrust or torque as a function of plain numbers."""
+        amount, way = plain_amount(self.where, self.amount, VARIABLES), 1.0 if self.only == FORWARD else -1.0
+        if amount is None or self.only is None:
+            return amount
+        return lambda q, w, t: amount(q, w, t) if w * way > 0.0 else 0.0 * w
 
 
 @checked

@@ -13,10 +13,11 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
 from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.amounts import Amount, as_amount, value_of
+from compoundkin.model.loads.amounts import Amount, as_amount, plain_amount, value_of
 from compoundkin.model.loads.attachments import (
     EndSeparation,
     PairLoad,
+    PlainEffort,
     PointToPointLoad,
     attachment_point,
     check_ends,
@@ -84,6 +85,16 @@ class PairDamper(Damping, PairLoad):
         own = {"rate": lambda: rate_of(series), "coordinate": lambda: series.c[0]}
         amount = value_of(self.where, self.rate, at, own)
         return 0.0 - (amount if is_force_law(self.rate) else amount * rate_of(series))
+
+    def plain_effort(self) -> PlainEffort | None:
+        """Return the effort as a function of plain numbers."""
+        amount = plain_amount(self.where, self.rate, ("rate", "coordinate", "time"))
+        if amount is None:
+            return None
+        if is_force_law(self.rate):
+            return lambda q, w, t: -amount(w, q, t)
+        rate = amount(0.0, 0.0, 0.0)
+        return lambda q, w, t: -rate * w
 
 
 @checked

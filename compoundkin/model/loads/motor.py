@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,8 +14,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.amounts import Amount, as_amount, value_of
-from compoundkin.model.loads.attachments import PairLoad, rate_of
+from compoundkin.model.loads.amounts import Amount, as_amount, plain_amount, value_of
+from compoundkin.model.loads.attachments import PairLoad, PlainEffort, rate_of
 from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 
 # What says which motor it is, with what belongs to it.
@@ -192,7 +193,50 @@ class Motor(PairLoad):
         second = 2.0 * series.c[2] if len(series.c) > 2 and self.loses_at_rotor else 0.0
         return self.effort_while(at, second)[0]
 
-    @property
+    def plain_effort(self) -> PlainEffort | None:
+        """Return what a motor of numbers gives behind the gear, as a function of plain numbers."""
+        torque = self._plain_torque()
+        if torque is None or self.loses_at_rotor or any(np.size(one) != 1 for one in (self.gear, self.efficiency)):
+            return None
+        gear, efficiency = (float(np.ravel(one)[0]) for one in (self.gear, self.efficiency))
+        limit, power = (None if one is None else float(np.ravel(one)[0]) for one in (self.limit, self.power))
+
+        def given(q: float, w: float, t: float) -> float:
+            speed = gear * w
+            found = torque(speed, q, t)
+            if power is not None and abs(found * speed) > power:
+                found = power / abs(speed) * (1.0 if found > 0.0 else -1.0)
+            if limit is not None and abs(found) > limit:
+                found = limit if found > 0.0 else -limit
+            return gear * found * (efficiency if found * speed >= 0.0 else 1.0 / efficiency)
+
+        return given
+
+    def _plain_torque(self) -> Callable[[float, float, float], float] | None:
+        """Return the torque at a speed of the shaft, a coordinate and a time, in plain numbers and without limits."""
+        names, variables = SORTS.get(self.sort, ()), ("rate", "coordinate", "time")
+        known = {name: plain_amount(self.where, getattr(self, name), variables) for name in names}
+        if not names or any(one is None for one in known.values()):
+            return None
+        if self.sort == "table":
+            return known["torque"]
+        if self.sort == "servo":
+            wanted, gain = known["speed"], float(np.ravel(np.asarray(self.gain))[0])
+            assert wanted is not None
+            return lambda speed, q, t: gain * (wanted(speed, q, t) - speed)
+        numbers = [float(np.ravel(getattr(self, name))[0]) for name in names]
+        if self.sort == "direct current":
+            stall, no_load = numbers
+            return lambda speed, q, t: stall * (1.0 - speed / no_load)
+        breakdown, synchronous, peak = numbers
+
+        def by_slip(speed: float, q: float, t: float) -> float:
+            s = 1.0 - speed / synchronous
+            return 2.0 * breakdown * s * peak / (s * s + peak * peak)
+
+        return by_slip
+
+    @cached_property
     def loses_at_rotor(self) -> bool:
         """Whether its effort depends on the acceleration: the gear passes on what its rotor leaves, with a loss."""
         return bool(np.any(np.asarray(self.inertia) > 0.0) and np.any(np.asarray(self.efficiency) < 1.0))

@@ -1,0 +1,98 @@
+"""The equation of motion of one coordinate in plain numbers, and the integrator that uses them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.dynamics.simulation.coordinate_change import chart_of
+from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
+from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
+from tests.dynamics.cases import SI
+
+
+def four_bar(*loads: Any) -> ck.Mechanism:
+    """A crank and rocker with masses and weights, whose spring has a potential."""
+    return ck.Mechanism(
+        "Four-bar",
+        ck.link("frame", O=(0, 0), C=(0.2, 0)),
+        ck.link("crank", O=(0, 0), A=(0.06, 0)),
+        ck.link("coupler", A=(0, 0), B=(0.18, 0)),
+        ck.link("rocker", C=(0, 0), B=(0.12, 0)),
+        ck.drive("crank"),
+        ck.mass("crank", 1.0, at="O", inertia=0.004),
+        ck.mass("coupler", 0.8, at=(0.09, 0), inertia=0.003),
+        ck.mass("rocker", 1.0, at=(0.06, 0), inertia=0.005),
+        ck.gravity(0, -9.81),
+        ck.spring("rocker", "B", to="frame", at="O", stiffness=60.0, free_length=0.1),
+        *loads,
+        units=SI,
+    )
+
+
+LOADS = {
+    "none": (),
+    "numbers": (ck.effort("crank", 0.3), ck.torque("rocker", -0.2)),
+    "functions": (
+        ck.effort("crank", lambda w, q: 0.2 * np.cos(q) - 0.01 * w),
+        ck.effort("O", lambda t: np.sin(t), name="b"),
+    ),
+    "one way": (ck.effort("crank", 0.4, only="back"), ck.effort("O", lambda t: 0.1 * t, only="forward", name="f")),
+    "a table": (ck.effort("crank", {"over": "rate", "at": [-60, 0, 60], "values": [3, 1, -4]}),),
+    "a smooth table": (ck.effort("crank", {"over": "time", "at": [0, 1, 2], "values": [0, 1, -1], "smooth": True}),),
+    "a damper": (ck.damper(pair="O", rate=0.03),),
+    "a law of damping": (ck.damper(pair="O", rate=lambda w, q: 0.01 * w * abs(w) * (2 + np.sin(q))),),
+    "direct current": (ck.motor("crank", stall=0.2, no_load=200.0, gear=-5.0, efficiency=0.8, limit=0.15),),
+    "induction": (ck.motor("crank", breakdown=0.9, synchronous=40.0, slip=0.2, power=12.0),),
+    "a servo": (ck.motor("crank", speed=lambda t: 10 * t, gain=0.05, limit=0.6),),
+    "points": (ck.damper("rocker", "B", to="frame", at="O", rate=2.0), ck.torque("rocker", lambda t: 0.3 * t)),
+}
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_plain_rates_are_those_of_solved_states(kind: str) -> None:
+    mechanism = four_bar(*LOADS[kind])
+    chart = chart_of(ck.solve(mechanism, {"crank": [0.3]}), ("crank",), {})
+    assert isinstance(chart, TabulatedChart)
+    assert (chart.plain_efforts is None) == (kind == "points")
+    plain, rng = chart.plain_rates(), np.random.default_rng(7)
+    for _ in range(20):
+        t, q, w = rng.uniform(0.0, 2.0), rng.uniform(-9.0, 9.0), rng.uniform(-50.0, 50.0)
+        solved = super(TabulatedChart, chart).rates(t, np.array([q]), np.array([w]))
+        a, power = plain(t, q, w)
+        assert a == pytest.approx(solved.accelerations[0], rel=1e-9, abs=1e-8)
+        assert power == pytest.approx(solved.power, rel=1e-9, abs=1e-8)
+
+
+def test_functions_are_checked_at_every_state() -> None:
+    with pytest.raises(ck.errors.InvalidInput, match="not finite"):
+        ck.simulate(four_bar(ck.effort("crank", lambda t: np.where(t < 0.5, 1.0, np.inf))), until=1.0)
+    with pytest.raises(ck.errors.InvalidInput, match="outside its table"):
+        ck.simulate(four_bar(ck.effort("crank", {"over": "time", "at": [0, 0.5], "values": [0, 1]})), until=1.0)
+
+
+def test_the_integrator_is_scipys() -> None:
+    """As many steps of the same lengths, states in them, and the work beside them."""
+    from scipy.integrate import DOP853
+
+    def rates(t: float, q: float, w: float) -> tuple[float, float]:
+        return -np.sin(q) - 0.1 * w + np.cos(t), w * np.cos(t)
+
+    allowed, state = np.full(3, 1e-10), np.array([1.0, 0.5, 0.0])
+    own = PlainSolver(rates, 0.0, state, 20.0, 1e-10, allowed)
+    other = DOP853(lambda t, y: np.array([y[1], *rates(t, y[0], y[1])]), 0.0, state, 20.0, rtol=1e-10, atol=allowed)
+    for _ in range(1000):
+        own.step()
+        other.step()
+        # lengths of steps follow from errors, which are rounding in part
+        assert own.step_size == pytest.approx(other.step_size, rel=1e-2)
+        middle = (own.t + own.t_old) / 2.0
+        if other.t_old < middle < other.t:
+            assert own.dense_output()(np.array(middle)) == pytest.approx(other.dense_output()(middle), abs=1e-8)
+        if own.status == "finished":
+            break
+    assert own.status == other.status == "finished"
+    assert own.y == pytest.approx(other.y, abs=1e-8)
