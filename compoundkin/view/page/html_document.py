@@ -167,7 +167,7 @@ class Document:
 
     def _header(self) -> Iterator[str]:
         yield f'<div class="title"><h1>{safe(self.title)}</h1>{_theme()}</div>'
-        badges = lines(element("li", badge) for badge in _badges(self.outcome))
+        badges = lines(element("li", badge, data_badge=key) for key, badge in _badges(self.outcome))
         yield element("ul", badges, class_="badges", aria_label="Outcome") if badges else ""
 
 
@@ -191,20 +191,21 @@ def _contents(sections: Iterable[tuple[str, str]]) -> str:
     return element("nav", element("ul", f"\n{items}\n"), aria_label="Sections", class_="contents") if items else ""
 
 
-def _badges(outcome: Outcome) -> Iterator[str]:
-    """Yield the outcome of a report as badges: a mark and a text each."""
+def _badges(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """Yield the outcome of a report as badges, each with its key: a mark and a text."""
     if not outcome.solvable:
-        yield _badge(False, "cannot be solved")
+        yield "solvable", _badge(False, "cannot be solved")
     if outcome.poses:
         of = "poses" if outcome.poses != 1 else "pose"
-        yield _badge(outcome.assembled == outcome.poses, f"{outcome.assembled:,} of {outcome.poses:,} {of} assembled")
+        text = f"{outcome.assembled:,} of {outcome.poses:,} {of} assembled"
+        yield "assembled", _badge(outcome.assembled == outcome.poses, text)
     if outcome.verified is not None:
-        yield _badge(outcome.verified, outcome.verdict)
+        yield "verified", _badge(outcome.verified, outcome.verdict)
     if outcome.touching is not None:
-        yield _badge(not outcome.touching, outcome.compared)
+        yield "touching", _badge(not outcome.touching, outcome.compared)
     if outcome.published:
         done, total = outcome.published_passed, outcome.published
-        yield _badge(done == total, f"{done:,} of {total:,} published numbers reproduced")
+        yield "published", _badge(done == total, f"{done:,} of {total:,} published numbers reproduced")
 
 
 def _badge(good: bool, text: str) -> str:

@@ -48,10 +48,10 @@ DRAGGED = """(jobs) => JSON.stringify(JSON.parse(jobs).map(({ data, designs }) =
 class Dragged:
     """A mechanism with the dimensions of its page changed at random, again and again."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, every: int = 0) -> None:
         mechanism = load(name)
         whole = ck.solve(mechanism)
-        every = max(1, (whole.inputs.poses - 1) // (POSES - 1))
+        every = every or max(1, (whole.inputs.poses - 1) // (POSES - 1))
         self.values = {drive: np.ravel(whole.drives[drive].value)[::every] for drive in whole.drives}
         self.rates = {drive: float(np.ravel(whole.drives[drive].rate)[0]) for drive in whole.drives}
         self.motion = ck.solve(mechanism, self.values, speed=self.rates, order=2)
@@ -60,12 +60,13 @@ class Dragged:
         live = live_data(Sample(self.motion), np.arange(poses), self.links, ())
         self.data: dict[str, Any] = {"poses": poses, "start": 0, "live": live}
         self.dimensions = self.data["live"]["dimensions"]
+        self.own = np.array([one["value"] for one in self.dimensions])
         self.designs = np.array([*self._walk()])
 
     def _walk(self) -> Iterator[Number]:
         """Steps of two dimensions at a time; every fourth goes halfway back."""
         rng, size = np.random.default_rng(7), self.motion.size
-        own = np.array([one["value"] for one in self.dimensions])
+        own = self.own
         kinds = [one["kind"] for one in self.dimensions]
         scale = np.array([{"angle": 1.0, "ratio": v}.get(kind, size) for kind, v in zip(kinds, own, strict=True)])
         at = own.copy()
@@ -191,3 +192,40 @@ def test_dimensions_are_those_that_may_be_changed_alone() -> None:
     # an overconstrained lift moves by its equal arms alone
     assert names("double-parallelogram-lift") == {"head.T.x", "head.T.y"}
     assert {"slot.angle", "crank.D.x", "frame.B.y"} < names("six-bar")
+
+
+BADGES = """(designs) => designs.map((numbers) => {
+  const { design, players: [player] } = compoundkin;
+  design.change(Object.fromEntries(design.names.map((name, k) => [name, numbers[k]])));
+  const shown = [...document.querySelectorAll(".badges > [data-badge]")];
+  return [
+    shown.map((one) => [one.dataset.badge, one.textContent.trim(), one.classList.contains("stale")]),
+    document.querySelectorAll("section[data-depends]:not([data-follows], .folded)").length,
+    document.querySelector(".changes .words").textContent,
+  ];
+})"""
+
+
+@pytest.mark.parametrize("name", ["six-bar", pytest.param("geared-five-bar", marks=pytest.mark.full)])
+def test_badges_tell_what_solve_counts_after_every_change(name: str, made: Any, opened: Any) -> None:
+    """The count of poses follows a hundred changes; checks and published numbers of other dimensions are struck out."""
+    dragged = Dragged(name, every=1)
+    dragged.designs = dragged.own + 4.0 * (dragged.designs - dragged.own)  # so far that many do not assemble everywhere
+    with warnings.catch_warnings(action="ignore"):
+        failed = dragged.solved().failed != 0
+    view = opened(made(name))
+    told = view.value(BADGES, dragged.designs.tolist())
+    counts = (~failed).sum(axis=1)
+    assert len(set(counts)) > 5  # some assemble everywhere, others do not
+    for (badges, open_sections, words), count in zip(told, counts, strict=True):
+        (first, text, stale), *rest = badges
+        mark = "✓" if count == failed.shape[1] else "✗"
+        assert (first, text, stale) == ("assembled", f"{mark} {count} of {failed.shape[1]} poses assembled", False)
+        assert rest
+        assert all(one[2] for one in rest)
+        assert open_sections == 0
+        assert ("cannot be assembled" in words) == (count < failed.shape[1])
+    view.value("() => compoundkin.design.reset()")
+    ((badges, _, _),) = view.value(BADGES, [dragged.own.tolist()])
+    assert not any(stale for *_, stale in badges)
+    assert view.complaints == []

@@ -13,6 +13,8 @@ from compoundkin.view.page import player
 from compoundkin.view.report import page
 from tests import catalog
 
+from .conftest import DESK, PHONE
+
 PLAYER = "compoundkin.players[0]"
 
 
@@ -296,3 +298,51 @@ def test_the_player_of_a_notebook_plays(opened: Callable[..., Any], tmp_path: Pa
     assert inside.locator(".play").text_content() == "Pause"
     assert inside.locator(".where").text_content() != "crank 0°"
     assert view.complaints == []
+
+
+NEARER = """() => {
+  const player = compoundkin.players[0], found = new Set(), pixels = player.svg.getScreenCTM().a;
+  let told = 0;
+  for (let k = 0; k < player.poses; k++) {
+    if (player.assembled[k] !== 1) continue;
+    player.show(k);
+    const points = Object.keys(player.points).map((letter) => [letter, player.paper(player.place(letter))]);
+    for (const [index, part] of player.parts.entries()) {
+      const letter = part.classList.contains("name") && part.dataset.letter;
+      if (!letter) continue;
+      told += 1;
+      // from the picture: the group is at the point, the text beside it
+      const [x, y, by] = [...part.getAttribute("transform").matchAll(/-?[\\d.]+(?:e-?\\d+)?/g)].map(Number).concat(1);
+      const text = part.querySelector("text"), off = ["x", "y"].map((name) => Number(text.getAttribute(name)) * by);
+      const own = Math.hypot(...off), led = [...player.svg.querySelectorAll(".leaders line")].some((line) =>
+        Math.hypot(line.x2.baseVal.value - x, line.y2.baseVal.value - y) < 0.1);
+      if (own * pixels > 24 && !led) found.add(`${letter} is ${Math.round(own * pixels)} px from its point at ${k}`);
+      for (const [other, at] of points) {
+        if (other === letter || Math.hypot(at[0] - x, at[1] - y) <= 1 || led) continue;
+        const away = Math.hypot(at[0] - x - off[0], at[1] - y - off[1]);
+        if (away < own) found.add(`${letter} is nearer to ${other} at ${k}`);
+      }
+    }
+  }
+  return [told, [...found]];
+}"""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("jaw-crusher", "hydraulic-digger"),
+        *(
+            pytest.param(name, marks=pytest.mark.full)
+            for name in catalog.NAMES
+            if name not in {"jaw-crusher", "hydraulic-digger"}
+        ),
+    ],
+)
+def test_no_letter_is_nearer_to_another_point_than_to_its_own(name: str, made: Any, opened: Any) -> None:
+    """At every pose on a desk and a phone; a letter farther than 24 pixels has a line to its point."""
+    for size in (DESK, PHONE):
+        view = opened(made(name), size)
+        told, wrong = view.value(NEARER)
+        assert told
+        assert wrong == []

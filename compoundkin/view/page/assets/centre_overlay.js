@@ -60,7 +60,8 @@
         const name = boxes[index];
         if (!name) return [];
         const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e[+-]?\d+)?/g).map(Number);
-        return { x: x + name.x * size, y: y + name.y * size, half: name.wide * size };
+        const [dx, dy] = name.now;
+        return { x: x + dx * size, y: y + dy * size, half: name.wide * size };
       });
     }
     // a place for a name of that half width beside a point: the first that covers none, or the one that covers fewest

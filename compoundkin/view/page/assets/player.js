@@ -184,7 +184,8 @@
       if (this.said.textContent !== said) this.said.textContent = said;
       const why = known || !this.design ? "" : this.design.why(k);
       if (this.reason && this.reason.textContent !== why) this.reason.textContent = why;
-      if (known) this.move(k);
+      if (known) this.whole(k);
+      else if (this.design) this.part(k);
       this.overlays.draw();
       this.reading.show(k);
       for (const heard of this.listeners) heard(k);
@@ -194,22 +195,65 @@
       if (this.along.name === "time") words.unshift(`${page.written(this.along.values[k])} s`);
       return words.length ? words.join(", ") : `pose ${k + 1} of ${this.poses}`;
     }
+    whole(k) {
+      if (this.missed) {
+        this.missed.remove();
+        this.missed = null;
+        this.svg.classList.remove("partly");
+        for (const part of this.parts) part.classList.remove("missing");
+      }
+      this.move(k);
+    }
+    // of a pose that is not assembled what is known, and the circles that miss each other; what is not known is not drawn
+    part(k) {
+      const { known, circles, place } = this.design.partial(k), links = known.map((one) => one || { x: [NaN], y: [NaN], angle: [NaN] });
+      this.missed ??= page.drawn("g", { class: "misses", "aria-hidden": "true", "data-tool": "" });
+      this.svg.querySelector(".parts").before(this.missed);
+      this.svg.classList.add("partly");
+      this.parts.forEach((part, index) => part.classList.toggle("missing", !known[this.data.parts[index][0]]));
+      this.missed.replaceChildren(...circles.map(({ middle, radius }) => {
+        const [cx, cy] = this.paper(middle);
+        return page.drawn("circle", { cx, cy, r: radius * this.data.window.scale });
+      }));
+      this.carry(links, 0, this.seen((letter) => place(letter)));
+    }
     move(k) {
+      this.carry(this.links, k, this.seen((letter) => this.place(letter, k)));
+    }
+    // all parts to where links have them; `seen` are the points' places on paper
+    carry(links, k, seen) {
+      const numbers = [];
       this.parts.forEach((part, index) => {
-        const name = this.letters.size !== 1 && this.letters.boxes[index];
-        const placed = this.placement(this.links, this.data.parts[index], k, name);
+        const box = this.letters.boxes[index], name = this.letters.size !== 1 && box && !box.letter ? box : null;
+        if (part.classList.contains("missing")) return;
+        const placed = this.placement(links, this.data.parts[index], k, name, box?.letter ? this.letters.grown(box) : 1);
         // the frame's parts stay where they are
         if (placed !== this.placed[index]) part.setAttribute("transform", placed);
         this.placed[index] = placed;
+        if (box && !box.letter && !part.classList.contains("missing")) numbers.push(this.numberAt(links, index, k, box, name));
       });
+      this.letters.place(numbers, seen);
+    }
+    numberAt(links, index, k, box, name) {
+      const [link, px, py] = this.data.parts[index], at = this.paper(pointAt(links[link], px, py, k)), [x, y] = name ? this.letters.within(at, name) : at;
+      const by = this.letters.grown(box);
+      return { x: x + by * box.x, y: y + by * box.y, wide: by * box.wide, tall: by * box.tall };
+    }
+    seen(of) {
+      const found = {};
+      for (const letter in this.points) {
+        const at = of(letter);
+        if (at && Number.isFinite(at[0] + at[1])) found[letter] = this.paper(at);
+      }
+      return found;
     }
 
     // where a part is at a pose of some links; shapes that turn are drawn as at the first pose of the page
-    placement(links, [link, px, py, turns], k, name = null) {
+    placement(links, [link, px, py, turns], k, name = null, size = 1) {
       const at = this.paper(pointAt(links[link], px, py, k)), [x, y] = name ? this.letters.within(at, name) : at;
       // y points downward on paper: what turns counterclockwise has a negative angle there
       const turned = turns ? ` rotate(${-(links[link].angle[k] - this.upright[link]) * DEGREE})` : "";
-      return `translate(${x} ${y})${turned}${name ? ` scale(${this.letters.grown(name)})` : ""}`;
+      return `translate(${x} ${y})${turned}${name ? ` scale(${this.letters.grown(name)})` : size !== 1 ? ` scale(${size})` : ""}`;
     }
 
     // --- the room that the picture takes ----------------------------------------------------------------------------

@@ -53,6 +53,55 @@
       const found = this.path.why(this.numbers, this.solved, k);
       return found ? `${found.group}: ${found.text}` : "";
     }
+    // the points of a link by letter, in its own frame: those that change and those that are fixed
+    pointsOn(link) {
+      const found = new Map(Object.entries(this.player.data.live.panel?.fixed[link] || {}));
+      for (const [letter, carried] of this.carried) {
+        const own = carried.find((one) => one.link === link);
+        if (own) found.set(letter, [this.numbers[own.x], this.numbers[own.y]]);
+      }
+      return found;
+    }
+    // how many poses are assembled, and along what the others are
+    get assembly() {
+      const { assembled } = this.solved, { along, poses, data } = this.player, gaps = [];
+      for (let k = 0; k < poses; k++) {
+        if (assembled[k] === 1) continue;
+        const last = gaps.at(-1);
+        if (last && last[1] === k - 1) last[1] = k;
+        else gaps.push([k, k]);
+      }
+      const told = (k) => page.withUnit(along.name === "pose" ? k + 1 : along.values[k], along.name === "pose" ? "" : along.unit);
+      const words = gaps.map(([a, b]) => (a === b ? told(a) : `${told(a)} to ${told(b)}`));
+      return { count: poses - gaps.reduce((sum, [a, b]) => sum + b - a + 1, 0), poses, isAll: data.all === poses, gaps: words, name: along.name };
+    }
+    // of a pose that is not assembled: where the links are that are known, and circles of the group that fails
+    partial(k) {
+      const { path, numbers, solved, player } = this, known = path.partial(numbers, solved, k), index = new Map(player.data.links.map(({ name }, n) => [name, n]));
+      const group = path.data.groups[solved.failed[k] - 1], own = group && !group.guide ? group.links : [], circles = [];
+      const at = (link, [x, y]) => {
+        const { x: [ox], y: [oy], angle: [angle] } = known[link], c = Math.cos(angle), s = Math.sin(angle);
+        return [ox + c * x - s * y, oy + s * x + c * y];
+      };
+      const points = new Map(player.data.links.map(({ name }) => [name, this.pointsOn(name)]));
+      const carriers = (letter, isKnown) => [...points].filter(([name, has]) => has.has(letter) && index.has(name) && Boolean(known[index.get(name)]) === isKnown).map(([name]) => name);
+      for (const name of own) {
+        const letters = [...(points.get(name) || [])];
+        for (const [outer, from] of letters) {
+          const [carrier] = carriers(outer, true);
+          if (!carrier) continue;
+          for (const [inner, to] of letters) {
+            if (inner === outer || carriers(inner, true).length || !carriers(inner, false).some((other) => other !== name && own.includes(other))) continue;
+            circles.push({ link: name, middle: at(index.get(carrier), points.get(carrier).get(outer)), radius: Math.hypot(to[0] - from[0], to[1] - from[1]) });
+          }
+        }
+      }
+      const place = (letter) => {
+        const [carrier] = carriers(letter, true);
+        return carrier ? at(index.get(carrier), points.get(carrier).get(letter)) : null;
+      };
+      return { known, circles, place };
+    }
     // by letters: the links, and which numbers the two coordinates are
     byLetter(dimensions) {
       const found = new Map();

@@ -6,6 +6,8 @@
   const HINT = "Drag a point to change the mechanism, a driver to move it (by keyboard: Tab, Enter, arrows).";
   const FORCES = "Forces are of the original dimensions; they are not shown while these are changed.";
 
+  const MOST_GAPS = 4; // told in words
+
   class History {
     constructor(player) {
       this.player = player;
@@ -47,13 +49,21 @@
       else if (key === "z" && !event.shiftKey) this.design.undo();
       else this.design.redo();
     }
+    // where it cannot be assembled, in words
+    gaps() {
+      const { gaps, name, count } = this.design.assembly;
+      if (!gaps.length) return [];
+      if (!count) return ["It cannot be assembled at any pose."];
+      const told = gaps.length > MOST_GAPS ? [...gaps.slice(0, MOST_GAPS), "more"] : gaps;
+      return [`It cannot be assembled at ${name} ${told.join(", ")}.`];
+    }
     follow() {
       const { design, player } = this, { isChanged } = design;
       const put = (button, off) => { if (button.disabled !== off) button.disabled = off; };
       put(this.undo, !(design.canUndo || isChanged));
       put(this.redo, !design.canRedo);
       put(this.reset, !isChanged);
-      const told = isChanged ? ["Dimensions are changed.", ...(player.forces.length ? [FORCES] : [])].join(" ") : HINT;
+      const told = isChanged ? ["Dimensions are changed.", ...this.gaps(), ...(player.forces.length ? [FORCES] : [])].join(" ") : HINT;
       if (this.words.textContent !== told) this.words.textContent = told;
       this.ghost.follow();
     }

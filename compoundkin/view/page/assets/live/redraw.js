@@ -135,6 +135,7 @@
         [part[1], part[2]] = [numbers[x], numbers[y]];
       });
       if (player.assembled[player.pose] === 1) player.move(player.pose);
+      else player.part(player.pose);
       this.grow();
     }
 

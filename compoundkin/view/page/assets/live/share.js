@@ -7,9 +7,14 @@
   const { player } = design, told = root.querySelector(".told"), area = root.querySelector(".taken");
 
   // --- the buttons ---------------------------------------------------------------------------------------------------------------
+  // what is refused is told where one looks when a page opens: above the sketch
+  const notice = page.made("p", { class: "notice alert", role: "alert", hidden: "" });
+  document.querySelector(".stage").prepend(notice);
   const tell = (text, isBad = false) => {
     told.textContent = text;
     told.classList.toggle("bad", isBad);
+    notice.textContent = isBad ? text : "";
+    notice.hidden = !isBad;
     page.say(text);
   };
   // where the browser allows no copying, the text stands there selected
@@ -70,27 +75,51 @@
     design.load({}, "original dimensions");
     tell("Original dimensions.");
   });
-  open();
 
   // --- what does not follow --------------------------------------------------------------------------------------------------------
+  // badges: that of the poses follows, those of checks and of published numbers are struck out; sections are folded away
   let isNoted = false;
-  const note = (name, place) => {
-    const made = document.createElement(name);
-    made.className = "original";
-    made.textContent = "Of the original dimensions.";
-    place(made);
-    return made;
+  const ORIGINAL = "Of the original dimensions.";
+  const badges = [...document.querySelectorAll(".badges > [data-badge]")], poses = badges.find((one) => one.dataset.badge === "assembled");
+  const first = poses?.innerHTML, rest = badges.filter((one) => one !== poses);
+  const badge = () => {
+    const { count, poses: all, isAll } = design.assembly, good = count === all;
+    const shown = page.made("span", { class: `badge ${good ? "good" : "bad"}` }), mark = page.made("span", { "aria-hidden": "true" }, shown);
+    mark.textContent = good ? "✓" : "✗";
+    shown.append(` ${count.toLocaleString("en")} of ${all.toLocaleString("en")} ${isAll ? "poses" : "poses shown"} assembled`);
+    if (poses.textContent !== shown.textContent) poses.replaceChildren(shown);
   };
   // that among the badges has its room from the beginning: what is being dragged must not move
-  const heads = [...document.querySelectorAll(".badges")].map((badges) => note("li", (made) => badges.append(made)));
+  const head = page.made("li", { class: "original" });
+  head.textContent = rest.length ? "struck out: of the original dimensions" : "changed dimensions";
+  document.querySelector(".badges")?.append(head);
   const noted = () => {
     isNoted = design.isChanged;
-    for (const head of heads) head.style.visibility = isNoted ? "" : "hidden";
+    head.style.visibility = isNoted ? "" : "hidden";
+    for (const one of rest) one.classList.toggle("stale", isNoted);
     for (const old of document.querySelectorAll("section > .original")) old.remove();
-    for (const section of isNoted ? document.querySelectorAll("section[data-depends]:not([data-follows])") : []) {
-      note("p", (made) => section.querySelector("h2").after(made));
+    for (const section of document.querySelectorAll("section[data-depends]:not([data-follows])")) {
+      section.classList.toggle("folded", isNoted);
+      if (isNoted) section.querySelector("h2").after(foldedNote(section));
     }
+    if (poses && !isNoted) poses.innerHTML = first;
   };
-  design.on("change", () => { if (design.isChanged !== isNoted) noted(); });
+  const foldedNote = (section) => {
+    const made = page.made("p", { class: "original" }), button = page.made("button", { type: "button", class: "unfold", "aria-expanded": "false" });
+    button.textContent = "Show";
+    button.setAttribute("aria-label", `Show ${section.querySelector("h2").textContent}, of the original dimensions`);
+    button.addEventListener("click", () => {
+      const isFolded = section.classList.toggle("folded");
+      button.textContent = isFolded ? "Show" : "Hide";
+      button.setAttribute("aria-expanded", String(!isFolded));
+    });
+    made.append(`${ORIGINAL} `, button);
+    return made;
+  };
+  design.on("change", () => {
+    if (design.isChanged !== isNoted) noted();
+    if (isNoted && poses) badge();
+  });
   noted();
+  open();
 })();
