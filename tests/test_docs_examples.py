@@ -94,6 +94,22 @@ def test_the_pages_on_many_designs_and_other_programs_print_what_they_show(
         assert shown in ("", printed)
 
 
+def test_the_page_on_data_sets_prints_what_it_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pandas")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    text = (DOCS / "data-sets.md").read_text("utf-8")
+    parts = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, re.DOTALL)
+    assert len(parts) == 7
+    for code, shown in parts:
+        # readers that no extra of the package installs run where they are
+        if all(find_spec(one) for one in ("polars", "duckdb", "torch") if f"import {one}" in code):
+            exec(code, names)
+            assert capsys.readouterr().out == shown
+
+
 def test_the_page_on_optimisation_names_all_goals() -> None:
     text = (DOCS / "optimisation.md").read_text("utf-8")
     assert set(re.findall(r"ck\.goals\.(\w+)", text)) == set(ck.goals.__all__)

@@ -18,7 +18,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "synthesis", "pictures", "animation", "plots", "page"),
-        *("studies", "clusters", "tolerances", "optimisation", "compiled"),
+        *("studies", "clusters", "data-sets", "tolerances", "optimisation", "compiled"),
         *("cli", "file-format", "exchange/index", "study-files", "programs_in_other_languages"),
     ),
     "Understand it": ("theory", "friction", "notation", "words"),
