@@ -7,6 +7,6 @@
 
 from __future__ import annotations
 
-from compoundkin.dimensional.tasks import function, mixed, points, poses, stroke, swing
+from compoundkin.dimensional.tasks import dwell, function, mixed, output, points, poses, stroke, swing
 
-__all__ = ["function", "mixed", "points", "poses", "stroke", "swing"]
+__all__ = ["dwell", "function", "mixed", "output", "points", "poses", "stroke", "swing"]

@@ -99,7 +99,7 @@ def with_ghosts(motion: ck.results.Motion, *others: ck.results.Motion) -> ck.res
 
 def burmester() -> ck.results.Picture:
     """The curves of centre and circle points through four poses."""
-    poses = [(0.0, 0.0, 0.0), (1.2, 0.5, 35.0), (1.9, 1.5, 80.0), (1.6, 2.6, 130.0)]
+    poses = [(-0.48, -0.4, -81.0), (0.63, -0.82, 57.0), (0.2, 0.46, 22.0), (-0.62, -0.89, -126.0)]
     found: ck.results.Picture = ck.dyads([(x, y, ck.deg(angle)) for x, y, angle in poses]).draw()
     return found
 

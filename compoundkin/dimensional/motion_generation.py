@@ -61,7 +61,7 @@ def four_poses(task: PoseTask) -> Candidates:
     if found.freedom != 1:
         return _family(task, found)
     given = task.conditions.ground
-    chosen = [_nearest(found, place) for place in given] if given else _spread(task, found)
+    chosen = [_nearest(found, place) for place in given] if given else spread_over_curve(task, found)
     dyads = [*found, *chosen]
     pairs = _some([pair for pair in pairs_of(dyads) if len(given) < 2 or all(dyad in chosen for dyad in pair)])
     complete = f"{len(chosen)} dyads of a curve with 2 sliders, {count_phrase(len(pairs), 'linkage')}"
@@ -120,7 +120,7 @@ def _starts(task: PoseTask) -> list[tuple[Dyad, Dyad]]:
         part = PoseTask(task.link, task.z[some], task.u[some])
         found = dyads_of(part)
         if found.freedom == 1 and found.basis.shape[0] != found.basis.shape[1]:
-            dyads += [*found, *_spread(part, found)]
+            dyads += [*found, *spread_over_curve(part, found)]
     good = [dyad for dyad in dyads if dyad.kind != "RP" and np.max(np.abs(dyad.residual(task.z, task.u))) < size]
     good.sort(key=lambda dyad: float(np.sum(dyad.residual(task.z, task.u) ** 2)))
     pairs = [pair for pair in pairs_of(good[: 2 * STARTS]) if {dyad.kind for dyad in pair} != {PR}]
@@ -201,7 +201,7 @@ def few_poses_with_timing(task: TimedPointTask) -> Candidates:
     count = len(task.points)
     found = dyads_of(turned)
     if found.freedom:
-        dyads = list(found) + (_spread(turned, found) if found.freedom == 1 else _of_grid(turned, found))
+        dyads = list(found) + (spread_over_curve(turned, found) if found.freedom == 1 else _of_grid(turned, found))
     else:
         dyads = list(found)
     # a slider has a cognate too, but two sliders have no crank
@@ -225,7 +225,7 @@ def _same_crank(made: list[Linkage], angles: Number) -> Iterator[Linkage]:
 def _family(task: PoseTask, found: Dyads) -> Candidates:
     """Return some linkages of a family of two freedoms in each dyad, or of a body that only shifts or turns."""
     if found.freedom == 1:
-        dyads = [*found, *_spread(task, found)]
+        dyads = [*found, *spread_over_curve(task, found)]
     elif found.basis.shape[0] == found.basis.shape[1]:
         return _of_special(task, found)
     else:
@@ -266,7 +266,7 @@ def _nearest(found: Dyads, place: complex) -> Dyad:
         return found.curve[int(np.nanargmin(np.where(np.isfinite(apart), apart, np.inf)))]
 
 
-def _spread(task: PoseTask, found: Dyads) -> list[Dyad]:
+def spread_over_curve(task: PoseTask, found: Dyads) -> list[Dyad]:
     """Return dyads spread over the curve: within the conditions and of sensible lengths, by the arc of the centres."""
     curve, size = found.curve, extent(task.z)
     middle = complex(np.mean(task.z))

@@ -13,6 +13,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.display import DisplaysPicture, aligned_text, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
+from compoundkin.dimensional.added_dyads import added_output, double_dwell
 from compoundkin.dimensional.defects import ACCURACY as ACCURACY_DEFECT
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
 from compoundkin.dimensional.function_generation import (
@@ -34,7 +35,9 @@ from compoundkin.dimensional.tasks import (
     COMPACTNESS,
     TRANSMISSION,
     Conditions,
+    DwellTask,
     FunctionTask,
+    OutputTask,
     PoseTask,
     StrokeTask,
     SwingTask,
@@ -65,6 +68,8 @@ METHODS: tuple[Method, ...] = (
     Method(FunctionTask, exact_function, lambda task: len(task.inputs) <= 5),
     Method(FunctionTask, approached_function),
     Method(SwingTask, crank_rocker),
+    Method(OutputTask, added_output),
+    Method(DwellTask, double_dwell),
     Method(StrokeTask, stroke_linkage),
     Method(TimedPointTask, few_poses_with_timing, lambda task: 3 <= len(task.points) <= 5),
 )
@@ -163,7 +168,7 @@ def synthesise(
         raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
     candidates = method.run(asked)
     # functions are approached anyhow; of any other task without a tolerance nothing is allowed
-    tolerance = np.inf if isinstance(task, FunctionTask) and not task.tolerance else task.tolerance
+    tolerance = np.inf if isinstance(task, FunctionTask | DwellTask) and not task.tolerance else task.tolerance
     found = [judged(one, asked.conditions, tolerance) for one in candidates]
     bad = [one for one in found if isinstance(one, Rejection)]
     good = sorted((one for one in found if isinstance(one, SolvedLinkage)), key=_rank(asked.conditions.prefer))
@@ -194,7 +199,7 @@ def _nearest(rejected: list[Rejection]) -> str:
 def _usual(task: Task) -> str:
     """Return what answers are ranked by where nothing is said: accuracy where they approach a task."""
     approached = isinstance(task, FunctionTask) and (task.whole is not None or len(task.inputs) > 5)
-    approached = approached or (isinstance(task, PoseTask) and task.count > 5)
+    approached = approached or isinstance(task, DwellTask) or (isinstance(task, PoseTask) and task.count > 5)
     return ACCURACY if approached else TRANSMISSION
 
 

@@ -236,6 +236,34 @@ class StrokeTask(Task):
         return f"a {self.linkage} of stroke {self.length:.6g} in the time ratio {self.time_ratio:.6g}"
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class OutputTask(Task):
+    """A second output about `pivot` takes `angles`, an array (n,), at the positions of a solved linkage, `base`."""
+
+    base: Any
+    angles: Number
+    pivot: complex
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        return f"a second output at {count_phrase(len(self.angles), 'angle')} of {self.base.candidate.title}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DwellTask(Task):
+    """A six-bar whose output swings by `swing`, and rests at both ends while the crank turns by two `dwells`."""
+
+    swing: float
+    dwells: tuple[float, float]
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        first, second = (f"{np.rad2deg(one):.6g}" for one in self.dwells)
+        return f"a swing of {np.rad2deg(self.swing):.6g} degrees with dwells of {first} and {second}"
+
+
 @checked
 def poses(
     link: str,
@@ -393,6 +421,46 @@ def chebyshev_spacing(low: float, high: float, count: int) -> Number:
 
 
 @checked
+def output(linkage: Any, angles: Any, *, pivot: Any, tolerance: float = 0.0) -> OutputTask:
+    """Return the task of a dyad added to a solved linkage: a second output takes angles at its positions (radians).
+
+    It turns about `pivot`, (x, y) or complex; equal angles at neighbouring positions are a dwell. Raises InvalidInput
+    unless there is one angle for each of three to five positions.
+    """
+    if not hasattr(linkage, "candidate"):
+        what = f"{short_repr(linkage)} is no solved linkage"
+        raise InvalidInput(Problem("linkage", what, "an answer of synthesise() has them: answer[0]"))
+    found = real_numbers("angles", angles)
+    given = planar_numbers("pivot", pivot)
+    place = places("pivot", given[None] if given.shape in ((), (2,)) else given)
+    count = len(next(iter(linkage.candidate.z.values())))
+    if found.shape != (count,) or not 3 <= count <= 5:
+        what = f"{count_phrase(found.size, 'angle')} for a linkage at {count} positions"
+        raise InvalidInput(Problem("angles", what, "give one for each of three to five"))
+    _finite("angles", found)
+    if len(place) != 1:
+        raise InvalidInput(Problem("pivot", "it is no place", "give (x, y) or a complex number"))
+    return OutputTask(linkage, found, complex(place[0]), tolerance=_tolerance(tolerance))
+
+
+@checked
+def dwell(swing: float, *, dwells: Any, tolerance: float = 0.0) -> DwellTask:
+    """Return the task of a six-bar whose output swings by an angle and rests at both ends (radians).
+
+    `dwells` are two angles by which the crank turns meanwhile; a `tolerance` is the angle by which the output may move.
+
+    >>> dwell(np.deg2rad(30), dwells=np.deg2rad([60, 40])).in_words
+    'a swing of 30 degrees with dwells of 60 and 40'
+    """
+    if not 0.0 < swing < np.pi:
+        raise InvalidInput(Problem("swing", f"a swing of {swing:g} is not possible", "give 0 to pi"))
+    found = real_numbers("dwells", dwells)
+    if found.shape != (2,) or not np.all((found > 0.0) & (found < np.pi)):
+        raise InvalidInput(Problem("dwells", "they are no two angles of the crank", "give two between 0 and pi"))
+    return DwellTask(float(swing), (float(found[0]), float(found[1])), tolerance=_tolerance(tolerance))
+
+
+@checked
 def swing(angle: float, *, time_ratio: float = 1.0) -> SwingTask:
     """Return the task of a crank-rocker: its rocker swings by `angle` (radians).
 
@@ -509,6 +577,7 @@ _OF_KIND = {
     "function": ("pairs", "linkage", "absolute", "tolerance"),
     "swing": ("angle", "time_ratio"),
     "stroke": ("length", "time_ratio", "linkage", "offset"),
+    "dwell": ("swing", "dwells", "tolerance"),
 }
 _MAKERS: Mapping[str, Callable[..., Task]] = {
     "poses": poses,
@@ -517,6 +586,7 @@ _MAKERS: Mapping[str, Callable[..., Task]] = {
     "function": function,
     "swing": swing,
     "stroke": stroke,
+    "dwell": dwell,
 }
 _CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer")
 
@@ -551,7 +621,7 @@ def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:
 
 def _required(kind: str) -> tuple[str, ...]:
     return {"poses": ("link", "poses"), "points": ("points",), "mixed": ("poses", "points"), "function": ("pairs",),
-            "swing": ("angle",), "stroke": ("length",)}[kind]  # fmt: skip
+            "swing": ("angle",), "stroke": ("length",), "dwell": ("swing", "dwells")}[kind]  # fmt: skip
 
 
 def _known(where: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
@@ -568,7 +638,7 @@ def _in_radians(kind: str, given: Mapping[str, Any]) -> dict[str, Any]:
     for key in ("velocities", "accelerations"):
         if isinstance(found.get(key), Mapping):
             found[key] = {_index(key, name): _last_in_radians(key, [twist])[0] for name, twist in found[key].items()}
-    for key in ("at", "angle"):
+    for key in ("at", "angle", "swing", "dwells"):
         if key in found:
             value = _radians(key, found[key])
             found[key] = float(value) if value.ndim == 0 else value
