@@ -123,9 +123,30 @@ def _touch_parameter(curve: SearchableCurve, given: Series, aim: _Target, near: 
     return Series((curve.wrapped(s), *[np.where(stays, 0.0, rate)[()] for rate in rates]))
 
 
+# What was searched last on a curve is remembered: a pair is asked for its distance, its contact and its Jacobian at the
+# same poses one after another. So many searches, each of so many numbers at most.
+REMEMBERED, LARGEST = 8, 65_536
+
+
 def _search(curve: SearchableCurve, given: Number, aim: _Target) -> Number:
-    """Search the parameter between the samples beside the best one."""
+    """Search the parameter between the samples beside the best one, unless it was found just before."""
     lead = np.asarray(given, dtype=complex)
+    if lead.size > LARGEST:
+        return _searched(curve, lead, aim)
+    key = aim.best.__name__, lead.shape, lead.tobytes()
+    recent = curve.__dict__.get("_recent", ())
+    for known, found in recent:
+        if known == key:
+            return found
+    found = _searched(curve, lead, aim)
+    if isinstance(found, np.ndarray):
+        found.flags.writeable = False
+    # a whole tuple at once: several threads may search
+    curve.__dict__["_recent"] = ((key, found), *recent[: REMEMBERED - 1])
+    return found
+
+
+def _searched(curve: SearchableCurve, lead: Number, aim: _Target) -> Number:
     flat = lead.ravel()
     known = np.isfinite(flat)
     found = np.full(flat.shape, np.nan)
