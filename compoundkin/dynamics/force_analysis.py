@@ -41,7 +41,11 @@ from compoundkin.dynamics.reactions.virtual_work import holding_effort, holding_
 from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.motor import as_motor
+from compoundkin.model.loads.stop import as_stop
 from compoundkin.model.mechanism import Mechanism
+
+# A stop is passed from this depth on, in radians or parts of the mechanism's size: rests of simulations are within.
+PASSED = 1e-6
 
 
 @checked
@@ -114,6 +118,19 @@ def loaded_forces(motion: Motion) -> Forces | None:
     if not has_loads(motion.mechanism) or not motion.assembled.any():
         return None
     return force_analysis(motion, inertia=motion.order >= 2)
+
+
+def passed_stops(motion: Motion) -> dict[str, float]:
+    """Return the rigid stops that a motion goes beyond, by name, and how far at most: what holds it is its driver."""
+    rigid = [one for one in map(as_stop, motion.mechanism.loads.values()) if one is not None and not one.is_elastic]
+    deepest = dict.fromkeys((one.name for one in rigid), 0.0)
+    for at in loaded_blocks(motion) if rigid else ():
+        for one in rigid:
+            coordinate = at.coordinate(one.pair)
+            depths = [one.depth(side, end, coordinate, at) for side, end in one.ends]
+            deepest[one.name] = float(np.fmax.reduce([np.nan, deepest[one.name], *map(np.nanmax, depths)]))
+    scale = {one.name: 1.0 if one.turns else motion.mechanism.geometry.size for one in rigid}
+    return {name: depth for name, depth in deepest.items() if depth > PASSED * scale[name]}
 
 
 class MotionWithFriction:

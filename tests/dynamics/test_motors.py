@@ -213,6 +213,17 @@ def test_impossible_motors_are_refused(wrong: object, told: str) -> None:
         rotor(wrong)
 
 
+def test_a_motor_along_a_slide_needs_the_gear_of_its_screw() -> None:
+    """A screw with the lead 5 mm: 2 pi / 0.005 m; the thrust is 2 pi M / lead."""
+    links = ck.link("frame", O=0), ck.link("block", P=0), ck.slide("block", on="frame", through="O", name="guide")
+    parts = *links, ck.drive("block"), ck.mass("block", 2.0)
+    with pytest.raises(InvalidMechanism, match="'guide' slides, and a motor turns; give the angle of its shaft"):
+        ck.Mechanism("Block", *parts, ck.motor("guide", stall=2.0, no_load=100.0), units=SI)
+    screw = ck.Mechanism("B", *parts, ck.motor("guide", torque=0.5, gear=2.0 * np.pi / 0.005), units=SI)
+    forces = ck.force_analysis(ck.solve(screw, [0.0, 0.1], speed=0.02), inertia=False)
+    assert forces.drives["block"].effort == pytest.approx(-0.5 * 2.0 * np.pi / 0.005)
+
+
 # --- sizing -------------------------------------------------------------------------------------------------
 
 

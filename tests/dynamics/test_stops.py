@@ -289,8 +289,26 @@ def test_stops_that_cannot_be() -> None:
         "stops[3].stiffness",
         "stops[3].damping",
     ]
+    with pytest.raises(InvalidMechanism, match=r"stops\[0\]\.high: both ends are at 1: nothing moves"):
+        shaft(ck.stop("shaft", low=1.0, high=1.0))
     with pytest.raises(InvalidInput, match=r"0\.2 beyond stop along shaft"):
         ck.simulate(shaft(ck.stop("shaft", low=-1.0)), start=-1.2, until=1.0)
+
+
+def test_an_analysis_of_forces_says_what_holds_in_simulations_alone() -> None:
+    """A driver takes a pin 270 degrees beyond its rigid stop, an elastic one pushes; and a latch does not hold."""
+    arm = ck.Mechanism(
+        "Arm", ck.link("frame", O=0), ck.link("arm", O=0, P=1), ck.drive("arm"), ck.mass("arm", 1.0, at="P", inertia=0),
+        ck.stop("arm", high=np.pi / 2, name="wall"), ck.stop("arm", high=np.pi / 2, stiffness=5.0, name="buffer"),
+        ck.stop("arm", low=0.0, name="floor"), ck.latch("arm", 1.0, name="hook"),
+        units={"length": "m", "mass": "kg", "force": "N"},
+    )  # fmt: skip
+    text = " ".join(ck.force_analysis(ck.solve(arm, np.deg2rad([0.0, 90.0, 360.0]), speed=1.0)).text().split())
+    assert "wall is passed by up to 270 deg: a rigid stop holds in simulations alone" in text
+    assert "nothing held by hook" in text
+    assert "buffer is passed" not in text and "floor is passed" not in text
+    swung = ck.simulate(arm, start={"arm": (1.2, 2.0)}, until=1.0)
+    assert "its high end 90 deg" in " ".join(swung.text().split())
 
 
 def test_an_impact_at_the_start() -> None:

@@ -444,7 +444,7 @@ def begin_at_stops(chart: Chart, state: Number) -> None:
                 raise InvalidInput(Problem("start", what, "let it start at rest, or say where the latch catches"))
             chart.closed += (one,)
         elif not one.both and at.gap < -near:
-            what = f"it is {-at.gap:.4g} beyond {one.stop.name}, {one.text}"
+            what = f"it is {one.stop.place_text(-at.gap)} beyond {one.stop.name}, {one.text}"
             raise InvalidInput(Problem("start", what, "start inside, or move the stop"))
 
 
@@ -455,7 +455,8 @@ def idle_latches(chart: Chart, time: float) -> Iterator[SimulationEvent]:
         if latch is None or latch.teeth is not None:
             continue
         if one not in chart.closed:
-            yield SimulationEvent(time, IDLE, f"{latch.name} has not caught: {one.stop.pair} never meets it", False)
+            missed = f"never is at {latch.place_text(one.end)}" if np.isfinite(one.end) else "goes on until the end"
+            yield SimulationEvent(time, IDLE, f"{latch.name} has not caught: {latch.pair} {missed}", False)
         elif latch.opens:
             yield SimulationEvent(time, IDLE, f"{latch.name} has not opened", False)
     for load in chart.mechanism.loads.values():

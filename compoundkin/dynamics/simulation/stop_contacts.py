@@ -42,7 +42,7 @@ class StopContact:
     @property
     def text(self) -> str:
         """The coordinate and its end, in words."""
-        return f"{self.stop.pair} at its {'low' if self.side == LOW else 'high'} end {self.end:.6g}"
+        return f"{self.stop.pair} at its {'low' if self.side == LOW else 'high'} end {self.stop.place_text(self.end)}"
 
     @property
     def restitution(self) -> float:

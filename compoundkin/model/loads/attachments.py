@@ -59,6 +59,7 @@ class PairLoad(Load):
 
     pair: str = field(metadata=value_key("name", "The pair, by its name, a pin's letter or a driver of it."))
     members: tuple[str, ...] = field(default=(), kw_only=True)
+    turns: bool = field(default=False, kw_only=True)  # whether the coordinate is an angle, known as the members are
 
     @property
     def called(self) -> str:
@@ -75,9 +76,9 @@ class PairLoad(Load):
         return replace(super().renamed(links, coordinates), pair=renamed_pair(self.pair, links, coordinates))
 
     def completed(self, written: NamedParts) -> Load:
-        """Return the load with the links of its pair."""
+        """Return the load with the links of its pair, and whether it turns."""
         pair = written.pair(self.pair)
-        return self if pair is None else replace(self, members=pair.members[:2])
+        return self if pair is None else replace(self, members=pair.members[:2], turns=pair.free_is_angle)
 
     @abstractmethod
     def effort(self, at: LoadedPoses) -> Number:
@@ -102,6 +103,10 @@ class PairLoad(Load):
         elif Effort.title not in pair.takes:
             what = f"{self.pair!r} is a {pair.title}: nothing acts along its coordinate"
             yield Problem(f"{where}.pair", what, "name a pin, a slide or a slot")
+
+    def place_text(self, coordinate: float) -> str:
+        """Return a value of its coordinate as text, angles in degrees."""
+        return f"{np.rad2deg(coordinate):.6g} deg" if self.turns else f"{coordinate:.6g}"
 
     def speed_at(self, at: LoadedPoses) -> Number:
         """Return the rate of its coordinate."""

@@ -120,6 +120,13 @@ class Motor(PairLoad):
                 yield Problem(f"{where}.{key}", "it is missing", f"a motor with {own[0]} has {' and '.join(own)}")
         yield from self._impossible(where)
         pair = written.pair(self.pair)
+        if pair is not None and not pair.free_is_angle and np.any(np.asarray(self.gear) == 1.0):
+            what = f"{self.pair!r} slides, and a motor turns"
+            remedy = (
+                "give the angle of its shaft for a unit of travel: 2 pi / lead of a screw, 1 / radius of a pinion; "
+                "a linear motor is an effort with a table over its rate"
+            )
+            yield Problem(f"{where}.gear", what, remedy)
         if pair is not None and np.any(np.asarray(self.inertia) > 0.0) and not self._is_on_frame(pair):
             what = "only a motor at a pin of the frame has an inertia of its own"
             yield Problem(f"{where}.inertia", what, "give the link that it turns a mass instead")

@@ -81,9 +81,12 @@ class Stop(PairLoad):
         yield from super().problems(written, where)
         if not self.ends:
             yield Problem(where, "it has no end", "give low, high or both")
-        if len(self.ends) == 2 and not np.all(np.asarray(self.low) <= np.asarray(self.high)):
+        if len(self.ends) == 2 and np.any(np.asarray(self.low) > np.asarray(self.high)):
             what = f"its low end {_shown(self.low)} is above its high end {_shown(self.high)}"
             yield Problem(f"{where}.low", what, "give the lesser coordinate as low")
+        elif len(self.ends) == 2 and np.any(np.asarray(self.low) == np.asarray(self.high)):
+            what = f"both ends are at {_shown(self.high)}: nothing moves between them"
+            yield Problem(f"{where}.high", what, "move one of them; ck.latch holds a coordinate where it is")
         e = self.restitution
         if e is not None and not np.all((np.asarray(e) >= 0.0) & (np.asarray(e) <= 1.0)):
             yield Problem(f"{where}.restitution", f"{_shown(e)} is no coefficient of restitution", "0 to 1")

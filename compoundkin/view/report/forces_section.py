@@ -16,6 +16,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput
 from compoundkin.dynamics.driver_course import speed_text
+from compoundkin.dynamics.force_analysis import passed_stops
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.motor_sizing import sizing
 from compoundkin.dynamics.reactions.link_forces import LinkForces
@@ -24,6 +25,8 @@ from compoundkin.kinematics.extremes import Measure, extremes
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import LoadFunction, LoadTable
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.latch import as_latch
+from compoundkin.model.loads.stop import as_stop
 from compoundkin.model.units import customary_unit
 from compoundkin.view.report.force_sheet import SHEET, SYMBOLS, ForceSheet
 from compoundkin.view.report.outputs_section import extremes_columns, extremes_row
@@ -219,6 +222,13 @@ def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
     if holding := forces.motion.loading.get("holding"):
         yield f"{holding} holds in the drivers' place"
     yield _friction_clause(forces)
+    loads = mechanism.loads
+    for name, depth in passed_stops(forces.motion).items():
+        stop = as_stop(loads[name])
+        assert stop is not None
+        yield f"{name} is passed by up to {stop.place_text(depth)}: a rigid stop holds in simulations alone"
+    if latches := [name for name, load in loads.items() if as_latch(load) is not None]:
+        yield f"nothing held by {listed(latches)}: latches hold in simulations alone"
 
 
 def _friction_clause(forces: Forces) -> str:
