@@ -166,9 +166,9 @@ class Document:
         yield '<div id="said" class="unseen" role="status" aria-live="polite"></div>'
 
     def _header(self) -> Iterator[str]:
-        yield f'<div class="title"><h1>{safe(self.title)}</h1>{_theme()}</div>'
         badges = lines(element("li", badge, data_badge=key) for key, badge in _badges(self.outcome))
-        yield element("ul", badges, class_="badges", aria_label="Outcome") if badges else ""
+        outcome = element("ul", badges, class_="badges", aria_label="Outcome") if badges else ""
+        yield f'<div class="title"><h1>{safe(self.title)}</h1>{outcome}{_theme()}</div>'
 
 
 def _script(text: str) -> str:

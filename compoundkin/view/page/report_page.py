@@ -204,19 +204,19 @@ def open_in_browser(path: Path) -> bool:
 
 
 def with_viewer(document: Document, moving: Viewer) -> Document:
-    """Return a document with the moving sketch beside its text.
+    """Return a document with the moving sketch, its plots beside it, above its text.
 
-    Before that stand the panel of dimensions, where they can be changed, and the plots.
+    Before the text stands the panel of dimensions, where they can be changed.
     """
     live = is_live(moving.data)
     first = ((PANEL_KEY, PANEL_TITLE, panel_section()),) if live else ()
-    first = (*first, ("motion", "Motion", moving.section)) if moving.plots else first
+    beside = element("div", f"\n{moving.section}\n", class_="aside") if moving.plots else ""
     data = (*document.data, data_script("ck-motion", compact(moving.data)))
     library = vendored_library("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
     last, style = ((*FIGURES, *PANEL_SCRIPTS), PANEL_STYLES) if live else ((), ())
     scripts = *map(asset, scripts_of(moving.data)), library, *map(asset, (*PLOTS, *last))
     styles = asset("vendor/uPlot.min.css"), *map(asset, (*styles_of(moving.data), *style))
     sections = (*(text for _, _, text in first), *document.sections)
-    before = tuple((key, title) for key, title, _ in first)
-    changed = replace(document, viewer=moving.html, sections=sections, before=before)
+    before = (*((("motion", "Motion"),) if beside else ()), *((key, title) for key, title, _ in first))
+    changed = replace(document, viewer=f"{moving.html}\n{beside}", sections=sections, before=before)
     return replace(changed, data=data, scripts=scripts, styles=styles)

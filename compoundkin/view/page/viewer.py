@@ -150,7 +150,9 @@ def _legend(moving: MotionData) -> str:
         element("span", f"<b>{number}</b> {safe(name)}", class_="link", data_links=name, tabindex=stop)
         for name, number in scene.legend.items()
     ]
-    return element("figcaption", " ".join(named))
+    # on a phone they are one row that scrolls
+    reached = {"tabindex": "0", "role": "group", "aria_label": "Links"} if stop is None else {}
+    return element("figcaption", " ".join(named), class_="legend", **reached)
 
 
 def _transport(moving: MotionData) -> str:

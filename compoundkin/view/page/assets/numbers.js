@@ -27,5 +27,13 @@
     return unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim();
   };
 
-  Object.assign(page, { unpacked, written, raised, withUnit });
+  // a quantity by its name in words: "bar.angular_velocity" is the angular velocity of bar
+  const inWords = (name) => {
+    const parts = name.split("."), last = parts.at(-1).replace(/_/g, " ");
+    if (parts.length < 2) return last;
+    if (["x", "y", "length"].includes(last) && parts.length > 2) return `${last} of the ${inWords(parts.slice(0, -1).join("."))}`;
+    return `${last} of ${parts.slice(0, -1).join(".")}`;
+  };
+
+  Object.assign(page, { inWords, unpacked, written, raised, withUnit });
 })();

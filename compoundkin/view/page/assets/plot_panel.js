@@ -25,7 +25,8 @@
       this.log = false;
       this.figure = make("figure", "plot", this.place.querySelector(".panels"));
       this.head = make("figcaption", "", this.figure);
-      make("strong", "", this.head).textContent = name;
+      const title = make("strong", "", this.head);
+      Object.assign(title, { textContent: page.inWords(name), title: name });
       this.head.append(" ");
       const value = make("span", "value", this.head);
       this.box = make("div", "canvas", this.figure);
@@ -67,7 +68,7 @@
         const { low, high } = this.curves[k].ends;
         return `${part ? `${part} ` : ""}${low ? `from ${page.written(low.y)} to ${page.written(high.y)}` : "not known"}`;
       });
-      return `${this.name} over ${this.axis.name}: ${ranges.join("; ")} ${page.raised(unit)}`;
+      return `${page.inWords(this.name)} over ${this.axis.name}: ${ranges.join("; ")} ${page.raised(unit)}`;
     }
     // what there is to be seen of all curves, the ones before a change too
     get whole() {
@@ -218,7 +219,7 @@
       const remove = make("button", "remove", this.head);
       remove.type = "button";
       remove.textContent = "Remove";
-      remove.setAttribute("aria-label", `Remove the plot of ${this.name}`);
+      remove.setAttribute("aria-label", `Remove the plot of the ${page.inWords(this.name)}`);
       remove.addEventListener("click", () => {
         this.plot.destroy();
         this.figure.remove();

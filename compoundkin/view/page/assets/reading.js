@@ -8,8 +8,8 @@
       const body = player.root.querySelector(".reading tbody");
       this.places = player.outputs.flatMap((output) => {
         const row = body.insertRow(), head = page.made("th", { scope: "row" }, row), cell = row.insertCell();
-        // long names may be broken after their dots and underscores
-        head.textContent = output.name.replace(/([._])/g, "$1\u200b");
+        head.textContent = page.inWords(output.name);
+        head.title = output.name;
         return Object.entries(output.parts).map(([name, values]) => {
           const place = page.made("span", {}, cell);
           cell.append(" ");

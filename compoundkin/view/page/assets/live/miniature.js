@@ -1,8 +1,8 @@
-// On a narrow screen the sketch is far above the field that changes it: a small one then stands at the top edge.
+// Where the sketch is far above the field that changes it a small one stands at the edge: above on a phone, in a corner else.
 (() => {
   "use strict";
   const page = window.compoundkin;
-  const NARROW = matchMedia("(max-width: 67.99rem)"); // where the sketch does not stay beside the text
+  const NARROW = matchMedia("(max-width: 67.99rem)"); // where it stands above, over the whole width
 
   class Miniature {
     // shows the sketch of a player again while a field in `place` is focused and the sketch itself is out of sight
@@ -20,10 +20,11 @@
       document.addEventListener("compoundkin:light", () => this.soon());
     }
     show(field) {
-      if (!NARROW.matches || !field.matches("input") || this.player.svg.getBoundingClientRect().bottom > innerHeight / 4) return;
+      if (!field.matches("input") || this.player.svg.getBoundingClientRect().bottom > innerHeight / 4) return;
       this.root.hidden = false;
       this.draw();
       // what is typed stays in sight below it
+      if (!NARROW.matches) return;
       const covered = this.root.getBoundingClientRect().bottom + 8 - field.getBoundingClientRect().top;
       if (covered > 0) scrollBy(0, -covered);
     }

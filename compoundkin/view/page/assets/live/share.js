@@ -107,7 +107,7 @@
   const foldedNote = (section) => {
     const made = page.made("p", { class: "original" }), button = page.made("button", { type: "button", class: "unfold", "aria-expanded": "false" });
     button.textContent = "Show";
-    button.setAttribute("aria-label", `Show ${section.querySelector("h2").textContent}, of the original dimensions`);
+    button.setAttribute("aria-label", `Show ${section.querySelector("h2").textContent} all the same`);
     button.addEventListener("click", () => {
       const isFolded = section.classList.toggle("folded");
       button.textContent = isFolded ? "Show" : "Hide";
