@@ -1,17 +1,8 @@
 """Figures that engineers compute of a motion and its forces.
 
 Mechanical advantage, poles and curvature of relative motion, features of paths, types of linkages, cams, workspaces,
-equivalent linkages; equivalent inertia, balancing by masses and by springs, flywheels, efforts over a cycle,
-equilibrium positions, forces along the bars of links.
-
->>> import compoundkin as ck
->>> motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]}, speed=1)
->>> ck.figures.mechanical_advantage(motion, "rocker", "crank").advantage.round(3)
-array([3.573])
->>> ck.figures.inflection_circle(motion, "coupler").diameter.round(3)
-array([63.425])
->>> ck.figures.linkage_types(ck.load("double-crank"))[0].name
-'double-crank (drag link)'
+equivalent linkages; equivalent inertia, balancing by masses and by springs, flywheels, noncircular gears, efforts over
+a cycle, equilibrium positions, forces along the bars of links.
 """
 
 from __future__ import annotations
@@ -50,6 +41,7 @@ from compoundkin.dynamics.harmonics import harmonics
 from compoundkin.dynamics.intermittent_motion import intermittent_motion
 from compoundkin.dynamics.mass_motion import equivalent_inertia
 from compoundkin.dynamics.motor_sizing import sizing
+from compoundkin.dynamics.noncircular_drive import noncircular_drive
 from compoundkin.dynamics.spring_balance import balancing_springs
 from compoundkin.dynamics.strength import strength
 
@@ -80,6 +72,7 @@ __all__ = [
     "link_position",
     "linkage_types",
     "mechanical_advantage",
+    "noncircular_drive",
     "path_curvature",
     "path_features",
     "pole",

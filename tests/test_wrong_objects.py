@@ -295,6 +295,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "figures.equivalent_inertia": {"motion": h["moved"]},
         "figures.force_ratio": {"motion": motion, "output": "rocker", "driver": "crank"},
         "figures.harmonics": {"of": h["forces"], "name": "frame.shaking_force", "orders": 3, "driver": "crank"},
+        "figures.noncircular_drive": {"forces": h["forces"], "driver": "crank"},
         "figures.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},
         "figures.strength": {"forces": h["forces"], "sections": {"coupler": {"diameter": 1.0}}, "elasticity": None,
                              "pins": {"B": (1.0, 2.0)}},
