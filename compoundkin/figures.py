@@ -3,6 +3,15 @@
 Mechanical advantage, poles and curvature of relative motion, features of paths, types of linkages, cams, workspaces,
 equivalent linkages; equivalent inertia, balancing by masses and by springs, flywheels, noncircular gears, efforts over
 a cycle, equilibrium positions, forces along the bars of links.
+
+>>> import compoundkin as ck
+>>> motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]}, speed=1)
+>>> ck.figures.mechanical_advantage(motion, "rocker", "crank").advantage.round(3)
+array([3.573])
+>>> ck.figures.inflection_circle(motion, "coupler").diameter.round(3)
+array([63.425])
+>>> ck.figures.linkage_types(ck.load("double-crank"))[0].name
+'double-crank (drag link)'
 """
 
 from __future__ import annotations
