@@ -120,7 +120,7 @@ def noncircular_drive(forces: Forces, *, driver: str | None = None) -> Noncircul
     start, speed = _start_and_speed(course)
     shaft = np.linspace(0.0, TURN, PLACES + 1)
     cycle = _Cycle(course, start, speed, shaft)
-    law = DriverLaw(start + np.sign(speed) * shaft, np.full(len(shaft), speed), np.zeros(len(shaft)))
+    law = ShaftCourse(start + np.sign(speed) * shaft, np.full(len(shaft), speed), np.zeros(len(shaft)))
     before = effort = cycle.effort(law)
     cycle.check_loads(law, effort)
     for _ in range(ROUNDS):
@@ -157,7 +157,7 @@ def _start_and_speed(course: DriverCourse) -> tuple[float, float]:
     return float(values[0]), float(rates[0])
 
 
-class DriverLaw(NamedTuple):
+class ShaftCourse(NamedTuple):
     """Values of a driver, its rates and second rates, at the angles of the shaft (n,)."""
 
     values: Number
@@ -200,12 +200,12 @@ class _Cycle:
         (own,) = (one for one in self.mechanism.drives if one.name == self.driver)
         return self.mechanism.replace(Drive(own.name, own.link, own.on, own.pair, law=law))
 
-    def effort(self, law: DriverLaw) -> Number:
+    def effort(self, law: ShaftCourse) -> Number:
         """Return the effort of the driver along a law."""
         forces = force_analysis(self._motion(*law), inertia=self.forces.inertia)
         return np.broadcast_to(np.asarray(forces.drives[self.driver].effort, dtype=float), self.shaft.shape)
 
-    def check_loads(self, law: DriverLaw, effort: Number) -> None:
+    def check_loads(self, law: ShaftCourse, effort: Number) -> None:
         """Raise InvalidInput where there is no work to do, or no gear of one sense."""
         loads = self.loads(law, effort)
         if float(loads.antiderivative()(TURN)) <= 0.0:
@@ -214,7 +214,7 @@ class _Cycle:
             what = "without inertia the torque must have one sense throughout"
             raise InvalidInput(Problem("forces", what, "give links their masses, or a flywheel to the driver"))
 
-    def loads(self, law: DriverLaw, effort: Number) -> Any:
+    def loads(self, law: ShaftCourse, effort: Number) -> Any:
         """Return the torque of the loads over the way: the effort less what masses take. It does not overshoot."""
         from scipy.interpolate import PchipInterpolator
 
@@ -223,7 +223,7 @@ class _Cycle:
             own = own - self.inertia(way) * self.sense * law.seconds - 0.5 * self.inertia(way, 1) * law.rates**2
         return PchipInterpolator(way, own)
 
-    def even_law(self, loads: Any) -> DriverLaw:
+    def even_law(self, loads: Any) -> ShaftCourse:
         """Return the law along which the shaft's torque is even, for given loads over the way."""
         if self.inertia is None:
             work = loads.antiderivative()
@@ -239,10 +239,10 @@ class _Cycle:
         rise = mean / ratio - loads(way)  # of the energy over the way
         return self._law(way, ratio, (rise - energy * self.inertia(way, 1) / inertia) / inertia / self.speed**2)
 
-    def _law(self, way: Number, ratio: Number, bend: Number) -> DriverLaw:
+    def _law(self, way: Number, ratio: Number, bend: Number) -> ShaftCourse:
         """Return a law by its ratio and the second derivative of the way by the angle of the shaft."""
         values = self.start + self.sense * way
-        return DriverLaw(values, self.sense * self.speed * ratio, self.sense * self.speed**2 * bend)
+        return ShaftCourse(values, self.sense * self.speed * ratio, self.sense * self.speed**2 * bend)
 
     def _slope(self, way: Number, energy: Number) -> Number:
         """Return the rate of the shaft's angle over the way, from the energy of the masses there."""
