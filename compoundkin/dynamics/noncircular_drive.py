@@ -119,7 +119,7 @@ def noncircular_drive(forces: Forces, *, driver: str | None = None) -> Noncircul
     course = driver_course(forces, driver, of_cycle=True)
     start, speed = _start_and_speed(course)
     shaft = np.linspace(0.0, TURN, PLACES + 1)
-    cycle = _Cycle(course, start, speed, shaft)
+    cycle = _MachineTurn(course, start, speed, shaft)
     law = ShaftCourse(start + np.sign(speed) * shaft, np.full(len(shaft), speed), np.zeros(len(shaft)))
     before = effort = cycle.effort(law)
     cycle.check_loads(law, effort)
@@ -165,7 +165,7 @@ class ShaftCourse(NamedTuple):
     seconds: Number
 
 
-class _Cycle:
+class _MachineTurn:
     """A machine over one turn of its driver, which has gone `way` (radians) from its start."""
 
     def __init__(self, course: DriverCourse, start: float, speed: float, shaft: Number) -> None:
@@ -290,7 +290,7 @@ class _Cycle:
 class _EnergySteps:
     """The energy of the masses over a cycle by the method of Runge and Kutta, with even steps over the way."""
 
-    def __init__(self, cycle: _Cycle, loads: Any, mean: float, parts: int) -> None:
+    def __init__(self, cycle: _MachineTurn, loads: Any, mean: float, parts: int) -> None:
         halves = np.linspace(0.0, TURN, 2 * PLACES * parts + 1)
         self.mean, self.step = mean, TURN / (PLACES * parts)
         self.places = halves[::2]

@@ -102,7 +102,9 @@ class RankTest:
             for i, j in np.ndindex(*block.shape)
         ]
         rows, columns, values = (np.array(v) for v in zip(*entries, strict=True))
-        matrix = csc_array((values, (rows, columns)), shape=self._shape(part))
+        # SciPy 1.11 decomposes matrices with indices of 32 bits only
+        places = rows.astype(np.int32), columns.astype(np.int32)
+        matrix = csc_array((values, places), shape=self._shape(part))
         try:
             pivots = np.abs(splu(matrix).U.diagonal())
         except RuntimeError:  # exactly singular
