@@ -114,7 +114,8 @@ def double_dwell(task: DwellTask) -> Candidates:
     made.sort(key=lambda one: one.error)
     note = "approached: the error is the greatest angle by which the output moves while it should rest"
     complete = f"{count_phrase(len(made), 'six-bar')} out of {len(FOUR_BARS)} crank-rockers"
-    return Candidates(made, complete, note, is_family=True)
+    nearest = "" if made else "no pair of arcs was found: shorter dwells have some"
+    return Candidates(made, complete, note, nearest=nearest, is_family=True)
 
 
 def _coupler(lengths: tuple[float, float, float], phi: Number) -> tuple[Number, Number]:

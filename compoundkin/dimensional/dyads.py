@@ -46,6 +46,8 @@ COEFFICIENTS = 8
 # Turns all poses are alike by if their angles differ by less.
 ALIKE = 1e-9
 CURVE_POINTS = 1000
+# Points of a circle that rolls in one of twice its size run on its diameters (Cardan), lines through them likewise.
+CARDAN = "Cardan motion: a slider in every direction takes these poses"
 
 
 @dataclass(frozen=True, eq=False)
@@ -629,9 +631,30 @@ def dyads_of(task: PoseTask) -> Dyads:
     if freedom == 0:
         forms = np.einsum("ji,njk,kl->nil", basis, QUADRICS, basis)
         found = (dyad_of(basis @ point, unit) for point in real_ones(common_points(forms)))
-        return Dyads(task, 0, tuple(sorted(filter(None, found), key=_order)), note, basis, unit)
+        dyads, sliders = [dyad for dyad in found if dyad is not None], _cardan_sliders(basis, unit)
+        if sliders:
+            cranks = [
+                dyad for dyad in dyads if dyad.kind == RR and np.max(np.abs(dyad.residual(task.z, task.u))) < REAL
+            ]
+            return Dyads(task, 1, (*cranks, *sliders), CARDAN, basis, unit)
+        return Dyads(task, 0, tuple(sorted(dyads, key=_order)), note, basis, unit)
     sliders = _sliders(basis, unit) if freedom == 1 else ()
     return Dyads(task, freedom, sliders, note, basis, unit)
+
+
+def _cardan_sliders(basis: Number, unit: _Unit) -> tuple[Dyad, ...]:
+    """Return four of the sliders of five poses that have one in every direction; none of any others."""
+    for zero, normal in (([0, 1, 2], [3, 4]), ([0, 3, 4], [1, 2])):
+        _, sizes, right = np.linalg.svd(basis[zero])
+        space = basis @ right[1:].T
+        if sizes[1] < DEPENDENT < np.linalg.svd(space[normal], compute_uv=False)[-1]:
+            found = []
+            for t in np.arange(4) * np.pi / 4.0:
+                q = space @ np.linalg.solve(space[normal], [np.cos(t), np.sin(t)])
+                q[zero] = 0.0
+                found.append(dyad_of(q, unit))
+            return tuple(filter(None, found))
+    return ()
 
 
 def _sliders(basis: Number, unit: _Unit) -> tuple[Dyad, ...]:

@@ -33,6 +33,8 @@ from compoundkin.model.elements import link
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import slide
 
+# Equations are singular below this part of their size.
+SINGULAR = 1e-10
 # Dyads of coupler and frame nearer to each other than this are the frame itself.
 FRAME_ITSELF = 1e-6
 # What does not assemble misses by so much; so many of the best fits are shown.
@@ -64,7 +66,7 @@ def exact_function(task: FunctionTask) -> Candidates:
     whole = f"{count_phrase(len(couplers), 'linkage')} of {most} at most"
     complete = whole if not found.freedom else f"{count_phrase(len(couplers), 'linkage')} of a family"
     made = [replace(_generator(task, dyad), error=_overlay(task, dyad)) for dyad in couplers]
-    return Candidates(made, complete, found.note, is_family=found.freedom > 0)
+    return Candidates(made, complete, found.note, nearest="" if made else found.note, is_family=found.freedom > 0)
 
 
 def _as_seen_by_input(task: FunctionTask) -> PoseTask:
@@ -148,7 +150,10 @@ def _coupled(
     u = (end - joint) / np.abs(end - joint)
     length = float(np.mean(np.abs(end - joint)))
     second = replace(output, moving=complex(length))
-    made = next(of_dyads(joint, u, [(crank, second)], COUPLER))
+    made = next(of_dyads(joint, u, [(crank, second)], COUPLER), None)
+    if made is None:
+        what = "crank and output would have their joints in one place"
+        raise InvalidInput(Problem("pairs", what, "both turn alike: a parallelogram or a pair of gears does that"))
     zero = np.rad2deg(phase)
     other = f"{np.rad2deg(other_phase):.6g} degrees" if output.kind == RR else f"{other_phase:.6g}"
     source = f"Zero of the input: the crank is at {zero:.6g} degrees more; of the output: it is at {other} more."
@@ -186,7 +191,8 @@ def _absolute(task: FunctionTask) -> Candidates:
         raise InvalidInput(Problem("pairs", what, "give three of a four-bar or slider-crank, or leave absolute out"))
     if task.linkage == "slider-crank":
         # s^2 = 2 a s cos(phi) + 2 a e sin(phi) + b^2 - a^2 - e^2
-        k = np.linalg.solve(np.stack([psi * np.cos(phi), np.sin(phi), np.ones(3)], axis=-1), psi**2)
+        rows = np.stack([psi * np.cos(phi), np.sin(phi), np.ones(3)], axis=-1)
+        k = _solved(rows, psi**2)
         a = float(k[0] / 2.0)
         e = float(k[1] / k[0])
         square = k[2] + a**2 + e**2
@@ -197,7 +203,7 @@ def _absolute(task: FunctionTask) -> Candidates:
         made = _coupled(joint, end, Dyad(RR, 0j, 0j, None, abs(a)), Dyad(PR, complex(end[0]), 0j, 1 + 0j),
                         "Slider-crank function generator", 0.0 if a > 0 else np.pi, 0.0)  # fmt: skip
         return Candidates((made,), "1 linkage of 1")
-    k = freudenstein_ratios(phi, psi)
+    k = _solved(_freudenstein_rows(phi, psi), np.cos(phi - psi))
     a, c = (float(1.0 / value) for value in k[:2])
     square = a**2 + c**2 + 1.0 - 2.0 * a * c * k[2]
     if square <= 0.0:
@@ -215,8 +221,21 @@ def freudenstein_ratios(phi: Number, psi: Number) -> Number:
     ...                     np.deg2rad([68.44122948079973, 116.63264205448195, 137.5695059119052])).round(6).tolist()
     [0.437292, 0.405642, 1.048432]
     """
-    rows = np.stack([np.cos(psi), -np.cos(phi), np.ones(len(phi))], axis=-1)
-    found: Number = np.linalg.lstsq(rows, np.cos(phi - psi), rcond=None)[0]
+    found: Number = np.linalg.lstsq(_freudenstein_rows(phi, psi), np.cos(phi - psi), rcond=None)[0]
+    return found
+
+
+def _freudenstein_rows(phi: Number, psi: Number) -> Number:
+    return np.stack([np.cos(psi), -np.cos(phi), np.ones(len(phi))], axis=-1)
+
+
+def _solved(rows: Number, right: Number) -> Number:
+    """Return the solution of three equations whose first two numbers are not zero. Raises InvalidInput for others."""
+    sizes = np.linalg.svd(rows, compute_uv=False)
+    found: Number = np.linalg.lstsq(rows, right, rcond=None)[0]
+    if sizes[-1] < SINGULAR * sizes[0] or np.min(np.abs(found[:2])) < SINGULAR:
+        what = "the three pairs do not determine a linkage: a link would be endless or nothing"
+        raise InvalidInput(Problem("pairs", what, "move one of them a little"))
     return found
 
 
@@ -504,6 +523,9 @@ def stroke_linkage(task: StrokeTask) -> Candidates:
         return Candidates(made, "1 linkage of 1")
     offsets = _greatest_offset(s, alpha) * (np.arange(SOUGHT) + 0.5) / SOUGHT
     a, b, quality = _by_offset(offsets, s, alpha)
+    if not np.isfinite(quality).any():
+        what = f"no slider-crank has the time ratio {task.time_ratio:g} and turns fully"
+        raise InvalidInput(Problem("time_ratio", what, "give a lesser one, or take a crank-shaper"))
     best = int(np.nanargmax(quality))
     chosen = [best, *np.flatnonzero(np.isfinite(quality))[:: max(1, int(np.isfinite(quality).sum()) // SHOWN)].tolist()]
     made = [_slider_crank(float(a[k]), float(b[k]), float(offsets[k]), s) for k in chosen]

@@ -43,13 +43,14 @@ LONGEST = 20.0
 def five_poses(task: PoseTask) -> Candidates:
     """Return all linkages through five poses: pairs of the four dyads at most."""
     found = dyads_of(task)
-    if found.freedom:
+    if found.freedom and not len(found):
         return _family(task, found)
     pairs = pairs_of(found.found)
-    complete = f"{count_phrase(len(found), 'real dyad')} of 4, {count_phrase(len(pairs), 'linkage')}"
+    of = "a family" if found.freedom else "4"
+    complete = f"{count_phrase(len(found), 'real dyad')} of {of}, {count_phrase(len(pairs), 'linkage')}"
     made = of_dyads(task.z, task.u, pairs, task.link)
     if len(task.z) < task.count or (pairs and not task.tolerance):
-        return Candidates(made, complete, found.note, found)
+        return Candidates(made, complete, found.note, found, is_family=found.freedom > 0)
     # none is exact, or others are near enough: those that come nearest, and which tolerance would do
     note = found.note if pairs else "no linkage takes these poses exactly"
     return Candidates([*made, *islice(nearest_linkages(task), TOLD)], complete, note, found)

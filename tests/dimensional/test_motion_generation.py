@@ -373,3 +373,44 @@ def test_poses_that_nothing_takes_have_a_nearest_linkage():
     answer = ck.synthesise(ck.tasks.poses("plate", radians(NONE[0])))
     assert answer.note == "no linkage takes these poses exactly"
     assert "the nearest linkage misses the task by" in answer.nearest or "would do" in answer.nearest
+
+
+def test_a_motion_of_cardan_has_sliders_in_every_direction():
+    """A ladder of length 3 between floor and wall, known by five poses."""
+    angle = np.array([0.2, 0.5, 0.8, 1.1, 1.4])
+    poses = np.column_stack([3 * np.cos(angle), 0 * angle, np.pi - angle])
+    found = ck.dyads(poses)
+    assert "Cardan motion" in found.note
+    for dyad in found:
+        assert np.max(np.abs(dyad.residual(*parts(poses)))) < 1e-9
+    answer = ck.synthesise(ck.tasks.poses("ladder", poses))
+    assert "of a family" in answer.complete
+    assert {one.candidate.title for one in answer} >= {"Elliptic trammel"}
+
+
+def test_a_solved_mechanism_has_the_velocities_that_were_asked_for():
+    rng = np.random.default_rng(11)
+    tried = 0
+    for _ in range(40):
+        poses = random_poses(rng, 3) * [1, 1, 0.3]
+        speed = rng.uniform(-1, 1, 3)
+        answer = ck.synthesise(ck.tasks.poses("plate", poses, velocities={1: speed}), ground=None)
+        for one in answer.solutions[:2]:
+            motion = ck.solve(one.mechanism, {one.driver: one.values})
+            plate = motion.links["plate"]
+            twist = np.array([*plate.origin.velocity.xy[1], plate.angular_velocity[1]])
+            cosine = abs(twist @ speed) / np.linalg.norm(twist) / np.linalg.norm(speed)
+            assert np.isclose(cosine, 1.0, atol=1e-9)
+            tried += 1
+        if tried > 3:
+            break
+    assert tried > 3
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_answers_do_not_depend_on_the_unit(scale):
+    task = [ck.tasks.poses("plate", [(s * x, s * y, angle) for x, y, angle in radians(SLIDER)]) for s in (1, scale)]
+    one, other = map(ck.synthesise, task)
+    assert [a.candidate.title for a in one] == [b.candidate.title for b in other]
+    assert np.allclose([a.size * scale for a in one], [b.size for b in other])
+    assert one.reasons == other.reasons
