@@ -21,7 +21,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry, unwrapped
-from compoundkin.base.display import ShortRepr, count_phrase, display_function
+from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.dyads import PR, RR, Dyad
@@ -92,7 +92,7 @@ class Cognate(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Cognates:
+class Cognates(DisplaysHtml):
     """The linkages that draw one curve, the given one first: three of a four-bar, two of a slider-crank.
 
     `deviation` is the greatest distance between the places of their points, each solved by itself.

@@ -27,7 +27,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked, planar_numbers
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr, count_phrase, display_function
+from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.tasks import PoseTask, extent, poses
@@ -467,7 +467,7 @@ class RotationPole:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Dyads:
+class Dyads(DisplaysHtml):
     """The dyads that guide a body through poses.
 
     `freedom` is 0 where they are finitely many, 1 where they form a curve, 2 or more where a surface or all of the

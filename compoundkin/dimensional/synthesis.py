@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import DisplaysPicture, aligned_text, count_phrase, display_function
+from compoundkin.base.display import DisplaysHtml, aligned_text, count_phrase, display_function
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.added_dyads import added_output, double_dwell
@@ -76,7 +76,7 @@ METHODS: tuple[Method, ...] = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Answer(DisplaysPicture):
+class Answer(DisplaysHtml):
     """The answer to a task: `solutions` ranked, the best first; `rejected` with their reasons.
 
     `complete` says what of how many was found, `note` what is special, `nearest` where there is no solution how far the

@@ -16,6 +16,9 @@ from compoundkin.analysis.singularities import Singularities
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
+from compoundkin.dimensional.cognates import Cognates
+from compoundkin.dimensional.dyads import Dyads
+from compoundkin.dimensional.synthesis import Answer
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.kinematics import Motion, solve
@@ -43,10 +46,12 @@ from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Para
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.simulation_report import simulation_report
 from compoundkin.view.report.structure_sections import analysis_blocks, links_section
+from compoundkin.view.report.synthesis_report import synthesis_report
 from compoundkin.view.report.verification_sections import findings_table
 from compoundkin.view.report.whole_report import report
 from compoundkin.view.report.wording import counted, listed, sentence
 from compoundkin.view.sketch import draw
+from compoundkin.view.sketch.synthesis_pictures import cognates_picture, dyads_picture, synthesis_picture
 
 # Pictures of more links take more than a second and are drawn on request only.
 MOST_LINKS = 30
@@ -214,6 +219,18 @@ def _(what: Centres | MobilityAnalysis | Interference | CamAnalysis | Singularit
 @_parts.register
 def _(what: StudyResult | ToleranceAnalysis | Optimum | MechanismComparison) -> Iterator[str]:
     yield from plain_sections(report(what).sections)
+
+
+@_parts.register
+def _(what: Answer) -> Iterator[str]:
+    yield plain_figure(synthesis_picture(what).svg, safe(what.task.in_words))
+    yield from plain_sections(synthesis_report(what).sections)
+
+
+@_parts.register
+def _(what: Dyads | Cognates) -> Iterator[str]:
+    picture = dyads_picture(what) if isinstance(what, Dyads) else cognates_picture(what)
+    yield plain_figure(picture.svg, safe(repr(what)))
 
 
 def text_of(what: Forces | Simulation) -> str:
