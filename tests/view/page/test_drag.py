@@ -261,3 +261,31 @@ def test_of_two_drivers_each_is_dragged_on_its_own(opened: Any, tmp_path: Path) 
     assert view.value(f"{PLAYER}.drivers[0].parts[''][{k}]") == left
     assert abs(view.drawn("P")["P"] - motion.points["P"].position[k]) < 1e-9
     assert view.complaints == []
+
+
+def test_with_shift_one_length_alone_changes_and_what_is_locked_stays(made: Any, opened: Any) -> None:
+    """Of the two links at D, Shift lengthens the crank; a locked length is kept while its point goes where it may."""
+    view = opened(made("six-bar"))
+    own = view.value(VALUES)
+
+    def dragged(by: tuple[float, float], shift: bool = False) -> dict[str, float]:
+        if shift:
+            view.keyboard.down("Shift")
+        drag(view, "Point D", by)
+        if shift:
+            view.keyboard.up("Shift")
+        view.wait_for_timeout(100)
+        found = {name: value for name, value in view.value(VALUES).items() if value != own[name]}
+        view.value(f"() => {PLAYER}.design.reset()")
+        return found
+
+    lengthened = dragged((40, 3), shift=True)
+    assert lengthened.keys() == {"crank.D.x"}
+    assert lengthened["crank.D.x"] > own["crank.D.x"]
+    assert dragged((40, 25)).keys() == {"crank.D.x", "crank.D.y", "plate.D.x", "plate.D.y"}
+    view.get_by_role("button", name="Lock length from E to D of crank").click()
+    view.value("() => scrollTo(0, 0)")
+    held = dragged((40, 25))
+    assert np.hypot(held["crank.D.x"], held["crank.D.y"]) == pytest.approx(own["crank.D.x"], rel=1e-12)
+    assert "plate.D.x" in held
+    assert view.complaints == []

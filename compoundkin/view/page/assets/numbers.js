@@ -21,7 +21,8 @@
     const text = size && (size >= 1e6 || size < 1e-4) ? value.toExponential(5) : String(Number(value.toPrecision(6)));
     return text.replace("-", "−");
   };
-  const raised = (unit) => unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°").replace(/^deg\//, "°/");
+  // where a mechanism names no unit its lengths are plain numbers
+  const raised = (unit) => unit === "length" ? "" : unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°").replace(/^deg\//, "°/");
   const withUnit = (value, unit) => {
     if (!Number.isFinite(value)) return written(value);
     return unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim();

@@ -71,7 +71,7 @@
           this.take(one, "pointer");
         }
         moved = true;
-        if (isMine()) this.soon({ x: told.clientX + off[0], y: told.clientY + off[1], free: told.altKey || told.ctrlKey });
+        if (isMine()) this.soon({ x: told.clientX + off[0], y: told.clientY + off[1], free: told.altKey || told.ctrlKey, only: told.shiftKey });
       });
       const end = (act) => () => {
         listening.abort();
@@ -100,7 +100,7 @@
     flush() {
       const told = this.waits;
       this.waits = null;
-      if (told && this.held) this.held.move(this.handles.toWorld(told.x, told.y), told.free);
+      if (told && this.held) this.held.move(this.handles.toWorld(told.x, told.y), told.free, told.only);
     }
 
     // --- by keyboard ----------------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@
   const { player } = design;
   const DEGREE = 180 / Math.PI;
   const RESTS = 100; // milliseconds without a change after which tables follow
+  const SLICE = 6; // milliseconds of work between two pictures of the screen
   const ROUNDING = 1e-12; // of what is natural for a quantity, as in the report
   const NEARLY = 1e-8, FLOOR = 1e-8; // as in range_rows.py: places, and lengths that pass zero, are known to so much
   const ALWAYS = "always", LIMITLESS = "without limit", NO_LIMIT = "no limit", NOTHING = "-";
@@ -205,22 +206,36 @@
     ...[...document.querySelectorAll(":is(#performance, #outputs) > .grid")].filter((one) => !one.querySelector("[data-figure], [data-pose]")),
     ...posed.filter((row) => !indices.has(Number(row.dataset.pose))),
   ];
-  const follow = () => {
+  // in parts, so that a page may draw between them
+  function* parts() {
     page.plots?.settle();
     if (!design.isChanged) return restore();
+    yield;
     const courses = new page.Courses(design);
     for (const { tr, kind, names, cells, unit } of rows.filter((row) => row.kind !== "dead")) {
       const told = TOLD[kind] && TOLD[kind](courses, names, unit);
       tr.classList.toggle("behind", !told);
       if (told) cells.slice(-told.length).forEach((cell, k) => tell(cell, told[k]));
+      yield;
     }
     for (const row of added.splice(0)) row.remove();
     const byName = new Map();
     for (const row of rows.filter(({ kind }) => kind === "dead")) byName.set(row.names[0], [...(byName.get(row.names[0]) ?? []), row]);
-    for (const own of byName.values()) dead(courses, own);
+    for (const own of byName.values()) {
+      dead(courses, own);
+      yield;
+    }
     outputs();
+    yield;
     behind.forEach((one) => one.classList.add("behind"));
     for (const [section, note] of notes) note.hidden = !section.querySelector(".behind");
+  }
+  const follow = () => { for (const _ of parts()); };
+  // as many parts as one picture of the screen has time for, then the next ones; a change begins anew
+  const sliced = (rest = parts()) => {
+    const begun = performance.now();
+    while (performance.now() - begun < SLICE) if (rest.next().done) return;
+    waits = setTimeout(() => sliced(rest));
   };
   const notes = [...document.querySelectorAll("#outputs, #performance")].map((section) => {
     const note = document.createElement("p");
@@ -231,7 +246,7 @@
   let waits = null;
   design.on("change", () => {
     clearTimeout(waits);
-    waits = setTimeout(follow, RESTS);
+    waits = setTimeout(() => sliced(), RESTS);
   });
   document.querySelector("#outputs .tools .more")?.addEventListener("click", () => { if (design.isChanged) outputs(); });
   for (const section of document.querySelectorAll("#outputs, #performance, #motion")) section.dataset.follows = "";

@@ -32,6 +32,8 @@
     }
     handle(kind, data, label) {
       const button = page.made("button", { type: "button", class: `handle ${kind}`, tabindex: -1, "aria-label": label, "aria-pressed": "false" }, this.layer);
+      button.title = kind === "driver" ? `Drag to drive ${data.name}` : `Drag ${data.name}`;
+      if (kind === "driver") page.made("span", { class: "called", "aria-hidden": "true" }, button).textContent = data.name;
       return { kind, data, label, button, name: data.name, at: null, drawn: "" };
     }
     of(button) {

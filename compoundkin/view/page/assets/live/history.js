@@ -3,7 +3,7 @@
   "use strict";
   const page = window.compoundkin;
   const TYPED = "input:not([type=range], [type=checkbox], [type=radio], [type=button]), textarea, select, [contenteditable]";
-  const HINT = "Drag a point to change the mechanism, a driver to move it (by keyboard: Tab, Enter, arrows).";
+  const HINT = "Drag a point to change the mechanism, a driver to move it (by keyboard: Tab, Enter, arrows). With Shift only one length changes.";
   const FORCES = "Forces are of the original dimensions; they are not shown while these are changed.";
 
   const MOST_GAPS = 4; // told in words

@@ -6,6 +6,7 @@
   const MANY = 60; // rows from which links are folded
   const COARSE = 10; // steps of PageUp, and of an arrow with Shift
   const BEGUN = /^\s*[+\-−]?\d*[.,]?\d*(e[+-]?\d*)?\s*$/i; // what may become a number yet
+  const LOCK = "M5 7V5a3 3 0 0 1 6 0v2M3.5 7h9v6.5h-9z";
   const REST = 700; // milliseconds after the last arrow until it is one step of undo
 
   const make = (name, className, text, parent) => {
@@ -15,7 +16,7 @@
     if (parent) parent.append(element);
     return element;
   };
-  // as typed: a hyphen for minus, six digits
+  // as screen readers take numbers: a hyphen for minus, six digits
   const typed = (value) => page.written(value).replace("−", "-");
 
   // A number field with its label, its unit, what it was, and what is wrong or possible.
@@ -38,6 +39,7 @@
       this.was.id = `${id}-was`;
       make("span", "of", row.unit, this.root).id = `${id}-unit`;
       this.back = this.button(this.root);
+      this.lock = row instanceof page.PointRow && (row.kind === "length" || row.isAngle) ? this.locking() : null;
       this.more = make("p", "more", "", this.root);
       this.more.id = `${id}-more`;
       this.listen();
@@ -50,6 +52,23 @@
       back.setAttribute("aria-label", `Reset ${this.row.spoken} of ${this.row.owner}`);
       back.addEventListener("click", () => { this.input.focus(); this.apply(this.row.original(), true); });
       return back;
+    }
+    // a length or an angle that is locked stays what it is while points are dragged
+    locking() {
+      const { row, panel: { player } } = this;
+      const lock = make("button", "lock", "", this.root);
+      Object.assign(lock, { type: "button", title: "Keep it while points are dragged" });
+      lock.setAttribute("aria-label", `Lock ${row.spoken} of ${row.owner}`);
+      lock.setAttribute("aria-pressed", "false");
+      page.drawn("path", { d: LOCK }, page.drawn("svg", { viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true" }, lock));
+      lock.addEventListener("click", () => {
+        const isLocked = lock.getAttribute("aria-pressed") !== "true";
+        lock.setAttribute("aria-pressed", String(isLocked));
+        this.input.readOnly = isLocked;
+        this.root.classList.toggle("locked", isLocked);
+        player.locks[isLocked ? "add" : "delete"](row);
+      });
+      return lock;
     }
     listen() {
       const { input } = this;
@@ -67,7 +86,8 @@
       else if (event.key === "Escape" && (this.bad || this.input.value !== this.shown)) {
         this.write();
         this.wrong("");
-      } else if (by) this.stepped(by * (event.shiftKey && Math.abs(by) === 1 ? COARSE : 1));
+      } else if (by && this.input.readOnly) return;
+      else if (by) this.stepped(by * (event.shiftKey && Math.abs(by) === 1 ? COARSE : 1));
       else return;
       event.preventDefault();
       if (event.key === "Escape") event.stopPropagation();
@@ -119,7 +139,7 @@
       if (!this.bad && (document.activeElement !== this.input || this.input.value === this.shown)) this.write();
     }
     write() {
-      const value = this.value, text = Number.isFinite(value) ? typed(value) : "";
+      const value = this.value, text = Number.isFinite(value) ? page.written(value) : "";
       if (text === this.shown && text === this.input.value) return;
       this.shown = this.input.value = text;
       if (Number.isFinite(value)) this.input.setAttribute("aria-valuenow", typed(value));
@@ -146,10 +166,12 @@
   }
 
   class Panel {
+    // locks are of the player: those who drag its points ask for them
     constructor(root, player) {
       const { live } = player.data;
       Object.assign(this, { root, player, design: player.design, fixed: live.panel.fixed, unit: player.data.unit, fields: [] });
       this.size = page.sizeOf(live.dimensions);
+      player.locks = new Set();
       this.now = (name) => this.design.value(name);
       this.own = (name) => this.design.own[this.design.index.get(name)];
       this.build(live.panel);

@@ -31,12 +31,14 @@
       Object.assign(this, { drag, one, player, design: player.design });
       this.start = this.now = player.place(name);
       this.poses = links.map((link) => ({ link, ...poseOf(player.links[link], k) }));
+      // its coordinates where it was taken hold of: with one length alone the others are these
+      this.taken = Object.fromEntries(this.poses.flatMap(({ link }) => ["x", "y"].map((part) => `${player.data.links[link].name}.${name}.${part}`)).map((key) => [key, player.design.value(key)]));
       this.guide = on === undefined ? null : page.guideOf(player, on, name, k)?.along;
       // lines from other points of its links through where it was
-      this.rays = this.poses.filter(({ link }) => !this.isFrame(link)).flatMap((pose) => this.others(pose.link).map(({ x, y }) => placeOn(pose, x, y)))
-        .map((from) => ({ from, away: [this.start[0] - from[0], this.start[1] - from[1]] }))
-        .map(({ from, away }) => ({ from, size: Math.hypot(...away), away })).filter(({ size }) => size > 0)
-        .map(({ from, away, size }) => ({ from, along: away.map((part) => part / size) }));
+      this.rays = this.poses.filter(({ link }) => !this.isFrame(link)).flatMap((pose) => this.others(pose.link).map(({ letter, x, y }) => ({ pose, letter, from: placeOn(pose, x, y) })))
+        .map((ray) => ({ ...ray, away: [this.start[0] - ray.from[0], this.start[1] - ray.from[1]] }))
+        .map((ray) => ({ ...ray, size: Math.hypot(...ray.away) })).filter(({ size }) => size > 0)
+        .map(({ away, size, ...ray }) => ({ ...ray, size, along: away.map((part) => part / size) }));
       const letters = Object.keys(player.points).filter((letter) => letter !== name);
       this.places = [...letters.map((letter) => player.place(letter, k)), this.before(name, k)]
         .filter(([x, y]) => Number.isFinite(x + y) && Math.hypot(x - this.start[0], y - this.start[1]) > 0);
@@ -54,12 +56,39 @@
       return player.given ? placeOn(poseOf(player.given.links[index], k), design.own[own.x], design.own[own.y]) : this.start;
     }
 
-    move(world, free) {
+    move(world, free, only = false) {
+      if (only && this.rays.length) return this.lengthen(world, free);
       const { pixel } = this.drag.handles, step = page.gridStep(pixel);
       let found = { at: world, lines: [] };
       if (this.guide) found = { at: this.onGuide(world, free ? 0 : step), lines: [] };
       else if (!free) found = page.snapped(world, { step, pixel, others: this.places, rays: this.rays });
       this.put(found);
+    }
+    // only one length: that of the link along which the pointer goes; other links keep theirs, and the mechanism closes anew
+    lengthen(world, free) {
+      const away = [world[0] - this.start[0], world[1] - this.start[1]], along = (ray) => away[0] * ray.along[0] + away[1] * ray.along[1];
+      const ray = this.rays.reduce((best, one) => (Math.abs(along(one)) > Math.abs(along(best)) ? one : best));
+      const step = free ? 0 : page.gridStep(this.drag.handles.pixel), wanted = ray.size + along(ray), length = Math.max(step ? page.toStep(wanted, step) : wanted, step || ray.size * 1e-3);
+      const at = ray.from.map((from, part) => from + length * ray.along[part]), { name } = this.player.data.links[ray.pose.link];
+      this.design.change({ ...this.taken, ...this.kept(this.on(ray.pose, at)) });
+      this.now = at;
+      this.drag.numbers.show(this.one, { at, lines: [ray.from] }, [`only ${name} ${ray.letter}${this.one.name}: ${short(length, this.player.data.unit)}`]);
+    }
+    // the coordinates on a link of a place
+    on(pose, at) {
+      const { width, height, scale } = this.player.data.window, fine = page.finest(Math.max(width, height) / scale);
+      const base = `${this.player.data.links[pose.link].name}.${this.one.name}`, [x, y] = inside(pose, at);
+      return { [`${base}.x`]: page.toStep(x, fine), [`${base}.y`]: page.toStep(y, fine) };
+    }
+    // with what is locked: a length and an angle that end at the point keep their values, others keep the point
+    kept(values) {
+      const { design, one: { name } } = this, of = (key) => values[key] ?? design.value(key);
+      for (const row of this.player.locks || []) {
+        if (!row.letters.includes(name) || !(`${row.owner}.${name}.x` in values)) continue;
+        if (row.moved === name) Object.assign(values, row.set(row.get(design.value.bind(design)), of));
+        else for (const part of ["x", "y"]) values[`${row.owner}.${name}.${part}`] = design.value(`${row.owner}.${name}.${part}`);
+      }
+      return values;
     }
     step(way, by) {
       const step = page.gridStep(this.drag.handles.pixel) * by;
@@ -67,15 +96,8 @@
       this.put({ at: this.guide ? this.onGuide(to, 0) : to, lines: [] });
     }
     put(found) {
-      const { width, height, scale } = this.player.data.window, fine = page.finest(Math.max(width, height) / scale);
-      const values = {};
       this.now = found.at;
-      for (const pose of this.poses) {
-        const base = `${this.player.data.links[pose.link].name}.${this.one.name}`, [x, y] = inside(pose, found.at);
-        values[`${base}.x`] = page.toStep(x, fine);
-        values[`${base}.y`] = page.toStep(y, fine);
-      }
-      this.design.change(values);
+      this.design.change(this.kept(Object.assign({}, ...this.poses.map((pose) => this.on(pose, found.at)))));
       this.drag.numbers.show(this.one, found, this.lengths());
     }
     onGuide([x, y], step) {

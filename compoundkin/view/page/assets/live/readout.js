@@ -4,7 +4,8 @@
   const page = window.compoundkin;
   const MOST = 5; // lengths told; more would hide the sketch
   const BESIDE = 18; // pixels from a handle to the numbers
-  const HIGH = 150; // nearer to the top than this they have no room above it
+  const STEP = 0.1; // of a line between two points of a link: places that are not to be covered
+  const AROUND = [[1, -1], [-1, -1], [1, 1], [-1, 1], [1, 0], [-1, 0], [0, -1], [0, 1]]; // where numbers may stand
 
   class Readout {
     constructor(handles) {
@@ -36,11 +37,31 @@
       }
       this.put(at ? this.handles.toScreen(at) : one.at);
     }
-    // beside it toward the middle, and above, where a finger hides nothing
+    // beside it where it covers least of the mechanism, and rather above, where a finger hides nothing
     put([x, y]) {
-      const isLeft = x < this.handles.width / 2, isLow = y > HIGH;
-      const across = isLeft ? `${(x + BESIDE).toFixed(0)}px` : `calc(${(x - BESIDE).toFixed(0)}px - 100%)`;
-      this.box.style.transform = `translate(${across},${isLow ? `calc(${(y - BESIDE).toFixed(0)}px - 100%)` : 0})`;
+      const { offsetWidth: wide, offsetHeight: high } = this.box, { seen } = this.handles, covered = this.drawn();
+      let best = null;
+      for (const away of [BESIDE, 3 * BESIDE, 6 * BESIDE]) {
+        for (const [across, down] of AROUND) {
+          const left = x + across * away - (across < 0 ? wide : across ? 0 : wide / 2), top = y + down * away - (down < 0 ? high : down ? 0 : high / 2);
+          const isOut = left < seen.left || top < seen.top || left + wide > seen.right || top + high > seen.bottom;
+          const hits = covered.filter(([px, py]) => px > left - 4 && px < left + wide + 4 && py > top - 4 && py < top + high + 4).length;
+          const cost = hits * 4 + (isOut ? 1000 : 0) + away / BESIDE + (down > 0 ? 1 : 0);
+          if (!best || cost < best.cost) best = { left, top, cost };
+        }
+      }
+      this.box.style.transform = `translate(${best.left.toFixed(0)}px,${best.top.toFixed(0)}px)`;
+    }
+    // places on the links, in pixels
+    drawn() {
+      const { player } = this.handles, found = [];
+      player.data.links.forEach((_, link) => {
+        const points = page.pointsOf(player, link).map((one) => this.handles.toScreen(player.at(link, one.x, one.y, player.pose)));
+        points.forEach(([ax, ay], k) => points.slice(k).forEach(([bx, by]) => {
+          for (let t = 0; t <= 1; t += STEP) found.push([ax + t * (bx - ax), ay + t * (by - ay)]);
+        }));
+      });
+      return found;
     }
     clear() {
       this.box.hidden = true;
