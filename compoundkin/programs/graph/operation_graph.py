@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from math import frexp, inf, nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,8 +38,7 @@ class InputNumber:
         return f"{self.name}.{self.part}" if self.part else self.name
 
 
-@dataclass(frozen=True)
-class OperationNode:
+class OperationNode(NamedTuple):
     """One node: an operation on earlier nodes, a constant, or an input."""
 
     operation: str
@@ -91,10 +91,13 @@ class OperationGraph(ShortRepr):
 
     def _simpler(self, operation: str, operands: tuple[int, ...]) -> int | None:
         """Return a node that is there already, or cheaper; None where there is none."""
-        known = [self.nodes[k] for k in operands]
-        if all(node.operation == CONSTANT for node in known):
+        nodes = self.nodes
+        for k in operands:
+            if nodes[k].operation != CONSTANT:
+                break
+        else:
             with np.errstate(all="ignore"):
-                return self.constant(float(OPERATIONS[operation].compute(*(node.value for node in known))))
+                return self.constant(float(OPERATIONS[operation].compute(*(nodes[k].value for k in operands))))
         if OPERATIONS[operation].is_commutative and operands[0] > operands[1]:
             return self.apply(operation, *operands[::-1])
         return simplified(self, operation, operands)

@@ -473,8 +473,8 @@ class LabelCrowd:
         """Return what each place of a label costs, on the average of the poses."""
         places = np.array(label.places) * self._turn[:, k, None] + self._shift[:, k, None]
         near = self._near(k, places)
-        gap = places[:, :, None] - self._middles[:, None, near]
-        found: Number = crowded(gap, label.half, self._half[near]).sum(axis=2).mean(axis=0)
+        gap = places - self._middles[:, near].T[:, :, None]
+        found: Number = crowded(gap, label.half, self._half[near][:, None, None]).sum(axis=0).mean(axis=0)
         return found
 
     def _near(self, k: int, places: Number) -> Number:
@@ -512,7 +512,7 @@ def on_shapes(at: Number, half: complex, lines: Number, rounds: Number) -> Numbe
         x, y, radius = x[near], y[near], radius[near]
         gap = np.abs(at.real[:, None] - x) - half.real - radius
         high = np.abs(at.imag[:, None] - y) - half.imag - radius
-        costs = costs + ROUND * ((gap < 0) & (high < 0)).sum(axis=1)
+        costs = costs + ROUND * np.count_nonzero((gap < 0) & (high < 0), axis=1)
     return costs
 
 

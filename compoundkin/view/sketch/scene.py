@@ -214,7 +214,18 @@ class Scene:
 
     def at(self, link: str, p: Number) -> complex:
         """Return where a point of a link is at the pose shown."""
-        return as_place(self.here[link].at(p).c[0])
+        if type(p) is not complex:
+            return as_place(self.here[link].at(p).c[0])
+        # large mechanisms are painted group by group, and points asked for again and again
+        found = self._found.get((link, p))
+        if found is None:
+            found = self._found[link, p] = as_place(self.here[link].at(p).c[0])
+        return found
+
+    @cached_property
+    def _found(self) -> dict[tuple[str, complex], complex]:
+        """Where points are that were asked for."""
+        return {}
 
     def turned(self, link: str, along: Number) -> complex:
         """Return a direction on a link, in the world."""
