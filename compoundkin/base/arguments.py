@@ -114,6 +114,7 @@ OBTAINED_BY: Mapping[str, str] = MappingProxyType(
         "Structure": "decompose() gives one",
         "Motion": "solve() gives one",
         "Circuits": "circuits() gives them",
+        "Task": "ck.tasks.poses() and others make one",
         "Configuration": "configurations() has them",
         "Group": "decompose(mechanism).groups are some",
         "Chain": "chains.chains() gives some",

@@ -214,17 +214,6 @@ def _absolute(task: FunctionTask) -> Candidates:
     return Candidates((made,), "1 linkage of 1")
 
 
-def freudenstein_ratios(phi: Number, psi: Number) -> Number:
-    """Return K1, K2, K3 of Freudenstein's equation, of more than three pairs by least squares.
-
-    >>> freudenstein_ratios(np.deg2rad([49.01923788646685, 75.0, 100.98076211353316]),
-    ...                     np.deg2rad([68.44122948079973, 116.63264205448195, 137.5695059119052])).round(6).tolist()
-    [0.437292, 0.405642, 1.048432]
-    """
-    found: Number = np.linalg.lstsq(_freudenstein_rows(phi, psi), np.cos(phi - psi), rcond=None)[0]
-    return found
-
-
 def _freudenstein_rows(phi: Number, psi: Number) -> Number:
     return np.stack([np.cos(psi), -np.cos(phi), np.ones(len(phi))], axis=-1)
 

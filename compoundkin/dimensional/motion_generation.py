@@ -38,6 +38,8 @@ GRID = 4
 AROUND = 1.5
 # Dyads with longer links, in extents of the poses, are of no use.
 LONGEST = 20.0
+# A pivot is a given one within this part of the extent of the poses.
+GIVEN = 1e-9
 
 
 def five_poses(task: PoseTask) -> Candidates:
@@ -62,10 +64,11 @@ def four_poses(task: PoseTask) -> Candidates:
     if found.freedom != 1:
         return _family(task, found)
     given = task.conditions.ground
-    chosen = [_nearest(found, place) for place in given] if given else spread_over_curve(task, found)
-    dyads = [*found, *chosen]
-    pairs = _some([pair for pair in pairs_of(dyads) if len(given) < 2 or all(dyad in chosen for dyad in pair)])
-    complete = f"{len(chosen)} dyads of a curve with 2 sliders, {count_phrase(len(pairs), 'linkage')}"
+    at = [_nearest(found, place) for place in given]
+    others = [] if len(given) > 1 else [*found, *spread_over_curve(task, found)]
+    pairs = _some([pair for pair in pairs_of([*at, *others]) if _uses(pair, at)])
+    chosen = len(at) + max(len(others) - len(found), 0)
+    complete = f"{chosen} dyads of a curve with 2 sliders, {count_phrase(len(pairs), 'linkage')}"
     note = "the dyads through four poses form a curve: any two of it are a linkage"
     return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, note, found, is_family=True)
 
@@ -213,10 +216,10 @@ def few_poses_with_timing(task: TimedPointTask) -> Candidates:
     of = "4" if count == 5 else "a family"
     complete = f"{count_phrase(len(dyads), 'dyad')} of {of}, {count_phrase(len(made), 'linkage')}"
     note = found.note if count == 5 else f"{count} points with timing leave a family, of which some are tried"
-    return Candidates(_same_crank(made, task.angles), complete, note, found, is_family=count < 5)
+    return Candidates(_same_crank(made), complete, note, found, is_family=count < 5)
 
 
-def _same_crank(made: list[Linkage], angles: Number) -> Iterator[Linkage]:
+def _same_crank(made: list[Linkage]) -> Iterator[Linkage]:
     """Yield linkages that their crank alone drives, for the angles are its."""
     for one in made:
         name = next(iter(one.drivers))
@@ -231,7 +234,8 @@ def _family(task: PoseTask, found: Dyads) -> Candidates:
         return _of_special(task, found)
     else:
         dyads = _of_grid(task, found)
-    pairs = _some(pairs_of(dyads))
+    at = [dyad for dyad in dyads if dyad.kind != PR and _is_given(dyad.fixed, task)]
+    pairs = _some([pair for pair in pairs_of(dyads) if _uses(pair, at)])
     complete = f"{count_phrase(len(dyads), 'dyad')} of a family, {count_phrase(len(pairs), 'linkage')}"
     note = found.note or "every fixed pivot has a dyad through three poses: any two of them are a linkage"
     return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, note, found, is_family=True)
@@ -249,6 +253,16 @@ def _of_special(task: PoseTask, found: Dyads) -> Candidates:
     pairs = pairs_of(dyads)
     complete = f"{count_phrase(len(dyads), 'crank')} of a family, {count_phrase(len(pairs), 'parallelogram')}"
     return Candidates(of_dyads(task.z, task.u, pairs, task.link), complete, found.note, found, is_family=True)
+
+
+def _is_given(place: complex, task: PoseTask) -> bool:
+    """Return whether a fixed pivot is one of those that are given."""
+    return any(abs(place - given) < GIVEN * extent(task.z) for given in task.conditions.ground)
+
+
+def _uses(pair: tuple[Dyad, Dyad], at: list[Dyad]) -> bool:
+    """Return whether a pair has as many of the dyads at given pivots as it can."""
+    return sum(dyad in at for dyad in pair) >= min(len(at), 2)
 
 
 def _some(pairs: list[tuple[Dyad, Dyad]]) -> list[tuple[Dyad, Dyad]]:

@@ -414,3 +414,19 @@ def test_answers_do_not_depend_on_the_unit(scale):
     assert [a.candidate.title for a in one] == [b.candidate.title for b in other]
     assert np.allclose([a.size * scale for a in one], [b.size for b in other])
     assert one.reasons == other.reasons
+
+
+@pytest.mark.parametrize("count", [3, 4])
+def test_one_given_pivot_is_used_by_all_candidates(count):
+    poses = radians(SLIDER)[:count]
+    place = (-0.9, -0.2)
+    if count == 4:
+        centre = ck.dyads(poses).curve.centres[200]
+        place = (centre.real, centre.imag)
+    answer = ck.synthesise(ck.tasks.poses("plate", poses), ground=[place])
+    every = [*(one.candidate for one in answer), *(one.candidate for one in answer.rejected)]
+    assert len(every) > 5
+    for one in every:
+        assert min(abs(pivot - complex(*place)) for pivot in one.pivots) < 1e-6
+    off = ck.synthesise(ck.tasks.poses("plate", poses), ground=[(60, -70)])
+    assert count == 3 or {one.reason for one in off.rejected} == {"region"}

@@ -70,7 +70,7 @@ def _solutions(answer: Answer) -> Iterator[Section]:
              Column("length", "", "fixed"))  # fmt: skip
     blocks: list[Block] = [TableBlock(heads, tuple(row for k, one in enumerate(answer, start=1)
                                                    for row in _dimensions(k, one.candidate)), 2)]  # fmt: skip
-    yield Section("dimensions", "Dimensions", tuple(blocks))
+    yield Section("joints", "Joints and lengths", tuple(blocks))
 
 
 def _dimensions(number: int, linkage: Linkage) -> Iterator[tuple[Cell, ...]]:
