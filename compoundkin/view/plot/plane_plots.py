@@ -383,6 +383,8 @@ def _free_angle(axes: Any) -> float:
 
 # So wide and high is a panel, inches.
 PANEL, HEIGHT = 4.6, 5.0
+# How far a title stands above its axes where a legend is between, in points.
+ABOVE_LEGEND = 24.0
 
 
 @checked
@@ -427,7 +429,8 @@ def bearing_loads(
             draw_curves(one, shared, drawn, [f"{name}.{FORCE}" for name in pairs])
             one.plot([0.0], [0.0], marker="+", markersize=11, color=plot_style.INK, linestyle="none", zorder=6)
             canvas.plane_axes(one, f"{', '.join(pairs)}: force, x [{unit}]", f"y [{unit}]")
-            one.set_title(said, fontsize="medium")
+            # above the legend, which stands where there is more than one curve
+            one.set_title(said, fontsize="medium", pad=ABOVE_LEGEND if len(pairs) > 1 else None)
         draw_plane_legends(figure, axes, shared, True)
         return canvas.finished(figure, shared.labels)
 

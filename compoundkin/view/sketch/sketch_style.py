@@ -13,6 +13,8 @@ from compoundkin.model.attributes import ACCELERATION, VELOCITY
 
 # From the middle of a line of text to its baseline, in parts of the size of the letters.
 BASELINE = 0.35
+# Lowered and raised signs as texts have them; pictures set them as small ones of the font, or as formulas.
+LOWERED_SIGNS, RAISED_SIGNS = "₀₁₂₃₄₅₆₇₈₉₋", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
 # A colour on light and on dark paper.
 Colours: TypeAlias = tuple[str, str]
 # Sizes that shapes are made with, in picture units.

@@ -463,6 +463,8 @@ APART, NODE = 110.0, 14.0
 ROUNDS = 200
 # Two pairs between the same links bulge by this.
 BULGE = 26.0
+# A line goes past another link with this room, bent in such steps, so many of them.
+AROUND, DETOUR, DETOURS = 6.0, 4.0, 25
 
 
 def graph_shapes(
@@ -507,12 +509,24 @@ def _graph_edges(
         bulge = _bulge(count.get(between, 0))
         count[between] = count.get(between, 0) + 1
         across = 1j * (second - first) / (abs(second - first) or 1.0)
-        middle = (first + second) / 2.0 + across * bulge
+        others = np.array([place for name, place in places.items() if name not in pair.members[:2]], dtype=complex)
+        middle = _past(first, second, (first + second) / 2.0 + across * bulge, across, others)
         style = "bold" if pair.name in driven else "edge"
         lines.append(ShapeGroup((Polyline((first, middle, second), style),), title=f"{pair.name}, {pair.title}"))
         lines += [Polyline((middle, places[name]), "ray") for name in pair.members[2:]]
         named.append(_label(k, pair, first, middle, second, across))
     return lines, named
+
+
+def _past(first: complex, second: complex, middle: complex, across: complex, others: Number) -> complex:
+    """Return the middle of a line moved to the side as little as it takes to go past the circles of other links."""
+    offs = sorted((sense * DETOUR * k for k in range(DETOURS) for sense in (1.0, -1.0)), key=abs)
+    for off in offs if len(others) else ():
+        bend = middle + across * off
+        near = np.minimum(*(_distances(others, np.array(end), np.array(bend)) for end in (first, second)))
+        if near.min() > NODE + AROUND:
+            return bend
+    return middle
 
 
 def _bulge(k: int) -> float:
@@ -547,7 +561,7 @@ def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     tried = _relaxed_places(
         ideal, np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))])
     )
-    places = min(tried, key=lambda found: _crossings(found, joined))
+    places = min(tried, key=lambda found: _faults(found, joined))
     places = places - places[0]
     # the frame below, as it is drawn
     far = np.mean(places) if len(names) > 1 else 1j
@@ -566,6 +580,22 @@ def _relaxed_places(ideal: Number, orders: Number) -> Number:
     return places
 
 
+def _faults(places: Number, joined: Sequence[tuple[int, int]]) -> int:
+    """The number of lines that cross, and of links that lie on the line of others."""
+    first, second = np.array(joined, dtype=int).reshape(-1, 2).T
+    near = _distances(places[:, None], places[first], places[second]) < NODE_ROOM
+    near[first, np.arange(len(first))] = near[second, np.arange(len(first))] = False
+    return _crossings(places, joined) + int(np.count_nonzero(near))
+
+
+def _distances(places: Number, first: Number, second: Number) -> Number:
+    """The distances of places from segments."""
+    along = second - first
+    share = np.clip(((places - first) * np.conjugate(along)).real / np.maximum(np.abs(along) ** 2, CLEAR), 0.0, 1.0)
+    found: Number = np.abs(places - first - share * along)
+    return found
+
+
 def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
     """The number of lines between links that cross."""
     first, second = np.array(joined, dtype=int).reshape(-1, 2).T
@@ -576,6 +606,8 @@ def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
     return int(np.count_nonzero(apart & apart.T & ~(shared | (second[:, None] == second))) // 2)
 
 
+# How near a link may be to the line of others.
+NODE_ROOM = 0.3
 # Of so many starting orders, by the number of links, the one is taken whose lines cross least.
 STARTS, MOST_STARTS = 500, 40
 # Products of distances below this are rounding.

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
-from html import escape
+from functools import lru_cache
+from html import escape, unescape
 from typing import Any
 
 import numpy as np
@@ -22,7 +24,7 @@ from compoundkin.view.sketch.shapes import (
     Text,
     coordinate_text,
 )
-from compoundkin.view.sketch.sketch_style import BASELINE, PAPER, sheets_of_papers
+from compoundkin.view.sketch.sketch_style import BASELINE, LOWERED_SIGNS, PAPER, RAISED_SIGNS, sheets_of_papers
 
 FONT = "font-family:Helvetica,Arial,sans-serif"
 # Pixels for a picture unit where texts are as large as those of a page.
@@ -32,6 +34,15 @@ FINE = 2.0
 # Where colours are in the four bytes of a pixel of Cairo's on machines of our days: blue, green, red.
 RED_GREEN_BLUE = [2, 1, 0]
 DOTS_PER_INCH = 96
+# Raised signs that every font has.
+COMMON_SIGNS = "¹²³"
+PLAIN_SIGNS = str.maketrans(LOWERED_SIGNS + RAISED_SIGNS, "0123456789−0123456789−")
+SHIFTED_RUNS = re.compile(f"[{LOWERED_SIGNS}]+|[{RAISED_SIGNS}]+|[^{LOWERED_SIGNS}{RAISED_SIGNS}]+")
+# How small they are set, and how far off the line, in ems.
+SMALL, LOWER, HIGHER = 0.7, 0.196, 0.35
+# An element with such signs that is not set from its start.
+ANCHORED = re.compile(r'(<text[^>]*?) text-anchor="(middle|end)"([^>]*)>([^<]*<tspan.*?)</text>')
+PIECES = re.compile(r"(?:<tspan([^>]*)>)?([^<]+)(?:</tspan>)?")
 
 
 def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title: str, description: str = "") -> str:
@@ -129,7 +140,7 @@ def _element(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape
         x, y = coordinate_text(shape.at.real), coordinate_text(shape.at.imag)
         anchor = f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else ""
         turn = f' transform="rotate({coordinate_text(shape.angle)} {x} {y})"' if shape.angle else ""
-        return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}{turn}>{escape(shape.text)}</text>'
+        return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}{turn}>{markup(shape.text)}</text>'
     if isinstance(shape, CircleShape):
         x, y = coordinate_text(shape.centre.real), coordinate_text(shape.centre.imag)
         return f'<circle{style} cx="{x}" cy="{y}" r="{coordinate_text(shape.radius)}"/>'
@@ -143,6 +154,29 @@ def _element(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape
         way = f'd="{_path_data(shape.points)}{"Z" if shape.closed else ""}"'
         return f'<path{style} stroke-width="{coordinate_text(shape.width)}" {way}/>'
     return f'<path{style} d="{_path_data(shape.points)}{"Z" if isinstance(shape, Polygon) else ""}"/>'
+
+
+def markup(text: str) -> str:
+    """Return a text as it stands in an element, its lowered and raised signs as small ones of the same font.
+
+    Few fonts have lowered signs of their own, and Cairo looks for them in no other.
+
+    >>> markup("F₁₂")
+    'F<tspan font-size="0.7em" dy="0.28em">12</tspan>'
+    >>> markup("m₂g")
+    'm<tspan font-size="0.7em" dy="0.28em">2</tspan><tspan dy="-0.196em">g</tspan>'
+    """
+    parts, shift = [], 0.0
+    for run in SHIFTED_RUNS.findall(text):
+        lowered = run[0] in LOWERED_SIGNS
+        raised = run[0] in RAISED_SIGNS and not set(run) <= set(COMMON_SIGNS)
+        target = LOWER if lowered else -HIGHER if raised else 0.0
+        size, plain = (SMALL, run.translate(PLAIN_SIGNS)) if target else (1.0, run)
+        small = f' font-size="{SMALL:g}em"' if target else ""
+        moved = f' dy="{(target - shift) / size:.3g}em"'
+        parts.append(escape(plain) if target == shift else f"<tspan{small}{moved}>{escape(plain)}</tspan>")
+        shift = target
+    return "".join(parts)
 
 
 def _path_data(points: Sequence[complex]) -> str:
@@ -166,7 +200,7 @@ def converted(source: str, form: str) -> bytes:
         raise missing_extra(f".{form}", what, "pictures", "save an .svg") from None
     convert: Any = cairosvg.svg2png if form == "png" else cairosvg.svg2pdf
     extra = {"scale": FINE} if form == "png" else {}
-    made: bytes = convert(bytestring=on_light_paper(source).encode("utf-8"), **extra)
+    made: bytes = convert(bytestring=for_cairo(source).encode("utf-8"), **extra)
     return made
 
 
@@ -174,6 +208,32 @@ def on_light_paper(source: str) -> str:
     """Return the source without its rules for dark paper. CairoSVG would apply them to any."""
     start, end = source.find("@media"), source.find("</style>")
     return source[:start] + source[end:] if 0 <= start < end else source
+
+
+def for_cairo(source: str) -> str:
+    """Return the source as CairoSVG draws it right: on light paper, texts of several pieces set from their start.
+
+    It would set each piece about the anchor of the text.
+    """
+
+    def from_start(found: re.Match[str]) -> str:
+        head, anchor, rest, inside = found.groups()
+        pieces = PIECES.findall(inside)
+        width = sum(_ems(unescape(text)) * (SMALL if "font-size" in how else 1.0) for how, text in pieces)
+        return f'{head} dx="{-width / (2.0 if anchor == "middle" else 1.0):.4g}em"{rest}>{inside}</text>'
+
+    return ANCHORED.sub(from_start, on_light_paper(source))
+
+
+@lru_cache(maxsize=1024)
+def _ems(text: str) -> float:
+    """Return the width of a text in Cairo's own font of the pictures, in ems."""
+    from cairosvg.surface import cairo
+
+    context: Any = cairo.Context(cairo.RecordingSurface(cairo.CONTENT_ALPHA, None))
+    context.select_font_face("Helvetica")
+    context.set_font_size(100.0)
+    return float(context.text_extents(text)[4]) / 100.0
 
 
 def require_cairo(form: str) -> None:
@@ -202,7 +262,7 @@ def pixels(source: str, width: int, height: int) -> Number:
     from cairosvg.parser import Tree
     from cairosvg.surface import PNGSurface
 
-    tree = Tree(bytestring=on_light_paper(source).encode("utf-8"))
+    tree = Tree(bytestring=for_cairo(source).encode("utf-8"))
     # drawn, but not packed as PNG and unpacked again, which takes longer than drawing
     surface: Any = PNGSurface(
         tree, None, DOTS_PER_INCH, output_width=width, output_height=height, background_color=PAPER[0]

@@ -24,7 +24,7 @@ from compoundkin.view.sketch.shapes import (
     Text,
     coordinate_text,
 )
-from compoundkin.view.sketch.sketch_style import BASELINE, declarations
+from compoundkin.view.sketch.sketch_style import BASELINE, LOWERED_SIGNS, RAISED_SIGNS, declarations
 
 # TeX's big points of a pixel: 72 and 96 to the inch.
 OF_PIXEL = 0.75
@@ -220,9 +220,8 @@ _SIGNS = {
     **{"≤": r"\le", "≥": r"\ge", "≈": r"\approx", "√": r"\surd", "′": "'", "″": "''", "µ": r"\mu", "∠": r"\angle"},
 }
 # Raised and lowered signs, several in a row as one formula.
-_RAISED, _LOWERED = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "₀₁₂₃₄₅₆₇₈₉₋"
-_PLAIN = str.maketrans(_RAISED + _LOWERED, "0123456789-0123456789-")
-_RUNS = re.compile(f"[{_RAISED}]+|[{_LOWERED}]+|.", re.DOTALL)
+_PLAIN = str.maketrans(RAISED_SIGNS + LOWERED_SIGNS, "0123456789-0123456789-")
+_RUNS = re.compile(f"[{RAISED_SIGNS}]+|[{LOWERED_SIGNS}]+|.", re.DOTALL)
 # Two of these would become one sign of another kind.
 _DOUBLED = re.compile(r"([-,])(?=\1)")
 
@@ -247,8 +246,8 @@ def tex_comment(text: str) -> str:
 
 
 def _set(run: str) -> str:
-    if run[0] in _RAISED + _LOWERED:
-        return f"\\ensuremath{{{'^' if run[0] in _RAISED else '_'}{{{run.translate(_PLAIN)}}}}}"
+    if run[0] in RAISED_SIGNS + LOWERED_SIGNS:
+        return f"\\ensuremath{{{'^' if run[0] in RAISED_SIGNS else '_'}{{{run.translate(_PLAIN)}}}}}"
     if run in _SIGNS:
         return f"\\ensuremath{{{_SIGNS[run]}}}"
     return _COMMANDS.get(run, run)

@@ -255,7 +255,7 @@ def test_without_a_library_it_says_what_to_install(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, missing, None)
     monkeypatch.setattr(shutil, "which", lambda name: name)
-    with pytest.raises(ck.errors.InvalidInput, match=r"pip install compoundkin\[animation\]"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"pip install 'compoundkin\[animation\]'"):
         small().save(tmp_path / f"a.{form}")
 
 

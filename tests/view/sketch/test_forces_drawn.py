@@ -10,6 +10,7 @@ from compoundkin.errors import InvalidInput, UnknownName
 from compoundkin.view.sketch.force_arrows import acting_forces, force_arrow, force_scale, moment_arc
 from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import ArcShape, Polygon, Polyline, Shape, ShapeGroup, Text, leaves
+from compoundkin.view.sketch.svg import markup, pixels, svg
 from tests.view.loaded import MASS, REACH, SPEED, UNITS, crank_forces, six_bar_forces
 
 
@@ -132,3 +133,24 @@ def test_ordinates_on_a_bar_are_to_scale_and_on_their_side(angle: float) -> None
     aside = (tip - foot) / (end - foot)
     assert abs(aside.real) < 1e-6
     assert aside.imag > 0.0  # on paper y points down: to the right of the axis
+
+
+@pytest.mark.parametrize(
+    ("anchor", "low", "high"), [("start", 100.0, 200.0), ("end", 0.0, 100.0), ("middle", 60.0, 140.0)]
+)
+def test_lowered_signs_are_small_digits_of_the_font_where_their_text_is(anchor: str, low: float, high: float) -> None:
+    """Cairo looks for a sign in one font alone, and would set each piece of a text about its anchor."""
+    source = svg([Text(100 + 50j, "−m₁₂a₃ 4.5", "code", anchor)], 200.0, 100.0, 400.0, "A")
+    assert not set("₁₂₃") & set(source)
+    ink = np.flatnonzero((pixels(source, 400, 200) < 128).any(axis=(0, 2))) / 2.0
+    assert low - 2.0 < ink.min()
+    assert ink.max() < high + 2.0
+    assert ink.max() - ink.min() > 40.0
+    if anchor == "middle":
+        assert (ink.max() + ink.min()) / 2.0 == pytest.approx(100.0, abs=2.0)
+
+
+def test_raised_signs_that_every_font_has_stay() -> None:
+    assert markup("mm/s², 2.5·10⁻⁵ m") == (
+        'mm/s², 2.5·10<tspan font-size="0.7em" dy="-0.5em">−5</tspan><tspan dy="0.35em"> m</tspan>'
+    )

@@ -341,3 +341,19 @@ def test_animations_move_them_with_their_links() -> None:
     turning = CRANK.replace(ck.drive("crank", values=ck.deg(range(0, 361, 30))))
     svg = ck.animate(turning).svg
     assert svg.count("ck-area-bar0") >= 1
+
+
+@pytest.mark.parametrize("name", ["v8-engine", "roberts-cognates", "jansen-leg", "sun-and-planet"])
+def test_no_line_of_a_graph_goes_through_a_link_that_it_does_not_join(name: str) -> None:
+    picture = ck.draw(ck.load(name), kind="graph")
+    groups = [shape for shape in picture.shapes if isinstance(shape, ShapeGroup)]
+    centres = {
+        one.links[0]: one.shapes[0].centre if isinstance(one.shapes[0], CircleShape) else np.mean(one.shapes[0].points)
+        for one in groups if one.links
+    }  # fmt: skip
+    lines = [shape.points for one in groups if not one.links for shape in one.shapes if isinstance(shape, Polyline)]
+    assert len(lines) == len(ck.decompose(ck.load(name)).pairs)
+    for points in lines:
+        along = np.concatenate([np.linspace(a, b, 200) for a, b in pairwise(points)])
+        near = {link for link, at in centres.items() if np.abs(along - at).min() < 14.0}
+        assert len(near) == 2, near
