@@ -39,6 +39,8 @@ KINDS = (RR, PR, RP)
 STRAIGHT = 1e-9
 # Imaginary parts below this are rounding: a double solution is known to the root of it.
 REAL = 1e-7
+# A point of the body that moves by less than this part of the poses' extent rests.
+RESTING = 1e-6
 # Rows of poses are dependent where a singular value is below this part of the greatest.
 DEPENDENT = 1e-10
 # So many coefficients have dyads; three poses leave a surface, four a curve, five points.
@@ -94,7 +96,9 @@ class _Unit(NamedTuple):
             point, place = 0j, complex(np.mean(z))
         else:
             point, place = (complex(v) for v in np.linalg.lstsq(columns, -z, rcond=None)[0])
-        return cls(point, place, extent(z + u * point))
+        length, whole = extent(z + u * point), extent(z)
+        # two poses have a point that rests
+        return cls(point, place, length if length > RESTING * whole else whole)
 
 
 def rows_of(task: PoseTask, unit: _Unit) -> Number:

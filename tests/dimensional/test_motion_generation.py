@@ -430,3 +430,14 @@ def test_one_given_pivot_is_used_by_all_candidates(count):
         assert min(abs(pivot - complex(*place)) for pivot in one.pivots) < 1e-6
     off = ck.synthesise(ck.tasks.poses("plate", poses), ground=[(60, -70)])
     assert count == 3 or {one.reason for one in off.rejected} == {"region"}
+
+
+def test_two_poses_and_a_velocity_have_a_dyad_for_each_centre():
+    poses = random_poses(np.random.default_rng(12), 2)
+    z, u = parts(poses)
+    for speed in ((1, 0, 0), (0.3, -0.5, 0.8)):
+        crank = ck.dyads(poses, velocities={0: speed}).with_centre((0.3, 0.4))
+        assert np.max(np.abs(crank.residual(z, u))) < 1e-12
+        moved = complex(*speed[:2]) + 1j * speed[2] * u[0] * crank.moving
+        arm = z[0] + u[0] * crank.moving - crank.fixed
+        assert abs((np.conj(moved) * arm).real) < 1e-12 * abs(moved) * abs(arm) + 1e-13
