@@ -272,6 +272,7 @@ def test_with_shift_one_length_alone_changes_and_what_is_locked_stays(made: Any,
         if shift:
             view.keyboard.down("Shift")
         drag(view, "Point D", by)
+        view.mouse.up()
         if shift:
             view.keyboard.up("Shift")
         view.wait_for_timeout(100)
