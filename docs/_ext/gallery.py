@@ -1,4 +1,4 @@
-"""The gallery: for each mechanism of the catalog a page to read and one to play with, written with the site."""
+"""The gallery: for each mechanism of the catalog a card, a page to read and one to play with, written with the site."""
 
 from __future__ import annotations
 
@@ -18,9 +18,12 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.symbols import Outline, Strap, Track, Wheel
 from compoundkin.structure import roman
 from compoundkin.synthesis.chains import structure_name
+from compoundkin.view.animation import animate
 from compoundkin.view.sketch.picture_options import scene_in, solved_over
 
 FOLDER = "gallery"
+# The page whose table is shown as cards.
+CATALOG = "catalog"
 # So many turns of a driver, in so many poses each, are tried for a path to close.
 TURNS, POSES = 12, 121
 # Ends of a path nearer to each other than this part of the mechanism's size are one.
@@ -31,9 +34,9 @@ SMALL = 300
 INDEX = """\
 # Gallery
 
-All mechanisms of the [catalog](../catalog.md), drawn by the program. Each has a page with its picture at full
-size, where it comes from, what it is made of, and the command to try it; and a live page, where its points can be
-dragged and its dimensions changed.
+All mechanisms of the [catalog](../catalog.md), drawn by the program; the pictures move under the pointer. Each has a
+page with its picture at full size, where it comes from, what it is made of, its file, and the command to try it; and a
+live page, where its points can be dragged and its dimensions changed.
 {parts}
 """
 
@@ -73,6 +76,12 @@ compoundkin report {name}{forces}
 import compoundkin as ck
 
 motion = ck.solve(ck.load("{name}"))
+```
+
+## The file
+
+```{{literalinclude}} ../../catalog/{name}.toml
+:language: toml
 ```
 """
 
@@ -264,16 +273,45 @@ def write(app: Sphinx) -> None:
 
 
 def write_live_pages(app: Sphinx, exception: Exception | None) -> None:
-    """Write the page of each mechanism beside the one that links to it."""
+    """Write the live page of each mechanism, and its small picture that moves, beside the page that links to it."""
     for name, mechanism in chosen(app.config.gallery_mechanisms).items() if exception is None else ():
         shown = solved_over(mechanism)
         if shown is not None:
-            ck.page(shown).save(Path(app.outdir) / FOLDER / f"{name}-live.html")
+            folder = Path(app.outdir) / FOLDER
+            ck.page(shown).save(folder / f"{name}-live.html")
+            animate(shown, labels=False, size=SMALL).save(folder / f"{name}-moving.svg")
 
 
 def lead_here(app: Sphinx, docname: str, source: list[str]) -> None:
-    """Where no site is built, links to the gallery lead to one large picture."""
+    """Lead links to the gallery there, and show the table of the catalog as cards.
+
+    Where no site is built the links lead to one large picture, and the table is read as it is.
+    """
     source[0] = source[0].replace("](gallery.svg)", f"]({FOLDER}/index.md)")
+    if docname == CATALOG:
+        source[0] = as_cards(source[0], chosen(app.config.gallery_mechanisms))
+
+
+def as_cards(text: str, mechanisms: Mapping[str, ck.Mechanism]) -> str:
+    """The catalog with a card for each row of its table, by kinds; the cards lead to the pages of the gallery."""
+    rows = {found[1]: [part.strip() for part in line.strip("| \n").split(" | ")]
+            for line in text.splitlines() if (found := re.match(r"\| \[`([^`]+)`\]", line))}  # fmt: skip
+    parts: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    for name, mechanism in mechanisms.items():
+        if name in rows:
+            parts[kind_of(mechanism, ck.decompose(mechanism))].append(catalog_card(name, rows[name]))
+    before, _, rest = text.partition("\n| name |")
+    after = rest.partition("\n\n")[2]
+    return f"{before}\n{''.join(parts_of(parts))}\n{after}"
+
+
+def catalog_card(name: str, row: list[str]) -> str:
+    """A row of the catalog as a card: picture and title, its name, groups and numbers, what to look at."""
+    title, look = row[1], row[-1]
+    groups, numbers = row[2], row[3] if len(row) > 4 else ""
+    facts = [f"`{name}`", groups, f"{numbers} numbers" if numbers.isdigit() else ""]
+    link = f"[![{title}]({FOLDER}/{name}-small.svg) {title}]({FOLDER}/{name}.md)"
+    return "\n\n".join([f"* {link}", f"  {' · '.join(filter(None, facts))}", f"  {look}"])
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -18,6 +18,21 @@
   form.addEventListener("submit", (event) => event.preventDefault());
   parts[0].section.before(form);
 
+  // a picture moves while the pointer or the keyboard is on its card; not for those who want less motion
+  const isStill = matchMedia("(prefers-reduced-motion: reduce)");
+  for (const { list } of parts) {
+    for (const item of list.querySelectorAll("li")) {
+      const link = item.querySelector("a"), image = item.querySelector("img");
+      if (!link || !image) continue;
+      const still = image.src, moving = link.href.replace(/(\.html|\/)?(#.*)?$/, "-moving.svg");
+      const put = (source) => () => { if (!isStill.matches) image.src = source; };
+      // where there is none the still one stays
+      image.addEventListener("error", () => { if (image.src !== still) image.src = still; });
+      for (const kind of ["mouseenter", "focusin"]) item.addEventListener(kind, put(moving));
+      for (const kind of ["mouseleave", "focusout"]) item.addEventListener(kind, put(still));
+    }
+  }
+
   const find = () => {
     const wanted = words.value.toLowerCase().split(/\s+/).filter(Boolean);
     let found = 0;
