@@ -21,6 +21,8 @@ from compoundkin.view.page.live.mechanism_template import mechanism_template
 from compoundkin.view.page.live.panel_data import template_data
 from tests import catalog
 
+from .conftest import DESK, PHONE
+
 pytestmark = pytest.mark.filterwarnings("error")
 
 # Bars, bars as drawn, cylinders, gears, wheels, slots, laws, loads, points that are led, class III.
@@ -310,3 +312,16 @@ def test_a_thousand_malformed_addresses_change_nothing(whole: Any) -> None:
     told = whole.locator("#dimensions .told")
     whole.wait_for_function("(one) => one.textContent.endsWith('nothing was changed.')", arg=told.element_handle())
     assert numbers(whole) == {}
+
+
+def test_an_address_that_does_not_fit_is_told_above_the_sketch(made: Any, opened: Any) -> None:
+    """Whoever opens a link sees why nothing was changed, on a desk and on a phone, without scrolling."""
+    for size in (DESK, PHONE):
+        view = opened(made("six-bar"), size)
+        view.goto(f"{view.path.as_uri()}#dimensions=crank.D.x:oops")
+        view.reload()
+        told = view.locator("[role=alert]:visible")
+        assert "nothing was changed" in told.text_content()
+        box = told.bounding_box()
+        assert 0 <= box["y"] < view.locator("svg.sketch").bounding_box()["y"]
+        assert box["y"] + box["height"] < size[1]

@@ -9,7 +9,7 @@
   // --- the buttons ---------------------------------------------------------------------------------------------------------------
   // what is refused is told where one looks when a page opens: above the sketch
   const notice = page.made("p", { class: "notice alert", role: "alert", hidden: "" });
-  document.querySelector(".stage").prepend(notice);
+  document.querySelector(".stage").before(notice);
   const tell = (text, isBad = false) => {
     told.textContent = text;
     told.classList.toggle("bad", isBad);
