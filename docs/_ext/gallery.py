@@ -56,7 +56,7 @@ orphan: true
 
 # {title}
 
-![{alt}]({name}.svg)
+{live}![{alt}]({name}.svg)
 
 {description}
 
@@ -64,7 +64,7 @@ orphan: true
 * **Source:** {source}
 * **File:** [{name}.toml](../../catalog/{name}.toml)
 
-{live}[All mechanisms](index.md)
+[All mechanisms](index.md)
 
 ## Try it
 
