@@ -297,7 +297,10 @@ def _pace(moving: MotionData) -> Any:
         return 1.0
     if name not in motion.drives or not motion.order:
         return None
-    rates = sample.of(motion.inputs.drives[name][1])[moving.chosen]
+    rates, seconds = (sample.of(motion.inputs.drives[name][order])[moving.chosen] for order in (1, 2))
+    # poses of one speed that all accelerate are no motion along the axis: rates do not change by their own rates there
+    if np.any(seconds) and np.ptp(rates) == 0:
+        return None
     return packed_doubles(degrees(rates) if motion.drives[name].is_angle else rates) if np.all(rates) else None
 
 

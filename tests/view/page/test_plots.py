@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.files import load
 from compoundkin.kinematics.extremes import between, extremes
 from compoundkin.view.report import page
 from tests import catalog
@@ -78,3 +79,15 @@ def _follows(view: Any, motion: ck.results.Motion) -> None:
     wanted = [float(v) for end in (found.least, found.greatest) for v in (end.value[0], np.array(end.at.time)[0])]
     assert row[:4] == pytest.approx(wanted, abs=1e-5)
     view.value("() => { compoundkin.design.reset(); compoundkin.figures.follow(); }")
+
+
+def test_a_constant_rate_of_poses_that_accelerate_is_drawn_level(opened: Any, tmp_path: Path) -> None:
+    """Both shafts of an Oldham coupling turn alike: at 5 rad/s at every pose, whatever their acceleration is there."""
+    page(ck.solve(load("oldham-coupling"), speed=5, acceleration=2)).save(tmp_path / "oldham.html")
+    view = opened(tmp_path / "oldham.html")
+    low, high = view.value("""() => {
+      const one = compoundkin.plots.panels.find(({ name }) => name === "output.angular_velocity");
+      return ["low", "high"].map((end) => one.curves[0].ends[end].y);
+    }""")
+    assert high - low < 1e-9
+    assert abs(low - 5) < 1e-9
