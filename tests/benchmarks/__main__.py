@@ -97,12 +97,34 @@ def six_bar_rows() -> Iterator[Row]:
         }
         beside = "C, vectors" if "C, vectors" in subjects else "program"
         yield from compared(f"six-bar, G to acceleration, {count:,} poses, each", subjects, count, rounds, beside)
+        if count == MANY:
+            yield from _kept_rows(path, crank, rounds)
     some = np.linspace(0.0, 2 * np.pi, LOOPED)
     loop = {"program": lambda: path({"crank": some}, speed=six_bar.SPEED), "fsolve": lambda: six_bar.by_fsolve(some)}
     yield from compared(f"six-bar, {LOOPED} poses, each", loop, LOOPED, 3, "program")
     one = np.array([0.7])
     calls = {"one pose": lambda: path({"crank": one}, speed=six_bar.SPEED), "a number": lambda: path(0.7, speed=10.0)}
     yield from compared("a call of the six-bar's program", calls, 1, 300, "one pose")
+
+
+def _kept_rows(path: ck.results.CompiledPath, crank: Any, rounds: int) -> Iterator[Row]:
+    """Results in arrays that are kept, and all that the program by hand computes."""
+    out, found = ({name: np.empty(MANY, complex) for name in POINT} for _ in range(2))
+    subjects: dict[str, Callable[[], Any]] = {"program": lambda: path(crank, speed=six_bar.SPEED, out=out)}
+    if in_c(crank):
+        subjects["C, vectors"] = lambda: six_bar_in_c.compiled("vectors")(crank, [*found.values()])
+    task = f"six-bar, G to acceleration into kept arrays, {MANY:,} poses, each"
+    yield from compared(task, subjects, MANY, 2 * rounds, "C, vectors")
+    rates = ("position", "velocity", "acceleration"), ("angle", "angular_velocity", "angular_acceleration")
+    names = [f"{one}.{word}" for many, words in zip((six_bar.POINTS, six_bar.LINKS), rates, strict=True)
+             for one in many for word in words]  # fmt: skip
+    whole = ck.compile(six_bar.mechanism(), names)
+    everything: dict[str, Callable[[], Any]] = {
+        "program": lambda: whole(crank, speed=six_bar.SPEED),
+        "NumPy by hand": lambda: six_bar.by_hand(crank),
+        "memory of the results, filled": lambda: [np.ones(MANY, complex) for _ in range(18)],
+    }
+    yield from compared(f"six-bar, all {len(names)} outputs, {MANY:,} poses, each", everything, MANY, rounds, "program")
 
 
 def four_bar_rows() -> Iterator[Row]:

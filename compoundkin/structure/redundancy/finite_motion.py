@@ -155,7 +155,9 @@ def passive_freedoms(equations: ConstraintEquations, state: Array) -> Iterator[P
             counts[name] += 1
     for name, first in equations.column.items():
         if counts[name] > 1:
-            for motion in null_space(rows[:, first : first + 3], equations.tolerance.rank).T:
+            own = rows[:, first : first + 3]
+            # of many links most rows are of others
+            for motion in null_space(own[np.any(own != 0.0, axis=1)], equations.tolerance.rank).T:
                 yield PassiveFreedom(name, _in_words(equations, state, name, motion))
 
 
