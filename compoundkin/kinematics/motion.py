@@ -512,6 +512,9 @@ def _differences(
                 other = others[link] if at_once == 1 else others[link].mapped(partial(_by_copies, at_once, rows))
                 for k in range(order + 1):
                     gap = _gap(pose, other, k, size)
+                    if at_once > 1 and not np.ndim(gap):
+                        # links that stand still have no rates
+                        gap = np.full(at_once, gap)
                     known = np.isfinite(gap)
                     square = np.where(known, gap, 0.0) ** 2
                     if at_once > 1:

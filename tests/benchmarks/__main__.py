@@ -3,8 +3,8 @@
 It takes two minutes; ``--save`` writes the table into `docs/benchmarks.md`, as that of this version, with the machine.
 Compared are the six-bar of Example 3-4 with C written by hand (eight poses at a time, and plainly), with NumPy written
 by hand and with the usual loop of SciPy's `fsolve`; the four-bar in it with other packages, as far as they are
-installed (`rivals`); and the start of commands with that of NumPy. Times are medians, ratios medians over rounds in
-which each subject ran once. ``python -m tests.benchmarks.programs`` and ``.studies`` go into more detail;
+installed (`rivals`); and the start of commands with that of NumPy. Times are those of the processor, the least over
+rounds in which each subject ran once: a table made beside other work is nearly that of a machine of its own. ``python -m tests.benchmarks.programs`` and ``.studies`` go into more detail;
 `test_ratios.py` checks that all agree, and the goals:
 ``python -m pytest -c tests/benchmarks/pytest.ini tests/benchmarks``, never with the ordinary tests.
 """
@@ -17,16 +17,16 @@ import platform
 import re
 import subprocess
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import compoundkin as ck
 from tests.benchmarks import four_bar, growth, rivals, six_bar, six_bar_in_c
-from tests.benchmarks.measure import Times, commands, interleaved, ratio
+from tests.benchmarks.measure import Times, commands, interleaved, least_ratio
 
 MANY, FEW, LOOPED, DESIGNS = 36_000, 361, 181, 4096
 POINT = ("G.position", "G.velocity", "G.acceleration")
@@ -46,12 +46,12 @@ class Row(NamedTuple):
 
 def compared(task: str, subjects: Mapping[str, Callable[[], Any]], count: int, rounds: int, beside: str) -> list[Row]:
     """Return a row for each subject: the time of one of `count`, and how many times as long as one of them it takes."""
-    times = interleaved(subjects, rounds)
-    return [Row(task, name, shown(median(own) / count), _beside(times, name, beside)) for name, own in times.items()]
+    times = interleaved(subjects, rounds, time.process_time)
+    return [Row(task, name, shown(min(own) / count), _beside(times, name, beside)) for name, own in times.items()]
 
 
 def _beside(times: Times, name: str, beside: str) -> str:
-    return f"{ratio(times, name, beside):.2f} x {beside}" if name != beside and beside in times else ""
+    return f"{least_ratio(times, name, beside):.2f} x {beside}" if name != beside and beside in times else ""
 
 
 def shown(seconds: float) -> str:
@@ -185,7 +185,7 @@ def start_rows() -> Iterator[Row]:
     }
     times = commands(codes, 7)
     yield from (
-        Row("start", name, shown(median(own)), _beside(times, name, "import numpy")) for name, own in times.items()
+        Row("start", name, shown(min(own)), _beside(times, name, "import numpy")) for name, own in times.items()
     )
 
 

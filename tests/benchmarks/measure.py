@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -12,14 +13,16 @@ from typing import Any
 Times = dict[str, list[float]]
 
 
-def interleaved(subjects: Mapping[str, Callable[[], Any]], rounds: int) -> Times:
+def interleaved(
+    subjects: Mapping[str, Callable[[], Any]], rounds: int, clock: Callable[[], float] = time.perf_counter
+) -> Times:
     """The seconds of each subject, one call of each in every round, after one that is not counted."""
     times: Times = {name: [] for name in subjects}
     for run in range(rounds + 1):
         for name, call in subjects.items():
-            start = time.perf_counter()
+            start = clock()
             result = call()
-            seconds = time.perf_counter() - start
+            seconds = clock() - start
             del result
             if run:
                 times[name].append(seconds)
@@ -32,9 +35,20 @@ def ratio(times: Times, one: str, other: str) -> float:
 
 
 def commands(codes: Mapping[str, list[str]], rounds: int) -> Times:
-    """The seconds of Python with these arguments, started anew, interleaved."""
+    """The seconds of processor time of Python with these arguments, started anew, interleaved."""
 
     def start(arguments: list[str]) -> Callable[[], Any]:
         return lambda: subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
 
-    return interleaved({name: start(arguments) for name, arguments in codes.items()}, rounds)
+    return interleaved({name: start(arguments) for name, arguments in codes.items()}, rounds, _of_children)
+
+
+def least_ratio(times: Times, one: str, other: str) -> float:
+    """How many times as long `one` takes as `other`, at their best."""
+    return min(times[one]) / min(times[other])
+
+
+def _of_children() -> float:
+    """The processor time of all processes that were started and have ended."""
+    found = os.times()
+    return found.children_user + found.children_system

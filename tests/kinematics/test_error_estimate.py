@@ -102,3 +102,12 @@ def test_an_error_is_asked_for_by_the_order_of_a_derivative(order: Any) -> None:
     motion = ck.solve(ck.load("crank-rocker"), {"crank": [1.0]})
     with pytest.raises(ck.errors.InvalidInput):
         motion.error(order)
+
+
+def test_links_that_stand_still_have_no_error_in_their_rates() -> None:
+    still = [ck.link("one", E=0, G=3), ck.link("two", F=0, G=4)]
+    moving = ck.link("frame", A=0, E=10, F=15), ck.link("crank", A=0, B=1), ck.drive("crank")
+    motion = ck.solve(ck.Mechanism("A dyad on the frame", *moving, *still), {"crank": [0.0, 1.0]})
+    assert np.all(motion.error(0) < 1e-13)
+    assert np.all(motion.error(1) < 1e-13)
+    assert ck.verify(motion).passed
