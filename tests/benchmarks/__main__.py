@@ -4,9 +4,9 @@ It takes two minutes; ``--save`` writes the table into `docs/benchmarks.md`, as 
 Compared are the six-bar of Example 3-4 with C written by hand (eight poses at a time, and plainly), with NumPy written
 by hand and with the usual loop of SciPy's `fsolve`; the four-bar in it with other packages, as far as they are
 installed (`rivals`); and the start of commands with that of NumPy. Times are those of the processor, the least over
-rounds in which each subject ran once: a table made beside other work is nearly that of a machine of its own. ``python -m tests.benchmarks.programs`` and ``.studies`` go into more detail;
-`test_ratios.py` checks that all agree, and the goals:
-``python -m pytest -c tests/benchmarks/pytest.ini tests/benchmarks``, never with the ordinary tests.
+rounds in which each subject ran once: a table made beside other work is nearly that of a machine of its own.
+``python -m tests.benchmarks.programs`` and ``.studies`` go into more detail; `test_ratios.py` checks that all agree,
+and the goals: ``python -m pytest -c tests/benchmarks/pytest.ini tests/benchmarks``, never with the ordinary tests.
 """
 
 from __future__ import annotations
