@@ -23,7 +23,7 @@ from compoundkin.structure import Structure
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
 from compoundkin.view.sketch.labels import label_shapes, labels_of, placed
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import NARROW, PAPER_WIDTH, Picture, PicturePart, in_rows, with_notes
+from compoundkin.view.sketch.picture import GAP, NARROW, PAPER_WIDTH, Picture, PicturePart, in_rows, with_notes
 from compoundkin.view.sketch.picture_options import (
     Drawable,
     PictureOptions,
@@ -52,6 +52,10 @@ LARGEST = {8: 340.0, MOST: 222.0}
 LONGEST = 0.35
 # They are at least so wide, for their headings.
 NARROWEST = 200.0
+# Room above and below what a panel shows.
+ABOVE = 8.0
+# Of more than so many panels those of more than so many links have no numbers: their colours tell the groups.
+FEW_PANELS, FEW_LINKS = 8, 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,6 +218,8 @@ def _picture(
     """The panels in rows, and what stands below them."""
     kinds = label_kinds(options.labels)
     shown = panels[:MOST]
+    if len(shown) > FEW_PANELS and len(structure.mechanism.links) > FEW_LINKS:
+        kinds = tuple(kind for kind in kinds if kind != "links")
     parts = _parts(shown, kinds)
     shapes, width, height = in_rows(parts, widest=PAPER_WIDTH)
     more = [f"and {len(panels) - MOST} more"] if len(panels) > MOST else []
@@ -234,15 +240,22 @@ def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[
     wrap = textwrap.TextWrapper(across, break_on_hyphens=False, break_long_words=False).wrap
     said = [wrap(panel.said.replace(BETWEEN, " /\u00a0")) for panel in panels]
     down = LINE * (1 + max(map(len, said)))
+    drawn = [_drawn(panel, window, kinds) for panel in panels]
+    columns = max(1, int((PAPER_WIDTH + GAP) // (window.width + GAP)))
     parts = []
-    for panel, lines in zip(panels, said, strict=True):
-        top = complex(window.width / 2.0, LINE * 0.5)
-        heads: list[Shape] = [Text(top, panel.heading, "heading")]
-        heads += [
-            Text(top + 1j * LINE * i, line.replace("\u00a0", " "), "note") for i, line in enumerate(lines, start=1)
-        ]
-        part = ShapeGroup((*heads, *moved_shapes(_drawn(panel, window, kinds), 1j * down)))
-        parts.append(PicturePart((part,), window.width, window.height + down))
+    for first in range(0, len(panels), columns):
+        # a row is as tall as what it shows, and its panels have the frame at one height
+        row = slice(first, first + columns)
+        heights = [corner.imag for shapes in drawn[row] for corner in shape_corners(shapes)]
+        low, high = min(heights, default=0.0) - ABOVE, max(heights, default=0.0) + ABOVE
+        for panel, lines, shapes in zip(panels[row], said[row], drawn[row], strict=True):
+            top = complex(window.width / 2.0, LINE * 0.5)
+            heads: list[Shape] = [Text(top, panel.heading, "heading")]
+            heads += [
+                Text(top + 1j * LINE * i, line.replace("\u00a0", " "), "note") for i, line in enumerate(lines, start=1)
+            ]
+            part = ShapeGroup((*heads, *moved_shapes(shapes, 1j * (down - low))))
+            parts.append(PicturePart((part,), window.width, high - low + down))
     return parts
 
 
@@ -255,7 +268,12 @@ def _window(panels: Sequence[_ConfigurationPanel], scenes: Sequence[Scene], larg
     tips = [complex(whole.at(panel.scene.letters[k] + way)) for panel in panels for k, way in panel.tips().items()
             if k in panel.scene.letters]  # fmt: skip
     points = np.concatenate([points, tips])
-    return fitted_window(whole, points, NARROWEST)
+    found = fitted_window(whole, points, NARROWEST)
+    if found.width <= largest:
+        return found
+    # labels and heads of arrows keep their size, so that all does not shrink alike
+    narrower = Window(whole.scale * (largest - 2.0 * MARGIN) / (found.width - 2.0 * MARGIN), whole.corner, 0.0, 0.0)
+    return fitted_window(narrower, (points - whole.at(0j)) * narrower.scale / whole.scale + narrower.at(0j), NARROWEST)
 
 
 def _drawn(panel: _ConfigurationPanel, window: Window, kinds: Sequence[str]) -> list[Shape]:

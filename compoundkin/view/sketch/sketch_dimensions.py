@@ -29,7 +29,7 @@ def dimension_shapes(
     solid = [shape for shape in drawn if not isinstance(shape, Strokes)]
     lines = np.array(list(straight_lines(solid)), dtype=complex).reshape(-1, 2)
     boxes = [(found[label.key], label.half) for label in labels]
-    dimensions = [*guide_dimensions(painter), *link_dimensions(painter)]
+    dimensions = one_of_equals([*guide_dimensions(painter), *link_dimensions(painter)])
     places = placed_dimensions(dimensions, lines, boxes, painter.window)
     return [shape for one, at in zip(dimensions, places, strict=True) for shape in dimension_drawing(one.text, at)]
 
@@ -45,6 +45,8 @@ ON_ARC = 13
 DIRECTIONS = 16
 # Lengths below this part of the size are nothing, angles below this (radians) are none.
 NOTHING, PARALLEL = 1e-6, 1e-4
+# In a sketch of more dimensions two equal ones are one.
+CROWD = 8
 
 
 def link_dimensions(painter: Painter) -> list[Dimension]:
@@ -62,6 +64,27 @@ def link_dimensions(painter: Painter) -> list[Dimension]:
             if all(link != o[0] or abs(wheel[1] - o[1]) + abs(radius - o[2]) > _nothing(painter) for o in wheels):
                 wheels.append(wheel)
                 found.append(_radius(painter, link, wheel[1], radius))
+    return found
+
+
+def one_of_equals(dimensions: Sequence[Dimension]) -> list[Dimension]:
+    """Return the dimensions with equal ones as one, their number before it, wherever there is room best.
+
+    Three and more equal ones are one, in a crowded sketch two.
+
+    >>> [one.text for one in one_of_equals([Dimension("5 mm", ())] * 3 + [Dimension("45°", ())] * 2)]
+    ['3× 5 mm', '45°', '45°']
+    """
+    equal: dict[str, list[Dimension]] = {}
+    for one in dimensions:
+        equal.setdefault(one.text, []).append(one)
+    least = 2 if len(dimensions) > CROWD else 3
+    found = []
+    for text, ones in equal.items():
+        if len(ones) < least:
+            found += ones
+        else:
+            found.append(Dimension(f"{len(ones)}× {text}", tuple(place for one in ones for place in one.places)))
     return found
 
 
@@ -88,9 +111,14 @@ def _of_link(painter: Painter, name: str) -> Iterator[Dimension]:
     first, second, *others = [complex(p) for _, p in ordered]
     sides = edges(corners)
     yield _side(painter, name, first, second, sides)
+    rays: list[complex] = []
     for other in others:
         if abs(other - first) > _nothing(painter):
             yield _side(painter, name, first, other, sides)
+            ray = unit_direction(other - first)
+            if any(abs(ray - one) < PARALLEL for one in rays):
+                continue
+            rays.append(ray)
             yield from angle_dimension(painter, painter.place(name, first), *(
                 painter.place(name, p) for p in (second, other)))  # fmt: skip
 

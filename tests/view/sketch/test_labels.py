@@ -94,6 +94,30 @@ def test_all_circuits_are_named_with_their_branches() -> None:
     assert len(ghosts) == len(found.branches) - len(found.circuits)
 
 
+def test_many_configurations_stand_in_three_columns_as_tall_as_what_they_show() -> None:
+    picture = ck.draw(mechanism("v8-engine"), kind="configurations")
+    heads = [shape.at for shape in leaves(picture.shapes) if isinstance(shape, Text) and shape.style == "heading"]
+    assert len(heads) == 40
+    assert len({round(at.real) for at in heads}) == 3
+    rows = sorted({round(at.imag) for at in heads})
+    assert max(np.diff(rows)) < 300.0, "a panel was 374 tall in two columns"
+    # badges of 18 links would hide what their colours tell
+    assert not [shape for shape in leaves(picture.shapes) if isinstance(shape, Text) and shape.style == "number"]
+
+
+def test_of_equal_dimensions_one_is_written() -> None:
+    def written(name: str) -> list[str]:
+        shapes = leaves(ck.draw(mechanism(name), dimensions=True).shapes)
+        return [shape.text for shape in shapes if isinstance(shape, Text) and shape.style == "dimension-text"]
+
+    assert sorted(written("v8-engine")) == ["2× 45°", "2× 90°", "4× 1.74 in", "8× 5.7 in"]
+    rack = written("rack-and-pinion-steering")
+    assert {"2× 0.12 m", "2× 0.281 m", "2× 0.35 m"} <= set(rack)
+    # a crank-rocker is not crowded, and its stick's two points in line have one angle
+    assert not any("×" in text for text in written("crank-rocker"))
+    assert written("hydraulic-digger").count("147.8°") == 1
+
+
 @pytest.mark.parametrize("kind", ["configurations", "circuits"])
 def test_all_configurations_of_each_design_are_its_own(kind: str) -> None:
     """With outlines over designs too; a design that there is not is told."""
