@@ -84,12 +84,17 @@ class ForcesAtPose:
         """Return the forces that a sketch shows: all on a link, or each pair's force on its second link."""
         if link is not None:
             return list(self.on[link])
-        found = [one for own in self.on.values() for one in own if is_drawn_once(one, self.scene.legend)]
+        found = self.named
         force, moment = (max(map(abs, sizes), default=0.0) * SMALL_PART
                          for sizes in ([one.force for one in found], [one.moment for one in found]))  # fmt: skip
         kept = (replace(one, force=one.force if abs(one.force) >= force else 0j,
                         moment=one.moment if abs(one.moment) >= moment else 0.0) for one in found)  # fmt: skip
         return [one for one in kept if one.force or one.moment or one.is_open]
+
+    @property
+    def named(self) -> list[ActingForce]:
+        """All forces, each pair's on its second link."""
+        return [one for own in self.on.values() for one in own if is_drawn_once(one, self.scene.legend)]
 
     def middle(self, one: ActingForce) -> complex:
         """Return the middle of the link on which a force acts, in the plane."""
@@ -125,7 +130,9 @@ def force_sketch(forces: Forces, options: PictureOptions) -> Picture:
     texts += [
         part for label, text, kind in names if kinds for part in force_name(label.key, text, found[label.key], kind)
     ]
-    return picture_with_notes(known, window, [*behind, *shapes, *texts], scale, shown, "forces", options.size)
+    return picture_with_notes(
+        known, window, [*behind, *shapes, *texts], scale, shown, "forces", options.size, options.link
+    )
 
 
 def _with_room(known: ForcesAtPose, window: Window, shown: Sequence[ActingForce], scale: VectorScale | None) -> Window:
@@ -172,13 +179,19 @@ def picture_with_notes(
     shown: Sequence[ActingForce],
     what: str,
     size: float | None,
+    link: str | None = None,
 ) -> Picture:
-    """Return a picture of forces with the notes below it.
+    """Return a picture of forces, or of those on a `link`, with the notes below it.
 
     That is the pose, the links' numbers, units, the scale.
     """
     scene = known.scene
-    texts, height = notes_below(known, shown, scale, window.width, window.height)
+    drawn = {
+        one.name for one in shown if one.force and scale is not None and abs(one.force) * scale.per_unit >= SHORTEST
+    }
+    every = known.on[link] if link is not None else known.named
+    small = [one for one in every if one.force and one.name not in drawn] if scale is not None else []
+    texts, height = notes_below(known, shown, scale, window.width, window.height, small)
     paper = sheet(window.width, height)
     title = f"{scene.mechanism.title}: {what}"
     description = "; ".join(f"{one.description} {abs(one.force):.4g}" for one in shown if one.force)
@@ -186,12 +199,17 @@ def picture_with_notes(
 
 
 def notes_below(
-    known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale | None, width: float, height: float
+    known: ForcesAtPose,
+    shown: Sequence[ActingForce],
+    scale: VectorScale | None,
+    width: float,
+    height: float,
+    small: Sequence[ActingForce],
 ) -> tuple[list[Shape], float]:
-    """Return the notes below a picture of forces, and the height with them."""
+    """Return the notes below a picture of forces, and the height with them. `small` are forces that are not drawn."""
     scene = known.scene
     notes = [*pose_notes(scene), *(f"{number} {name}" for name, number in scene.legend.items())]
-    notes += list(_units(known, shown, scale))
+    notes += list(_units(known, shown, small))
     texts, height = lines_below(lines_of_text(notes, width - 2.0 * SIDE), height)
     if scale is None:
         return texts, height
@@ -209,7 +227,7 @@ def notes_below(
     return texts, height + LINE
 
 
-def _units(known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale | None) -> Iterator[str]:
+def _units(known: ForcesAtPose, shown: Sequence[ActingForce], small: Sequence[ActingForce]) -> Iterator[str]:
     """Notes on units, statics, arcs, and forces too small to be drawn."""
     units = known.forces.units
     yield f"forces in {units.force}"
@@ -220,9 +238,8 @@ def _units(known: ForcesAtPose, shown: Sequence[ActingForce], scale: VectorScale
     unknown = dict.fromkeys(one.name for one in shown if one.is_open)
     if unknown:
         yield f"not determined by equilibrium: {', '.join(unknown)}"
-    small = [one for one in shown if one.force and scale is not None and abs(one.force) * scale.per_unit < SHORTEST]
-    if small:
-        yield f"not drawn: {', '.join(f'{one.name} {force_text(abs(one.force))}' for one in small)}"
+    for k, one in enumerate(small):
+        yield f"{'' if k else 'not drawn: '}{one.name} {force_text(abs(one.force))}"
 
 
 # The greatest distance between two corners of a polygon, picture units: of several, of a single one.
@@ -324,6 +341,12 @@ def _is_flat(corner: Sequence[complex]) -> bool:
 PART_OF_SKETCH, ALONE = 0.55, 1.0
 # The longest force is so long, picture units.
 BODY_FORCE_LENGTH, BODY_FORCE_LENGTH_ALONE = 84.0, 130.0
+# Where the longest force on a link would be shorter than this, the link has its own scale.
+SHORT = 26.0
+# A link whose points are nearer to each other than this is drawn as many times as large as it takes.
+SMALL_BODY, ENLARGED = 56.0, (1.5, 2.0, 3.0, 5.0, 10.0)
+# Points nearer than this, in picture units, are one.
+NOTHING = 1e-6
 # The circle at a mass centre, and the dot in it.
 CENTRE, DOT = 4.0, 1.5
 
@@ -331,8 +354,9 @@ CENTRE, DOT = 4.0, 1.5
 def free_bodies(forces: Forces, options: PictureOptions) -> Picture:
     """Draw every link on its own, or one, with all that acts on it.
 
-    All forces are to one scale; they press on a link from outside and pull away from it. Moments are arcs, not to
-    scale. Source: any course of statics (free-body diagram).
+    Forces are to one scale, but those on a link of small ones alone to its own, which stands below it; small links are
+    enlarged. Forces press on a link from outside and pull away from it. Moments are arcs, not to scale. Source: any
+    course of statics (free-body diagram).
     """
     known = forces_at_pose(forces, options)
     links = [options.link] if options.link is not None else [name for name in known.scene.legend if name != FRAME]
@@ -340,8 +364,11 @@ def free_bodies(forces: Forces, options: PictureOptions) -> Picture:
     scale = force_scale(shown, BODY_FORCE_LENGTH_ALONE if len(links) == 1 else BODY_FORCE_LENGTH, forces.units.force)
     first, part = window_on(known.scene), ALONE if len(links) == 1 else PART_OF_SKETCH
     window = Window(first.scale * part, first.corner, first.width * part, first.height * part)
-    shapes, width, height = in_rows([_body(known, window, link, scale) for link in links])
-    texts, height = notes_below(known, shown, scale, width, height)
+    scales = {link: _scale_of_body(known, link, scale) for link in links}
+    shapes, width, height = in_rows([_body(known, window, link, scales[link], scale) for link in links])
+    small = [one for link, own in scales.items() if own is not None for one in known.on[link]
+             if one.force and abs(one.force) * own.per_unit < SHORTEST]  # fmt: skip
+    texts, height = notes_below(known, shown, scale, width, height, small)
     title = f"{known.scene.mechanism.title}: free {'body' if len(links) == 1 else 'bodies'}"
     description = "; ".join(f"{one.description} {abs(one.force):.4g}" for one in shown if one.force)
     return Picture(
@@ -349,9 +376,29 @@ def free_bodies(forces: Forces, options: PictureOptions) -> Picture:
     )
 
 
-def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | None) -> PicturePart:
-    """A link with its arrows, their names and values."""
+def _scale_of_body(known: ForcesAtPose, link: str, scale: VectorScale | None) -> VectorScale | None:
+    """The scale of the forces on a link: its own where all of them would be short."""
+    longest = max((abs(one.force) for one in known.on[link]), default=0.0)
+    if scale is None or longest * scale.per_unit >= SHORT or not longest:
+        return scale
+    return force_scale(known.on[link], BODY_FORCE_LENGTH / 2.0, known.forces.units.force)
+
+
+def _enlarged(window: Window, points: Sequence[complex]) -> float:
+    """How many times as large a link is drawn: a small one such that its points stand apart."""
+    reach = max((abs(a - b) for a in points for b in points), default=0.0) * window.scale
+    if not NOTHING < reach < SMALL_BODY:
+        return 1.0
+    return next((times for times in ENLARGED if reach * times >= SMALL_BODY), ENLARGED[-1])
+
+
+def _body(
+    known: ForcesAtPose, window: Window, link: str, scale: VectorScale | None, common: VectorScale | None
+) -> PicturePart:
+    """A link with its arrows, their names and values; below it what is not to the common scales."""
     scene, own = known.scene, known.on[link]
+    times = _enlarged(window, [scene.at(link, p) for p in scene.points[link].values()])
+    window = replace(window, scale=window.scale * times)
     painter = Painter(scene, window, frozenset({link}))
     points = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
     middle = complex(np.mean(points)) if points else window.at(0j)
@@ -368,7 +415,24 @@ def _body(known: ForcesAtPose, window: Window, link: str, scale: VectorScale | N
     for one, _, label in arcs:
         text = f"{one.turning} {force_text(abs(one.moment))}"
         names.append((label_around(label.key, label.places[0], text_half(text, SMALL), 3.0), text, one.kind))
-    return _body_panel(painter, link, shapes, [*point_letters(painter)], names, points)
+    panel = _body_panel(painter, link, shapes, [*point_letters(painter)], names, points)
+    return _with_foot(panel, scale if scale is not common else None, times)
+
+
+def _with_foot(panel: PicturePart, scale: VectorScale | None, times: float) -> PicturePart:
+    """A panel with a ruler for forces of its own scale below it, and how many times as large it is drawn."""
+    shapes, height = list(panel.shapes), panel.height
+    if scale is not None:
+        ruler = scale.amount * scale.per_unit
+        wide = ruler + 0.5 * SIDE + len(scale.text) * SMALL * NARROW
+        foot = complex(max(0.0, (panel.width - wide) / 2.0), height)
+        shapes += arrow_shapes(foot, foot + ruler, "drive")
+        shapes.append(Text(foot + ruler + 0.5 * SIDE, scale.text, "note", "start"))
+        height += LINE
+    if times > 1.0:
+        shapes.append(Text(complex(panel.width / 2.0, height), f"{times:g} times as large", "note"))
+        height += LINE
+    return PicturePart((ShapeGroup(tuple(shapes)),), panel.width, height)
 
 
 def _force_names(arrows: Sequence[DrawnForce]) -> list[tuple[Label, str, str]]:

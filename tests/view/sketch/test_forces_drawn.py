@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 import pytest
 
@@ -82,6 +84,35 @@ def test_free_bodies_name_everything() -> None:
     assert ck.draw(forces.motion, at=ck.deg(35), kind="free-bodies", link="bar").title.endswith("free body")
     assert ck.draw(forces, at=ck.deg(35)).title.endswith("forces")
     assert ck.draw(forces, kind="graph").title == ck.draw(forces.motion, kind="graph").title
+
+
+def test_small_links_are_enlarged_and_small_forces_have_their_own_scale() -> None:
+    """A jaw crusher at rest of its jaw: an eccentric of 20 mm beside a jaw of 1.2 m, toggles of 600 N beside 9 kN."""
+    forces = ck.force_analysis(ck.solve(ck.load("jaw-crusher-loaded")))
+    picture = ck.draw(forces, kind="free-bodies")
+    texts = _texts(picture.shapes)
+    assert texts.count("10 times as large") == 1
+    assert {"500 N", "1000 N", "5000 N"} <= set(texts)
+    arrows = {one.title: one for one in leaves_of_groups(picture.shapes) if "weight" in one.title}
+    toggle, jaw = (next(a for t, a in arrows.items() if name in t) for name in ("rear-toggle", "jaw"))
+    lengths = [abs(one.shapes[0].points[0] - one.shapes[0].points[-1]) for one in (toggle, jaw)]
+    assert lengths[0] > 0.4 * lengths[1], "588.6 N and 8829 N"
+
+
+def test_every_force_has_an_arrow_or_a_note() -> None:
+    forces = ck.force_analysis(ck.solve(ck.load("jaw-crusher-loaded")))
+    texts = _texts(ck.draw(forces, pose=32).shapes)
+    notes = " ".join(text for text in texts if "not drawn" in text or " · " in text)
+    for name, value in (("m₂g", "1766"), ("m₃g", "4120"), ("m₄g", "588.6")):
+        assert name in texts or f"{name} {value}" in notes, name
+
+
+def leaves_of_groups(shapes: Sequence[Shape]) -> Iterator[ShapeGroup]:
+    """The groups, each after the one that it is in."""
+    for shape in shapes:
+        if isinstance(shape, ShapeGroup):
+            yield shape
+            yield from leaves_of_groups(shape.shapes)
 
 
 def test_a_pin_of_three_links_acts_on_each() -> None:
