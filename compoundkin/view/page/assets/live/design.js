@@ -77,7 +77,7 @@
     }
     // of a pose that is not assembled: where the links are that are known, and circles of the group that fails
     partial(k) {
-      const { path, numbers, solved, player } = this, known = path.partial(numbers, solved, k), index = new Map(player.data.links.map(({ name }, n) => [name, n]));
+      const { path, numbers, solved, player } = this, known = path.partial(numbers, solved, k, player.data.links.map(({ name }) => name)), index = new Map(player.data.links.map(({ name }, n) => [name, n]));
       const group = path.data.groups[solved.failed[k] - 1], own = group && !group.guide ? group.links : [], circles = [];
       const at = (link, [x, y]) => {
         const { x: [ox], y: [oy], angle: [angle] } = known[link], c = Math.cos(angle), s = Math.sin(angle);

@@ -36,7 +36,6 @@
       const { live } = data;
       this.data = live;
       this.poses = data.poses;
-      this.linkNames = data.links.map(({ name }) => name);
       this.start = data.start;
       this.program = { ...live.program, before: page.wholes(live.program.before), along: page.wholes(live.program.along) };
       this.names = live.dimensions.map(({ name }) => name);
@@ -127,13 +126,13 @@
       return { assembled: !failed[0], failed: failed[0], links: links.map(moved), outputs: Object.fromEntries(outputs.map(told)) };
     }
 
-    // what is known of a pose that is not assembled: the links before the group that fails, null for the others
-    partial(numbers, solved, k) {
+    // what is known of a pose that is not assembled: the links before the group that fails, null for the others; `names` are theirs
+    partial(numbers, solved, k, names) {
       const machine = this.posed(numbers, this.drives.map((values) => values.map((value) => value[k])), solved, k, 1);
       const index = solved.failed[k] - 1, lost = new Set(this.data.groups.slice(index).flatMap(({ guide, links }) => (guide ? [] : links)));
       return this.program.links.map(({ at }, link) => {
         const [x, y, angle] = at[0].map((place) => machine.row(place, 0)[0]);
-        return lost.has(this.linkNames[link]) || !Number.isFinite(x + y + angle) ? null : { x: [x], y: [y], angle: [angle] };
+        return lost.has(names[link]) || !Number.isFinite(x + y + angle) ? null : { x: [x], y: [y], angle: [angle] };
       });
     }
 
