@@ -46,7 +46,7 @@ class Row(NamedTuple):
 
 def compared(task: str, subjects: Mapping[str, Callable[[], Any]], count: int, rounds: int, beside: str) -> list[Row]:
     """Return a row for each subject: the time of one of `count`, and how many times as long as one of them it takes."""
-    times = interleaved(subjects, rounds, time.process_time)
+    times = interleaved(subjects, rounds, time.process_time, is_warm=rounds >= 15)
     return [Row(task, name, shown(min(own) / count), _beside(times, name, beside)) for name, own in times.items()]
 
 

@@ -14,12 +14,20 @@ Times = dict[str, list[float]]
 
 
 def interleaved(
-    subjects: Mapping[str, Callable[[], Any]], rounds: int, clock: Callable[[], float] = time.perf_counter
+    subjects: Mapping[str, Callable[[], Any]],
+    rounds: int,
+    clock: Callable[[], float] = time.perf_counter,
+    is_warm: bool = False,
 ) -> Times:
-    """The seconds of each subject, one call of each in every round, after one that is not counted."""
+    """The seconds of each subject, one call of each in every round, after one round that is not counted.
+
+    Where it is to be warm, a call that is not counted goes before each: what ran before it left it cold caches.
+    """
     times: Times = {name: [] for name in subjects}
     for run in range(rounds + 1):
         for name, call in subjects.items():
+            if is_warm:
+                call()
             start = clock()
             result = call()
             seconds = clock() - start
