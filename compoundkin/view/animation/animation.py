@@ -27,7 +27,7 @@ from compoundkin.view.animation.moving_svg import smil
 from compoundkin.view.animation.overlays import (
     Arrows,
     Caption,
-    MovingCentre,
+    Marked,
     moving_centres,
     with_arrows,
     with_force_arrows,
@@ -36,7 +36,7 @@ from compoundkin.view.animation.timeline import Timeline, timeline_of
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.picture import PAGE, Picture, checked_size
 from compoundkin.view.sketch.picture_options import label_kinds, path_letters, scene_in
-from compoundkin.view.sketch.shapes import Shape
+from compoundkin.view.sketch.shapes import ArcShape, Shape
 from compoundkin.view.sketch.svg import NATURAL, pixel_size, pixels, require_cairo
 from compoundkin.view.sketch.vectors import vector_kinds
 
@@ -57,7 +57,7 @@ class Animation(Savable):
     timeline: Timeline
     caption: Caption
     arrows: tuple[Arrows, ...] = ()
-    centres: tuple[MovingCentre, ...] = ()
+    marks: tuple[Marked, ...] = ()
     size: float | None = None
 
     def __len__(self) -> int:
@@ -83,19 +83,19 @@ class Animation(Savable):
         return Picture(shown, window.width, height, mechanism.title, said, self.size, window)
 
     def _shapes(self, pose: int, way: int) -> list[Shape]:
-        """The sketch without its paper at the k-th assembled pose; arrows and centres are below the labels."""
+        """The sketch without its paper at the k-th assembled pose; arrows and what goes along are below the labels."""
         shapes = self.sketch.shapes(pose)[1:]
         labels = sum(part.is_label for part in self.sketch.parts)
         arrows = [shape for one in self.arrows for shape in one.shapes(pose, way)]
-        centres = [shape for one in self.centres for shape in one.shapes(pose)]
+        marks = [shape for one in self.marks for shape in one.shapes(pose)]
         end = len(shapes) - labels
-        return [*shapes[:end], *arrows, *centres, *shapes[end:]]
+        return [*shapes[:end], *arrows, *marks, *shapes[end:]]
 
     @cached_property
     def svg(self) -> str:
         """Its source as SVG that moves by itself. The first pose where that is not supported."""
         scale = self.displayed_size / self.longer
-        return smil(self.timeline, self.caption, self.arrows, self.centres, scale)
+        return smil(self.timeline, self.caption, self.arrows, self.marks, scale)
 
     def save(self, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
         """Write it to a .gif, .mp4 or .svg file, whole or not at all.
@@ -192,12 +192,16 @@ def animate(
     sketch = moving_sketch(motion, design, paths=path_letters(scene.mechanism, paths), labels=named)
     timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
     sketch, arrows = with_arrows(sketch, kinds, bool((timeline.directions < 0).any()))
+    marks: tuple[Marked, ...] = ()
     if isinstance(what, Forces):
-        sketch, arrows = with_force_arrows(sketch, what, arrows)
+        sketch, arrows, marks = with_force_arrows(sketch, what, arrows, named=bool(named))
     names = [f"{number} {name}" for name, number in scene.legend.items()] if "links" in named else []
+    turning = any(isinstance(shape, ArcShape) for mark in marks for shape in mark.marks)
+    names += ["arcs: moments, not to scale"] if turning and named else []
     shown = timeline.poses[timeline.frames]
     caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(named))
-    return Animation(sketch, timeline, caption, arrows, moving_centres(sketch) if centres else (), shown_size)
+    here = moving_centres(sketch) if centres else ()
+    return Animation(sketch, timeline, caption, arrows, (*marks, *here), shown_size)
 
 
 def _motion(what: Motion | Mechanism | Structure) -> Motion:

@@ -13,7 +13,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number, whole_turns
 from compoundkin.model.geometry import FRAME
-from compoundkin.view.animation.overlays import Arrows, Caption, Gauge, MovingCentre, point_places
+from compoundkin.view.animation.overlays import Arrows, Caption, Gauge, Marked, point_places
 from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch
 from compoundkin.view.sketch.scene import BETWEEN, MOST_PLACES, smooth
@@ -32,7 +32,11 @@ MOST_OF_THEM = 0.8
 
 
 def smil(
-    timeline: Timeline, caption: Caption, arrows: Sequence[Arrows], centres: Sequence[MovingCentre], scale: float
+    timeline: Timeline,
+    caption: Caption,
+    arrows: Sequence[Arrows],
+    marks: Sequence[Marked],
+    scale: float,
 ) -> str:
     """Write an animation as SVG, `scale` pixels for a picture unit. Where it cannot move, its first pose is shown."""
     sketch = caption.sketch
@@ -40,25 +44,23 @@ def smil(
     letters = [point_places(sketch, letter)[timeline.poses] for letter in sketch.scene.letters]
     writer = Writer(timeline, bool(letters) and are_far_apart(timeline, np.stack(letters, axis=1)))
     still: list[Shape] = [caption.paper(height), *sketch.still[1:]]
-    moving = _moving(writer, sketch, arrows, centres)
+    moving = _moving(writer, sketch, arrows, marks)
     lines = [*elements(still), *moving, *_gauges(writer, gauges), *elements(texts)]
-    styled = [*still, *_styled(sketch, arrows, centres), *texts]
+    styled = [*still, *_styled(sketch, arrows, marks), *texts]
     styled += [shape for gauge in gauges for shape in (*gauge.shapes, gauge.dot)]
     title = sketch.scene.mechanism.title
     size = scale * max(sketch.window.width, height)
     return svg_document(lines, styled, sketch.window.width, height, size, title, caption.description)
 
 
-def _moving(
-    writer: Writer, sketch: MovingSketch, arrows: Sequence[Arrows], centres: Sequence[MovingCentre]
-) -> Iterator[str]:
-    """All that moves: bodies and pins, then arrows and centres, then letters and numbers."""
+def _moving(writer: Writer, sketch: MovingSketch, arrows: Sequence[Arrows], marks: Sequence[Marked]) -> Iterator[str]:
+    """All that moves: bodies and pins, then arrows, centres and names, then letters and numbers."""
     for part in (part for part in sketch.parts if not part.is_label):
         yield from part_lines(writer, sketch, part)
     for vectors in arrows:
         yield from _arrows(writer, vectors)
-    for centre in centres:
-        yield from _centre(writer, centre)
+    for mark in marks:
+        yield from _mark(writer, mark)
     for part in (part for part in sketch.parts if part.is_label):
         yield from part_lines(writer, sketch, part)
 
@@ -71,10 +73,10 @@ def _gauges(writer: Writer, gauges: Sequence[Gauge]) -> Iterator[str]:
         yield from leaping.translated(gauge.places[writer.timeline.poses], list(elements([gauge.dot])))
 
 
-def _styled(sketch: MovingSketch, arrows: Sequence[Arrows], centres: Sequence[MovingCentre]) -> Iterator[Shape]:
+def _styled(sketch: MovingSketch, arrows: Sequence[Arrows], marks: Sequence[Marked]) -> Iterator[Shape]:
     """Shapes of every class that is needed for what moves."""
     yield from (shape for part in sketch.parts for shape in part.shapes)
-    yield from (shape for centre in centres for shape in centre.marks)
+    yield from (shape for mark in marks for shape in mark.marks)
     yield from (shape for one in arrows for shape in arrow_shapes(0j, 1 + 0j, one.scale.kind))
 
 
@@ -95,11 +97,11 @@ def _arrows(writer: Writer, arrows: Arrows) -> Iterator[str]:
             yield f'<animate attributeName="d" {writer.timing(ways, written)}/></path>'
 
 
-def _centre(writer: Writer, centre: MovingCentre) -> list[str]:
-    """An instant centre, which waits elsewhere while it is not on the picture."""
-    shown = centre.shown[writer.timeline.poses]
-    places = np.where(shown, centre.places[writer.timeline.poses], AWAY)
-    return writer.translated(places, list(elements(centre.marks)), shown)
+def _mark(writer: Writer, mark: Marked) -> list[str]:
+    """What goes along with a place; it waits elsewhere while it is not shown."""
+    shown = mark.shown[writer.timeline.poses]
+    places = np.where(shown, mark.places[writer.timeline.poses], AWAY)
+    return writer.translated(places, list(elements(mark.marks)), shown)
 
 
 def _outline(points: Number) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
@@ -15,7 +16,16 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.model.attributes import unit_suffix
 from compoundkin.view.animation.timeline import pose_times
 from compoundkin.view.sketch.centre_pictures import DOT, TOGETHER, centre_number
-from compoundkin.view.sketch.force_arrows import ForceCourse, drawn_force_courses, force_scales
+from compoundkin.view.sketch.force_arrows import (
+    AROUND_DRIVER,
+    ROUND,
+    ForceCourse,
+    drawn_force_courses,
+    drawn_moment_courses,
+    force_name,
+    force_scales,
+    moment_arc,
+)
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch
 from compoundkin.view.sketch.labels import Label, label_around, placed, text_half
 from compoundkin.view.sketch.picture import BELOW, lines_below, lines_of_text
@@ -51,6 +61,19 @@ class Arrows:
 
 
 @dataclass(frozen=True, eq=False)
+class MovingMark:
+    """Shapes that go along with a place, as seen from there. They are shown at some poses."""
+
+    marks: tuple[Shape, ...]
+    places: Number
+    shown: Number
+
+    def shapes(self, k: int) -> list[Shape]:
+        """Draw them at the k-th assembled pose."""
+        return moved_shapes(self.marks, complex(self.places[k])) if self.shown[k] else []
+
+
+@dataclass(frozen=True, eq=False)
 class MovingCentre:
     """An instant centre, or several that are always at one place. It is shown at some poses."""
 
@@ -68,6 +91,9 @@ class MovingCentre:
     def shapes(self, k: int) -> list[Shape]:
         """Draw it at the k-th assembled pose; nothing where it is off the picture."""
         return moved_shapes(self.marks, complex(self.places[k])) if self.shown[k] else []
+
+
+Marked: TypeAlias = MovingMark | MovingCentre
 
 
 def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple[MovingSketch, tuple[Arrows, ...]]:
@@ -146,17 +172,58 @@ def texts_in(shapes: Sequence[Shape]) -> list[Text]:
 
 
 def with_force_arrows(
-    sketch: MovingSketch, forces: Forces, others: tuple[Arrows, ...] = ()
-) -> tuple[MovingSketch, tuple[Arrows, ...]]:
-    """Return the arrows of forces after others, and the sketch with room for all."""
+    sketch: MovingSketch, forces: Forces, others: tuple[Arrows, ...] = (), *, named: bool = True
+) -> tuple[MovingSketch, tuple[Arrows, ...], tuple[MovingMark, ...]]:
+    """Return the arrows of forces after others, the sketch with room for all, and the marks that go along.
+
+    Marks are the arcs of moments, not to scale, and if `named` the names of forces and moments.
+    """
     courses = drawn_force_courses(forces, sketch.scene, sketch.design)
     scales = force_scales(forces, sketch.window.diagonal, courses)
+    turning = drawn_moment_courses(forces, sketch.scene, sketch.design)
     known = sketch.scene.known
     tips = [sketch.window.at(one.at[known]) + np.conjugate(_finite(one.force[known])) * scale.per_unit
             for scale in scales[:1] for one in courses]  # fmt: skip
-    larger = sketch.holding(np.concatenate(tips), MARGIN / 2.0) if tips else sketch
+    tips += [sketch.window.at(one.at[known]) + way * AROUND_DRIVER for one in turning for way in (1, -1, 1j, -1j)]
+    larger = sketch.holding(np.concatenate(tips), MARGIN) if tips else sketch
     kept = (replace(one, places={k: point_places(larger, k) for k in one.places}) for one in others)
-    return larger, (*kept, *(_arrows(larger, scale, courses) for scale in scales))
+    marks = [mark for one in turning for mark in _moment_marks(larger, one, named)]
+    if named:
+        marks += [_name_of_arrow(larger, one, scale) for scale in scales[:1] for one in courses]
+    return larger, (*kept, *(_arrows(larger, scale, courses) for scale in scales)), tuple(marks)
+
+
+# Arrows shorter than this have no name in a film, and moments below this part of their greatest no arc.
+NAMED, TURNING = 14.0, 0.01
+
+
+def _name_of_arrow(sketch: MovingSketch, one: ForceCourse, scale: VectorScale) -> MovingMark:
+    """The name of a force, which goes ahead of the head of its arrow."""
+    known = sketch.scene.known
+    way = np.conjugate(_finite(one.force[known])) * scale.per_unit
+    length = np.abs(way)
+    half = text_half(one.shown.name, SMALL)
+    e = way / np.where(length > 0.0, length, 1.0)
+    ahead = np.abs(e.real) * half.real + np.abs(e.imag) * half.imag + 3.0
+    places = np.asarray(sketch.window.at(one.at[known])) + way + e * ahead
+    return MovingMark(force_name("", one.shown.name, 0j, one.shown.kind), places, length >= NAMED)
+
+
+def _moment_marks(sketch: MovingSketch, one: ForceCourse, named: bool) -> Iterator[MovingMark]:
+    """The arcs of a moment, one for each sense, and its name."""
+    known = sketch.scene.known
+    places = np.asarray(sketch.window.at(one.at[known]))
+    moment = _finite(one.moment[known])
+    large = np.abs(moment) >= TURNING * float(np.max(np.abs(moment), initial=0.0))
+    radius = AROUND_DRIVER if one.shown.is_driver else ROUND
+    for sense in (1.0, -1.0):
+        shown = large & (np.sign(moment) == sense)
+        if shown.any():
+            arc = moment_arc(replace(one.shown, moment=sense), 0j, radius, 1j)
+            yield MovingMark(tuple(leaves(arc)), places, shown)
+    if named:
+        beside = 1j * (radius + text_half(one.shown.turning, SMALL).imag + 3.0)
+        yield MovingMark(force_name("", one.shown.turning, beside, one.shown.kind), places, large)
 
 
 def _arrows(sketch: MovingSketch, scale: VectorScale, courses: tuple[ForceCourse, ...]) -> Arrows:

@@ -354,6 +354,16 @@ def drawn_force_courses(forces: Forces, scene: Scene, design: int) -> tuple[Forc
     return tuple(one for one in kept if largest and _longest(one) >= SMALL_PART * largest)
 
 
+def drawn_moment_courses(forces: Forces, scene: Scene, design: int) -> tuple[ForceCourse, ...]:
+    """Return the moments that are drawn along a motion, as its forces are."""
+    found = force_courses(forces, scene, design)
+    kept = [one for own in found.values() for one in own if is_drawn_once(one.shown, scene.legend)]
+    force = max(map(_longest, kept), default=0.0) * scene.mechanism.geometry.size * FAINT
+    turning = [float(np.max(np.abs(one.moment), initial=0.0, where=np.isfinite(one.moment))) for one in kept]
+    least = max(force, SMALL_PART * max(turning, default=0.0))
+    return tuple(one for one, most in zip(kept, turning, strict=True) if most > least)
+
+
 def force_scales(forces: Forces, diagonal: float, courses: tuple[ForceCourse, ...]) -> tuple[VectorScale, ...]:
     """Return the scale of each kind of forces, one for all."""
     longest = max(map(_longest, courses), default=0.0)

@@ -16,7 +16,7 @@ from compoundkin.files import load
 from compoundkin.view.animation import films as gif_module
 from compoundkin.view.animation import films as mp4_module
 from compoundkin.view.animation.films import APART, colour_palette, indices, nearest_table
-from compoundkin.view.sketch.shapes import CircleShape, Text, leaves
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Text, leaves
 from compoundkin.view.sketch.sketch_style import NUMBER
 from compoundkin.view.sketch.svg import pixel_size, pixels
 from tests import catalog
@@ -95,6 +95,31 @@ def test_arrows_have_one_scale_and_room() -> None:
     fastest = max(float(np.max(motion.points[letter].speed)) for letter in "DACG")
     assert scale.amount <= fastest < 5.0 * scale.amount
     assert any(scale.text in s.text for s in leaves(animation.frame(0).shapes) if isinstance(s, Text))
+
+
+def test_forces_have_their_names_and_moments_arcs_in_their_sense() -> None:
+    """At every frame: the driver's arc turns as its torque does, and the name of a force is ahead of its arrow."""
+    forces = ck.force_analysis(ck.solve(load("engine-gas-pressure")))
+    animation = ck.animate(forces, seconds=1)
+    scale, window, senses = animation.arrows[0].scale, animation.sketch.window, set()
+    for k in range(len(animation)):
+        pose = int(animation.timeline.poses[animation.timeline.frames[k]])
+        shapes = list(leaves(animation.frame(k).shapes))
+        torque = float(forces.drives["crank"].effort[pose])
+        arcs = [one for one in shapes if isinstance(one, ArcShape) and one.style == "reaction"]
+        # none next to the dead points; y points down on paper
+        largest = np.abs(forces.drives["crank"].effort).max()
+        assert [one.sweep for one in arcs] == [torque < 0.0] * int(abs(torque) >= 0.01 * largest)
+        senses.add(torque < 0.0)
+        force = complex(forces.pairs["A"].on("rod").force[pose])
+        tip = window.at(forces.motion.points["A"].position[pose]) + np.conjugate(force) * scale.per_unit
+        names = [one.at for one in shapes if isinstance(one, Text) and one.text == "F₂₃"]
+        assert not names or 3.0 < abs(names[0] - tip) < 20.0
+        assert bool(names) == (abs(force) * scale.per_unit >= 14.0)
+    assert senses == {True, False}
+    assert "arcs: moments, not to scale" in animation.svg
+    assert not [one for one in leaves(ck.animate(forces, labels=False).frame(3).shapes)
+                if isinstance(one, Text) and one.text == "F₂₃"]  # fmt: skip
 
 
 # --- GIF ------------------------------------------------------------------------------------------------
