@@ -516,3 +516,37 @@ def test_efficiency_of_a_whole_motion() -> None:
     backward = over(angles[::-1], speed=-1.0)
     assert over(angles, speed=np.array([[1.0], [-1.0]])) == pytest.approx([steady, backward], rel=1e-12)
     assert 0.8 < backward < steady
+
+
+# --- all solutions of Coulomb's law -------------------------------------------------------------------------
+
+
+def pins(rng: np.random.Generator, count: int, systems: int) -> tuple[FrictionInfluence, Any]:
+    """Random systems of pins that feed on each other strongly, and the signs of their motions."""
+    own, by = (rng.normal(size=(*size, systems, 2)) @ (1, 1j) for size in ((count,), (count, count)))
+    return FrictionInfluence(own, by / np.sqrt(count), np.arange(count)), rng.choice([-1.0, 1.0], (count, systems))
+
+
+def by_newton(own: Any, effect: Any, rng: np.random.Generator) -> int:
+    """The number of solutions of m = |own + effect m| with m >= 0 that Newton's method finds from a thousand places."""
+    m = 10.0 ** rng.uniform(-2.0, 2.0, (1000, len(own)))
+    for _ in range(40):
+        forces = own + m @ effect.T
+        sizes = np.abs(forces)
+        slopes = np.eye(len(own)) - (np.conj(forces / sizes)[..., None] * effect).real
+        m = m - np.linalg.solve(slopes, (m - sizes)[..., None])[..., 0]
+    gap = np.abs(m - np.abs(own + m @ effect.T)).max(axis=1)
+    good = m[(gap < 1e-10 * m.max(axis=1)) & np.all(m >= 0.0, axis=1)]
+    return len({tuple(row) for row in np.round(good, 6).tolist()})
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_no_solution_of_coulombs_law_is_missed(count: int) -> None:
+    """Newton's method from a thousand places each never knows of one more."""
+    rng = np.random.default_rng({2: 33, 3: 22, 4: 43}[count])
+    influence, signs = pins(rng, count, 60)
+    state = solve_coulomb(influence, signs).state
+    for k, found in enumerate(state.tolist()):
+        known = by_newton(influence.own[:, k], -(signs[:, k, None] * influence.by[..., k]).T, rng)
+        assert found == SEVERAL or known <= (found == ONE), (count, k)
+    assert {NONE, ONE, SEVERAL} <= set(state.tolist())

@@ -4,7 +4,8 @@ Reactions are linear in the loads, friction among them, at a given pose. So one 
 everything that the iterations need, in either direction of motion. With m the sums of normal forces and s the senses of
 motion, the frictions are -s m, and m = h(m) are the sums under them. Where the mechanism contracts (nearly always)
 there is one solution, found by Newton's steps, or the image h(m) where that is better. Elsewhere the directions of all
-normal forces are tried; no solution and several solutions are reported.
+normal forces are tried, and all solutions of the polynomials that Coulomb's law is are followed from no friction; no
+solution and several solutions are reported.
 
 Source: Coulomb friction on a reverse pass over Assur groups, e.g. J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of
 Machines and Mechanisms, chapter on static forces; a pin's friction moment is coefficient times radius times force.
@@ -21,6 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.continuation import Corrector, MovingSystem, StepLengths, follow_paths
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import solve
 from compoundkin.base.wrenches import Wrench
@@ -37,9 +39,17 @@ SUM_ROUNDING = 2e-15
 SAME_SOLUTION = 1e-7
 # All directions of up to so many normal forces are tried; of more, so many patterns.
 ALL_DIRECTIONS, PATTERNS = 6, 96
-# So many turns of the forces in pins are tried as well. Of random systems of two or three pins that feed on each other
-# strongly one of two solutions is then missed in one to four of a thousand; of one pin, or of contacts, in none.
+# So many turns of the forces in pins are tried as well. Of random systems of three and more pins that feed on each
+# other strongly one of two solutions is then missed in one or two of a hundred.
 TURNS = 16
+# All solutions are found where up to so many normal forces act: two to that power are followed.
+ALL_GROWN = 8
+# So many poses are searched together.
+TOGETHER = 64
+# The path along which frictions grow bends so far into complex numbers; its steps and corrections.
+BEND = 0.6j
+GROWTH = StepLengths(first=0.1, longest=0.3, shortest=1e-7, easy=2, most=400)
+CORRECTED = Corrector(accurate=1e-7, near=0.05, steps=3)
 ONE, NONE, SEVERAL, UNKNOWN = range(4)
 
 
@@ -127,27 +137,116 @@ def _distance_from_image(influence: FrictionInfluence, signs: Number, sums: Numb
 
 def _solve_by_directions(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
     """Return the solution at each pose where it is unique, and the state: none, one or several."""
-    found = np.full(signs.shape, np.nan)
-    count = np.zeros(signs.shape[1], dtype=int)
-    for toward in _starts(influence, signs):
-        sums, good = _from_directions(influence, signs, toward)
-        far = np.abs(sums - found).max(axis=0) > SAME_SOLUTION * np.abs(sums).max(axis=0)
-        count = np.where(good & ((count == 0) | far), count + 1, count)
-        found = np.where(good & (count == 1), sums, found)
-    return found, np.select([count == 0, count == 1], [NONE, ONE], SEVERAL)
+    parts = [_searched_there(influence.of(which), signs[:, which])
+             for which in np.array_split(np.arange(signs.shape[1]), -(-signs.shape[1] // TOGETHER))]  # fmt: skip
+    sums, state = zip(*parts, strict=True)
+    return np.concatenate(sums, axis=1), np.concatenate(state)
+
+
+def _searched_there(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
+    """Return these of a few poses, from all starts at once."""
+    sums, state = _from_starts(influence, signs, np.stack(list(_starts(influence, signs)), axis=1))
+    again = np.flatnonzero(state != SEVERAL)
+    if len(again) and len(_acting(influence, signs)) <= ALL_GROWN:
+        part, senses = influence.of(again), signs[:, again]
+        grown, found = _from_starts(part, senses, _grown(part, senses))
+        one, other = sums[:, again], state[again] != NONE
+        apart = np.abs(grown - one).max(axis=0) > SAME_SOLUTION * np.abs(grown).max(axis=0)
+        known = found != NONE
+        state[again] = np.where(other & known & apart, SEVERAL, np.where(known, found, state[again]))
+        sums[:, again] = np.where(known & ~other, grown, one)
+    return sums, state
+
+
+def _grown(influence: FrictionInfluence, signs: Number) -> Number:
+    """Return the directions of normal forces (normal forces, solutions, poses) of all solutions of Coulomb's law.
+
+    The squared magnitudes m of normal forces are (a + C m)^2, quadratic equations that have two solutions each where C
+    is zero. From there C grows to its own value along a path through complex numbers, on which solutions never meet;
+    those that end at real m >= 0 are the mechanism's.
+    Source: A. P. Morgan and A. J. Sommese, Coefficient-parameter polynomial continuation, Applied Mathematics and
+    Computation 29 (1989) 123.
+    """
+    acting, owners = _acting(influence, signs), _owners(influence)
+    scale = np.abs(influence.own).max(axis=0)
+    every = (influence.own / np.where(scale > 0.0, scale, 1.0)).T  # (poses, normal forces)
+    by_every = (-signs[:, None] * influence.by)[owners[acting]].transpose(2, 1, 0)  # (..., normal forces, acting)
+    own, by = every[:, acting], by_every[:, acting]
+    poses, count = own.shape
+    rng = np.random.default_rng(3)
+    extra = rng.uniform(0.5, 1.0, count) * np.exp(1j * rng.uniform(0.0, TURN, count))
+    patterns = np.array(list(product((1.0, -1.0), repeat=count)))
+    start = np.sqrt(np.abs(own) ** 2 + extra)[:, None] * patterns
+    each = len(patterns)
+
+    def axes(i: Number, m: Number, t: Number) -> list[tuple[Number, Number]]:
+        """The components of normal forces, each with its slopes by the magnitudes at the end."""
+        pose, part = i // each, (t + BEND * t * (1.0 - t))[:, None]
+        sides = ((own.real[pose], by.real[pose]), (own.imag[pose], by.imag[pose]))
+        return [(a + part * np.einsum("pjk,pk->pj", c, m), c) for a, c in sides]
+
+    def value(i: Number, m: Number, t: Number) -> Number:
+        squares = sum((x * x for x, _ in axes(i, m, t)), 0.0)
+        return m * m - squares - (1.0 - t)[:, None] * extra
+
+    def by_m(i: Number, m: Number, t: Number) -> Number:
+        part = (t + BEND * t * (1.0 - t))[:, None, None]
+        slopes = sum((x[..., None] * c for x, c in axes(i, m, t)), 0.0)
+        return 2.0 * (m[..., None] * np.eye(count) - part * slopes)
+
+    def by_t(i: Number, m: Number, t: Number) -> Number:
+        rate = (1.0 + BEND * (1.0 - 2.0 * t))[:, None]
+        moved = sum((x * np.einsum("pjk,pk->pj", c, m) for x, c in axes(i, m, t)), 0.0)
+        return extra - 2.0 * rate * moved
+
+    moving = MovingSystem(value, by_m, by_t)
+    ends = follow_paths(moving, start.reshape(-1, count), GROWTH, CORRECTED).reshape(poses, each, count)
+    real = np.where(np.isfinite(ends), ends.real, 0.0)
+    forces = every[:, None] + np.einsum("pjk,psk->psj", by_every, real)
+    return _directions(forces, np.abs(forces), 1.0).transpose(2, 1, 0)
+
+
+def _owners(influence: FrictionInfluence) -> Number:
+    """Return the friction of each normal force."""
+    lengths = np.diff(influence.starts, append=len(influence.own))
+    return np.repeat(np.arange(len(lengths)), lengths)
+
+
+def _acting(influence: FrictionInfluence, signs: Number) -> Number:
+    """Return the normal forces of pairs that slide."""
+    return np.flatnonzero(np.any(signs != 0.0, axis=1)[_owners(influence)])
+
+
+def _from_starts(influence: FrictionInfluence, signs: Number, starts: Number) -> tuple[Number, Number]:
+    """Return the solution to which directions (normal forces, starts, poses) lead at each pose, and its state."""
+    count, poses = starts.shape[1:]
+    every = np.tile(np.arange(poses), count)
+    sums, good = _from_directions(influence.of(every), signs[:, every], starts.reshape(len(starts), -1))
+    sums, good = sums.reshape(-1, count, poses), good.reshape(count, poses)
+    first = np.take_along_axis(sums, np.argmax(good, axis=0)[None, None], axis=1)
+    others = np.abs(sums - first).max(axis=0) > SAME_SOLUTION * np.abs(sums).max(axis=0)
+    several = np.any(good & others, axis=0)
+    state = np.where(several, SEVERAL, np.where(good.any(axis=0), ONE, NONE))
+    return np.where(state != NONE, first[:, 0], np.nan), state
 
 
 def _from_directions(influence: FrictionInfluence, signs: Number, toward: Number) -> tuple[Number, Number]:
     """Return the solution nearest to given directions of normal forces, and where it is valid."""
+    found = np.full(signs.shape, np.nan)
+    going, part, senses = np.arange(signs.shape[1]), influence, signs
     for _ in range(NEWTON_STEPS):
-        right = influence.sums((np.conjugate(toward) * influence.own).real)
-        sums = solve(_matrix(influence, signs, toward), right.T).T
-        normal_forces = influence.normal_forces(-signs * sums)
+        right = part.sums((np.conjugate(toward) * part.own).real)
+        sums = solve(_matrix(part, senses, toward), right.T).T
+        found[:, going] = sums
+        normal_forces = part.normal_forces(-senses * sums)
         before, toward = toward, _directions(normal_forces, np.abs(normal_forces), toward)
-        if not np.any(np.abs(toward - before) > SUM_ROUNDING):
+        changes = np.any(np.abs(toward - before) > SUM_ROUNDING, axis=0)
+        if not changes.any():
             break
-    closed = _distance_from_image(influence, signs, sums) <= 10.0 * SUM_ROUNDING * influence.rounding(sums)
-    return sums, closed & np.all(sums >= 0.0, axis=0)
+        if not changes.all():
+            going, part, senses, toward = going[changes], part.of(changes), senses[:, changes], toward[:, changes]
+    closed = _distance_from_image(influence, signs, found) <= 10.0 * SUM_ROUNDING * influence.rounding(found)
+    return found, closed & np.all(found >= 0.0, axis=0)
 
 
 def _starts(influence: FrictionInfluence, signs: Number) -> Iterator[Number]:
