@@ -28,7 +28,7 @@ from compoundkin.base.linear import solve
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact, in_one_row, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
-from compoundkin.dynamics.reactions.reverse_pass import Reactions, all_reactions, own_wrenches, reverse_pass
+from compoundkin.dynamics.reactions.reverse_pass import Reactions, all_reactions, own_wrenches, reverse_passes
 from compoundkin.model.pairs.contract import as_transmitting_pair
 
 # Steps for all poses; a friction that raises its own normal force by 0.9 of itself takes ten.
@@ -487,9 +487,8 @@ def block_with_friction(
     order, block = at.motion.solving_order, at.block
     dry = all_reactions(at, known)
     units = tuple(contact.unit(at) for contact in contacts)
-    alone = tuple(
-        reverse_pass(order, block, contact.on_links(unit)) for contact, unit in zip(contacts, units, strict=True)
-    )
+    each = [contact.on_links(unit) for contact, unit in zip(contacts, units, strict=True)]
+    alone = tuple(reverse_passes(order, block, each))
     return BlockWithFriction(at, contacts, known, units, dry, alone, _influence(at, contacts, dry, alone))
 
 

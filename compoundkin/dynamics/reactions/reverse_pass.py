@@ -92,6 +92,36 @@ def reverse_pass(order: SolvingOrder, block: Block, loads: Mapping[str, Wrench])
     return Reactions(found, on.get(FRAME, Wrench()))
 
 
+def reverse_passes(order: SolvingOrder, block: Block, loads: Sequence[Mapping[str, Wrench]]) -> list[Reactions]:
+    """Return the forces under each of several sets of loads, found at once: matrices of groups serve all of them."""
+    if len(loads) < 2:
+        return [reverse_pass(order, block, one) for one in loads]
+    shape = block.shape
+    links = dict.fromkeys(link for one in loads for link in one)
+    together = reverse_pass(order, block, {link: _stacked([one.get(link, NOTHING) for one in loads], shape)
+                                           for link in links})  # fmt: skip
+    return [
+        Reactions({name: _part(one, k) for name, one in together.pairs.items()}, _part(together.on_frame, k))
+        for k in range(len(loads))
+    ]
+
+
+# Arrays of more axes than designs and poses are stacked.
+NOTHING, STACKED = Wrench(), 2
+
+
+def _stacked(wrenches: Sequence[Wrench], shape: tuple[int, ...]) -> Wrench:
+    """Return wrenches as one, along an axis before designs and poses."""
+    forces = np.stack([np.broadcast_to(one.force, shape) for one in wrenches])
+    return Wrench(forces, np.stack([np.broadcast_to(one.moment, shape) for one in wrenches]))
+
+
+def _part(wrench: Wrench, k: int) -> Wrench:
+    """Return one of stacked wrenches."""
+    force, moment = (one[k] if np.ndim(one) > STACKED else one for one in (wrench.force, wrench.moment))
+    return Wrench(force, moment)
+
+
 def _add(on: dict[str, Wrench], pair: Pair, wrench: Wrench) -> None:
     """Add the wrench of a pair to its two links; a carrier is skipped."""
     first, second = pair.members[:2]

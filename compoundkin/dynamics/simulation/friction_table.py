@@ -40,7 +40,7 @@ from compoundkin.dynamics.friction.friction_contacts import (
     speed_of_fastest,
 )
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
-from compoundkin.dynamics.reactions.reverse_pass import reverse_pass
+from compoundkin.dynamics.reactions.reverse_pass import reverse_pass, reverse_passes
 from compoundkin.dynamics.simulation.driver_state import DriverState, Rates, accelerated_motion, needs_time
 from compoundkin.dynamics.simulation.tabulated_chart import (
     DRIVE_SCALES,
@@ -491,8 +491,8 @@ class ForceLayout:
             _, poses = contact.sides(at)
             yield in_one_row(unit.power(poses[1]) - unit.power(poses[0]), at)
         order = at.motion.solving_order
-        for loads in self._causes(at, units):
-            forces = normal_forces_of(at, self.contacts, reverse_pass(order, at.block, loads))
+        for reactions in reverse_passes(order, at.block, list(self._causes(at, units))):
+            forces = normal_forces_of(at, self.contacts, reactions)
             yield from self.components.split(np.transpose(forces)).T
 
     def _causes(self, at: LoadedBlock, units: Sequence[Wrench]) -> Iterator[dict[str, Wrench]]:
@@ -552,9 +552,8 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     table = chart.table
     assert table is not None
     layout = _layout(chart, table.motion)
-    ends = table.low, table.high
     sizes = _sizes_of_scales(layout, table.motion)
-    pieces = accurate_pieces(table.motion, ends, layout.terms, layout.scales, chart.candidates, sizes)
+    pieces = accurate_pieces(table.course, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
         return None
     edges, found = _stretches(layout, pieces, table)

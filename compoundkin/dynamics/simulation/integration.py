@@ -50,6 +50,8 @@ from compoundkin.model.loads.stop import Stop
 
 # The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
 LONGEST_MOVE = 1.0
+# Where friction has no motion within a step, one that is so many times shorter is tried.
+SHORTER = 8.0
 # The integration stalls where a step is below this part of the longest.
 STALLED = 1e-7
 # The name of the event where a load jumps.
@@ -151,7 +153,7 @@ def _step(solver: Any, course: SimulatedCourse) -> None:
             course.evaluations += solver.nfev - asked
             return
         except NotUniqueMotion:
-            solver.h_abs = min(solver.h_abs, solver.max_step) / 2.0
+            solver.h_abs = min(solver.h_abs, solver.max_step) / SHORTER
             if solver.h_abs < STALLED * course.until:
                 raise
 

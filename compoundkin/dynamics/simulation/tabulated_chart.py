@@ -333,7 +333,12 @@ class DriveTable:
     high: float
     pieces: Sequence[TablePiece]
     starts: Sequence[float]
-    motion: Motion
+    course: TableCourse
+
+    @property
+    def motion(self) -> Motion:
+        """The motion that has the configuration."""
+        return self.course.motion
 
     def piece(self, value: float) -> TablePiece | None:
         """Return the piece at a value."""
@@ -362,20 +367,37 @@ def drive_table(
             warnings.simplefilter("ignore")
             values = np.linspace(low, high, POSES)
             motion = solve(mechanism, {driver: values}, speed=1.0, acceleration=0.0, order=2, modes=first)
-            found = accurate_pieces(motion, (low, high), partial(drive_terms, loads=loads), DRIVE_SCALES, pairs)
+            course = TableCourse(motion, (low, high))
+            found = accurate_pieces(course, partial(drive_terms, loads=loads), DRIVE_SCALES, pairs)
     except CompoundkinError:
         return None
     whole = with_bridges(found, high - low)
-    return DriveTable(low, high, whole, [piece.low for piece in whole], motion)
+    return DriveTable(low, high, whole, [piece.low for piece in whole], course)
 
 
 # The scales of the rows of a table by number: the bias is a derivative of the inertia; both forces have one scale.
 DRIVE_SCALES = (0, 0, 1, 1)
 
 
+@dataclass(frozen=True, eq=False)
+class TableCourse:
+    """The motion of a table between the ends of the driver, solved again at the points of pieces."""
+
+    motion: Motion
+    ends: tuple[float, float]
+    known: dict[tuple[tuple[float, float], ...], Motion] = field(default_factory=dict)
+
+    def at(self, parts: Sequence[tuple[float, float]]) -> Motion:
+        """Return the motion at the points of some pieces, which several tables ask for."""
+        key = tuple(parts)
+        if key not in self.known:
+            values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
+            self.known[key] = between(self.motion, 0, _places(values, self.ends))
+        return self.known[key]
+
+
 def accurate_pieces(
-    motion: Motion,
-    ends: tuple[float, float],
+    course: TableCourse,
     terms: Callable[[Motion], Number],
     scales: Sequence[int],
     pairs: Sequence[Pair],
@@ -385,10 +407,10 @@ def accurate_pieces(
 
     Rows of one scale have the same number; `least` are sizes of scales whose rows may be rounding alone.
     """
-    edges, found = np.linspace(*ends, PIECES + 1), []
+    edges, found = np.linspace(*course.ends, PIECES + 1), []
     todo = list(pairwise(edges.tolist()))
     for _ in range(HALVED + 1):
-        made = _solved(motion, todo, ends, terms, pairs)
+        made = _solved(course, todo, terms, pairs)
         held = [_is_accurate(piece, scales, least or {}) for piece in made]
         found += [piece for piece, holds in zip(made, held, strict=True) if holds]
         broken = [piece for piece, holds in zip(made, held, strict=True) if not holds]
@@ -396,7 +418,7 @@ def accurate_pieces(
         if not todo:
             break
     else:
-        if motion.change_points:
+        if course.motion.change_points:
             found += [piece for piece in broken if _is_accurate(piece, scales, least or {}, HOLDS_NEAR)]
     return sorted(found, key=lambda piece: piece.low)
 
@@ -410,18 +432,16 @@ def _is_accurate(piece: TablePiece, scales: Sequence[int], least: Mapping[int, f
 
 
 def _solved(
-    motion: Motion,
+    course: TableCourse,
     parts: Sequence[tuple[float, float]],
-    ends: tuple[float, float],
     terms: Callable[[Motion], Number],
     pairs: Sequence[Pair],
 ) -> list[TablePiece]:
     """Return pieces, solved together."""
-    values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
-    at = between(motion, 0, _places(values, ends))
+    at = course.at(parts)
     rows = terms(at)
     # beyond a travel limit groups still close
-    rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
+    rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(at.structure.groups))] = np.nan
     ratios = _ratios(at, pairs)
     cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
     return [TablePiece(float(a), float(b), rows[:, cut] @ TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
