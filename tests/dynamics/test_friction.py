@@ -15,7 +15,10 @@ from scipy.optimize import root
 from scipy.optimize._numdiff import approx_derivative
 
 import compoundkin as ck
+from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import NONE, ONE, SEVERAL, FrictionInfluence, solve_coulomb
+from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.reactions.reverse_pass import reverse_pass, reverse_passes
 from tests.support import drawn_values, random_sketch, reference, well_conditioned
 
 SI = {"length": "m", "mass": "kg", "force": "N"}
@@ -550,3 +553,28 @@ def test_no_solution_of_coulombs_law_is_missed(count: int) -> None:
         known = by_newton(influence.own[:, k], -(signs[:, k, None] * influence.by[..., k]).T, rng)
         assert found == SEVERAL or known <= (found == ONE), (count, k)
     assert {NONE, ONE, SEVERAL} <= set(state.tolist())
+
+
+@pytest.mark.parametrize(
+    "name", ["jansen-leg", "class-iii-six-bar", "planetary-train", "disc-cam-roller-program", "toggle-press"]
+)
+def test_reactions_of_several_sets_of_loads_at_once(name: str) -> None:
+    """They are those of each set alone."""
+    motion, rng = ck.solve(ck.load(name)), np.random.default_rng(4)
+    at = next(iter(loaded_blocks(motion)))
+    links = [link for link in motion.mechanism.links if link != "frame"]
+    shape = at.block.shape
+
+    def drawn() -> dict[str, Wrench]:
+        some = rng.choice(links, max(1, len(links) // 2), replace=False)
+        return {str(link): Wrench(rng.normal(size=shape) @ np.eye(shape[1]) * (1 + 2j), rng.normal()) for link in some}
+
+    sets = [drawn() for _ in range(4)]
+    together = reverse_passes(motion.solving_order, at.block, sets)
+    for loads, found in zip(sets, together, strict=True):
+        alone = reverse_pass(motion.solving_order, at.block, loads)
+        for pair, wrench in alone.pairs.items():
+            for one, other in ((found.pairs[pair].force, wrench.force), (found.pairs[pair].moment, wrench.moment)):
+                scale = np.nanmax(np.abs(other)) + 1.0
+                assert np.nanmax(np.abs(np.broadcast_to(one - other, shape))) < 1e-9 * scale
+                assert np.array_equal(np.isnan(np.broadcast_to(one, shape)), np.isnan(np.broadcast_to(other, shape)))

@@ -12,6 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.chains import random_mechanism
 from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.forward_dynamics import simulation_start
+from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.results import Simulation
 from tests.dynamics.cases import SI
 from tests.dynamics.moving_cases import five_bar, slider_crank
@@ -309,3 +310,30 @@ def test_speeds_are_kept_where_the_coordinates_of_all_links_take_over() -> None:
     found = ck.simulate(turned, until=2.0)
     assert "coordinate" in [event.name for event in found.events]
     assert found.energy.worst < 1e-8
+
+
+def test_nothing_is_searched_for_at_rest_where_no_load_depends_on_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A motor too weak for the friction: it is asked twice whether it moves, not two hundred times."""
+    asked = []
+    whole = FrictionTable.direction_from_rest
+    monkeypatch.setattr(FrictionTable, "direction_from_rest", lambda *given: asked.append(1) or whole(*given))
+    rotor = ck.Mechanism(
+        "Rotor",
+        ck.link("frame", O=0),
+        ck.link("rotor", O=0, P=1),
+        ck.drive("rotor"),
+        ck.mass("rotor", 5.0, at="O", inertia=0.4),
+        ck.gravity(0, -9.81),
+        ck.friction("O", 0.2, radius=0.1),
+        ck.motor("rotor", stall=0.9, no_load=10.0),
+        units=SI,
+    )
+    held = ck.simulate(rotor, start=0.0, until=3.0)
+    assert [event.name for event in held.events] == ["sticks"]
+    assert held.times[-1] == 3.0
+    assert len(asked) < 10
+    # the friction of five kilograms holds 0.2 * 5 * 9.81 * 0.1 = 0.981 at the most, and a rising torque overcomes it
+    rising = rotor.replace(ck.effort("rotor", lambda t: 0.1 * t))
+    slipped = ck.simulate(rising, start=0.0, until=3.0)
+    assert [event.name for event in slipped.events] == ["sticks", "slips"]
+    assert slipped.events[1].time == pytest.approx(0.81, rel=1e-9)

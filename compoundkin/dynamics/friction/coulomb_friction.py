@@ -68,8 +68,11 @@ class Frictions(NamedTuple):
     state: Number
 
 
-def solve_coulomb(influence: FrictionInfluence, signs: Number) -> Frictions:
-    """Return the frictions that oppose motion of the given signs (frictions, poses): -1, 0 or 1."""
+def solve_coulomb(influence: FrictionInfluence, signs: Number, grown: int = ALL_GROWN) -> Frictions:
+    """Return the frictions that oppose motion of the given signs (frictions, poses): -1, 0 or 1.
+
+    Where one solution is found a second one is sought among all of them if up to so many normal forces act, `grown`.
+    """
     finite = np.isfinite(influence.own).all(axis=0) & np.isfinite(influence.by).all(axis=(0, 1))
     state = np.where(finite & np.isfinite(signs).all(axis=0), ONE, UNKNOWN)
     sums = np.full(signs.shape, np.nan)
@@ -81,7 +84,7 @@ def solve_coulomb(influence: FrictionInfluence, signs: Number) -> Frictions:
         sure[known] = part.contracts(senses) & rested
     doubtful = np.flatnonzero((state == ONE) & ~sure)
     if len(doubtful):
-        sums[:, doubtful], state[doubtful] = _solve_by_directions(influence.of(doubtful), signs[:, doubtful])
+        sums[:, doubtful], state[doubtful] = _solve_by_directions(influence.of(doubtful), signs[:, doubtful], grown)
     sums[:, state != ONE] = np.nan
     return Frictions(-signs * sums, state)
 
@@ -135,26 +138,27 @@ def _distance_from_image(influence: FrictionInfluence, signs: Number, sums: Numb
     return found
 
 
-def _solve_by_directions(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
+def _solve_by_directions(influence: FrictionInfluence, signs: Number, grown: int) -> tuple[Number, Number]:
     """Return the solution at each pose where it is unique, and the state: none, one or several."""
-    parts = [_searched_there(influence.of(which), signs[:, which])
+    parts = [_searched_there(influence.of(which), signs[:, which], grown)
              for which in np.array_split(np.arange(signs.shape[1]), -(-signs.shape[1] // TOGETHER))]  # fmt: skip
     sums, state = zip(*parts, strict=True)
     return np.concatenate(sums, axis=1), np.concatenate(state)
 
 
-def _searched_there(influence: FrictionInfluence, signs: Number) -> tuple[Number, Number]:
+def _searched_there(influence: FrictionInfluence, signs: Number, grown: int) -> tuple[Number, Number]:
     """Return these of a few poses, from all starts at once."""
     sums, state = _from_starts(influence, signs, np.stack(list(_starts(influence, signs)), axis=1))
-    again = np.flatnonzero(state != SEVERAL)
-    if len(again) and len(_acting(influence, signs)) <= ALL_GROWN:
+    acting = len(_acting(influence, signs))
+    again = np.flatnonzero(state != SEVERAL if acting <= grown else state == NONE)
+    if len(again) and acting <= ALL_GROWN:
         part, senses = influence.of(again), signs[:, again]
-        grown, found = _from_starts(part, senses, _grown(part, senses))
+        whole, found = _from_starts(part, senses, _grown(part, senses))
         one, other = sums[:, again], state[again] != NONE
-        apart = np.abs(grown - one).max(axis=0) > SAME_SOLUTION * np.abs(grown).max(axis=0)
+        apart = np.abs(whole - one).max(axis=0) > SAME_SOLUTION * np.abs(whole).max(axis=0)
         known = found != NONE
         state[again] = np.where(other & known & apart, SEVERAL, np.where(known, found, state[again]))
-        sums[:, again] = np.where(known & ~other, grown, one)
+        sums[:, again] = np.where(known & ~other, whole, one)
     return sums, state
 
 

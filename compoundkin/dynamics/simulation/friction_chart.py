@@ -618,7 +618,7 @@ class FrictionState(BodyState):
         if found is not None:
             return found.sizes
         starts = np.searchsorted(part.owners, np.arange(len(signs)))
-        several = solve_coulomb(FrictionInfluence(frictionless[:, None], by[..., None], starts), signs[:, None])
+        several = solve_coulomb(FrictionInfluence(frictionless[:, None], by[..., None], starts), signs[:, None], 0)
         if several.state[0] != ONE:
             raise NotUniqueMotion(self.time)
         return several.sizes[:, 0]

@@ -21,6 +21,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
+    ALL_GROWN,
     ONE,
     TINY,
     FrictionInfluence,
@@ -64,6 +65,8 @@ PLACES, HALVINGS = 64, 50
 NEARLY = 0.01
 # Frictions are mild where their influences stay below this sum, which is checked at so many places of a piece.
 MILD, CHECKED = 0.8, 16
+# Behind a step a second motion is sought among all solutions where up to so many normal forces act.
+GROWN = 6
 # A course begins so far ahead in its stretch, as a part of the table: it has just left the reversal behind it.
 AHEAD = 1e-10
 
@@ -102,10 +105,11 @@ class NormalForceState:
         found: Number = self.by + (self.along / self.inertia)[:, None] * self.second
         return found
 
-    def free(self, held: Number | None = None) -> FreeMotion | None:
+    def free(self, held: Number | None = None, grown: int = 0) -> FreeMotion | None:
         """Return the motion at which the driver has no effort; None where it is not unique.
 
-        Normal forces of which a sign is `held` count by it.
+        Normal forces of which a sign is `held` count by it. A second motion is sought among all solutions if up to so
+        many normal forces act, `grown`.
         """
         if not (self.inertia and np.isfinite(self.push)):
             # nothing is known at speeds that are no numbers
@@ -117,7 +121,7 @@ class NormalForceState:
         if found is not None:
             a = first + float(self.along.dot(found.sizes)) / self.inertia
             return FreeMotion(a, found.sizes, found.components)
-        sizes = self._searched(joint)
+        sizes = self._searched(joint, grown)
         return None if sizes is None else FreeMotion(first + float(self.along.dot(sizes)) / self.inertia, sizes)
 
     @property
@@ -125,14 +129,14 @@ class NormalForceState:
         """The driver's effort without acceleration, None where it is not unique."""
         here = PoseInfluence(self.layout, self.own, self.by, self.senses)
         found = None if here.weights is None else here.solution(here.weights)
-        sizes = self._searched(here) if found is None else found.sizes
+        sizes = self._searched(here, ALL_GROWN) if found is None else found.sizes
         return None if sizes is None else -self.push - float(self.along.dot(sizes))
 
-    def _searched(self, here: PoseInfluence) -> Number | None:
+    def _searched(self, here: PoseInfluence, grown: int) -> Number | None:
         """Return the frictions where their influences do not contract, None where they are not unique."""
         own, by = self.layout.joined(here.own), self.layout.joined(here.by)
         starts = np.searchsorted(self.layout.owners, np.arange(len(self.senses)))
-        found = solve_coulomb(FrictionInfluence(own[:, None], by[..., None], starts), self.senses[:, None])
+        found = solve_coulomb(FrictionInfluence(own[:, None], by[..., None], starts), self.senses[:, None], grown)
         return found.sizes[:, 0] if found.state[0] == ONE else None
 
 
@@ -263,12 +267,21 @@ class FrictionTable(TabulatedChart):
         """Set the direction of motion; return whether it moves, which friction may prevent."""
         way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
         self.direction, self.rests = way or self.direction, way == 0.0
+        if way:
+            self._check_only_motion(time, values, speeds)
         self._enter(time, values, speeds)
         return way != 0.0
+
+    def _check_only_motion(self, time: float, values: Number, speeds: Number) -> None:
+        """Raise NotUniqueMotion where Coulomb's law has a second motion."""
+        here = self._in_table(time, float(values[0]), float(speeds[0]), self.direction)
+        if here is not None and not here.normal.is_mild and here.normal.free(None, GROWN) is None:
+            raise NotUniqueMotion(time)
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Update the configuration at an accepted state."""
         super().accept(time, values, speeds)
+        self._check_only_motion(time, values, speeds)
         if self.ahead is None or self.has_left:
             self._enter(time, values, speeds)
 
