@@ -325,3 +325,24 @@ def test_an_address_that_does_not_fit_is_told_above_the_sketch(made: Any, opened
         box = told.bounding_box()
         assert 0 <= box["y"] < view.locator("svg.sketch").bounding_box()["y"]
         assert box["y"] + box["height"] < size[1]
+
+
+def test_at_a_gap_stands_what_is_known_and_the_circles_that_miss(made: Any, opened: Any) -> None:
+    """A crank of 27 is too long for plate and rocker at 180 degrees: about D and B lie circles of 39 and 28 apart."""
+    view = opened(made("six-bar"))
+    found = view.value("""() => {
+      const { design, players: [player] } = compoundkin, { window } = player.data;
+      design.change({ "crank.D.x": 27 });
+      player.show(36);
+      const known = player.parts.filter((part) => !part.classList.contains("missing"));
+      const circles = [...document.querySelectorAll(".misses circle")].map((one) => {
+        const [x, y, r] = ["cx", "cy", "r"].map((name) => Number(one.getAttribute(name)));
+        return [x / window.scale + window.x, window.y - y / window.scale, r / window.scale];
+      });
+      return { shown: [...new Set(known.map((part) => part.dataset.links))], circles };
+    }""")
+    assert sorted(found["shown"]) == ["crank", "frame"]
+    assert np.allclose(sorted(found["circles"]), [[-27, 0, 39], [41, 0, 28]], atol=1e-9)
+    view.value("() => compoundkin.design.reset()")
+    assert view.locator(".misses, .missing").count() == 0
+    assert view.complaints == []
