@@ -343,8 +343,9 @@ PART_OF_SKETCH, ALONE = 0.55, 1.0
 BODY_FORCE_LENGTH, BODY_FORCE_LENGTH_ALONE = 84.0, 130.0
 # Where the longest force on a link would be shorter than this, the link has its own scale.
 SHORT = 26.0
-# A link whose points are nearer to each other than this is drawn as many times as large as it takes.
-SMALL_BODY, ENLARGED = 56.0, (1.5, 2.0, 3.0, 5.0, 10.0)
+# A link whose points are nearer to each other than the first is drawn so many times as large that they are as far
+# apart as the second.
+SMALL_BODY, LEGIBLE, ENLARGED = 30.0, 50.0, (2.0, 3.0, 5.0, 10.0)
 # Points nearer than this, in picture units, are one.
 NOTHING = 1e-6
 # The circle at a mass centre, and the dot in it.
@@ -384,12 +385,17 @@ def _scale_of_body(known: ForcesAtPose, link: str, scale: VectorScale | None) ->
     return force_scale(known.on[link], BODY_FORCE_LENGTH / 2.0, known.forces.units.force)
 
 
-def _enlarged(window: Window, points: Sequence[complex]) -> float:
+def _enlarged(scene: Scene, window: Window, link: str) -> float:
     """How many times as large a link is drawn: a small one such that its points stand apart."""
-    reach = max((abs(a - b) for a in points for b in points), default=0.0) * window.scale
+    points = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
+    reach = max((abs(a - b) for a in points for b in points), default=0.0)
     if not NOTHING < reach < SMALL_BODY:
         return 1.0
-    return next((times for times in ENLARGED if reach * times >= SMALL_BODY), ENLARGED[-1])
+    # a wheel or a cam is large around points that are near to each other
+    corners = np.array(shape_corners(by_links(in_layers(Painter(scene, window, frozenset({link})), grounded=False))))
+    if np.ptp(corners.real) > LEGIBLE or np.ptp(corners.imag) > LEGIBLE:
+        return 1.0
+    return next((times for times in ENLARGED if reach * times >= LEGIBLE), ENLARGED[-1])
 
 
 def _body(
@@ -397,7 +403,7 @@ def _body(
 ) -> PicturePart:
     """A link with its arrows, their names and values; below it what is not to the common scales."""
     scene, own = known.scene, known.on[link]
-    times = _enlarged(window, [scene.at(link, p) for p in scene.points[link].values()])
+    times = _enlarged(scene, window, link)
     window = replace(window, scale=window.scale * times)
     painter = Painter(scene, window, frozenset({link}))
     points = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]

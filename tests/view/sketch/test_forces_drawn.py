@@ -93,6 +93,8 @@ def test_small_links_are_enlarged_and_small_forces_have_their_own_scale() -> Non
     texts = _texts(picture.shapes)
     assert texts.count("10 times as large") == 1
     assert {"500 N", "1000 N", "5000 N"} <= set(texts)
+    wheel = _texts(ck.draw(ck.load("geared-press"), kind="free-bodies").shapes)
+    assert not [text for text in wheel if "times as large" in text], "a large wheel about near points"
     arrows = {one.title: one for one in leaves_of_groups(picture.shapes) if "weight" in one.title}
     toggle, jaw = (next(a for t, a in arrows.items() if name in t) for name in ("rear-toggle", "jaw"))
     lengths = [abs(one.shapes[0].points[0] - one.shapes[0].points[-1]) for one in (toggle, jaw)]
