@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from compoundkin import figures as figures
     from compoundkin import goals as goals
     from compoundkin import laws as laws
+    from compoundkin import linkages as linkages
     from compoundkin import plots as plots
     from compoundkin import profiles as profiles
     from compoundkin import results as results
@@ -203,7 +204,7 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("chains", "equations", "errors", "exchange", "figures"),
-    *("goals", "laws", "plots", "profiles", "results", "tasks"),
+    *("goals", "laws", "linkages", "plots", "profiles", "results", "tasks"),
 )
 
 

@@ -68,6 +68,7 @@ EPILOG = """\b
 Examples:
   compoundkin report six-bar
   compoundkin open six-bar
+  compoundkin report four-bar:60,20,50,40
   compoundkin new linkage.toml
   compoundkin structure linkage.toml
   compoundkin solve linkage.toml --from 0 --to 90 --step 1 -o linkage.csv
@@ -146,7 +147,8 @@ SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 def cli() -> None:
     """Take compound planar mechanisms apart into Assur groups and solve them group by group.
 
-    Wherever a FILE is expected, the name of a shipped mechanism does too; `compoundkin catalog` lists them.
+    Wherever a FILE is expected, the name of a shipped mechanism does too (`compoundkin catalog` lists them), and a
+    linkage by its lengths, such as four-bar:60,20,50,40 (`compoundkin new --list`).
     """
 
 

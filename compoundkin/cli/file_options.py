@@ -74,7 +74,8 @@ def mechanism_argument(command: F) -> F:
 def load_mechanism(file: str) -> Mechanism:
     """Return the mechanism of a file, of a name of the catalog, of another program's file, or of a link that holds one.
 
-    Raises InvalidInput and its kinds for what cannot be read.
+    A text such as "four-bar:60,20,50,40" is a linkage by its lengths. Raises InvalidInput and its kinds for what cannot
+    be read.
     """
     from compoundkin.files import load
     from compoundkin.files.shipped_mechanisms import resolve
@@ -82,10 +83,18 @@ def load_mechanism(file: str) -> Mechanism:
     # functions of os.path accept a pasted text longer than a file name may be
     if isdir(file):
         raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
+    if ":" in file and not exists(file) and (made := _linkage(file)) is not None:
+        return made
     if is_foreign_file(file):
         return import_with_notes(file).mechanism
     # `load` judges what is no regular file, such as a pipe
     return load(file if exists(file) else resolve(file))
+
+
+def _linkage(text: str) -> Mechanism | None:
+    from compoundkin.synthesis.linkages import linkage_of
+
+    return linkage_of(text)
 
 
 def write_new(path: Path, content: bytes, force: bool) -> None:

@@ -78,8 +78,9 @@ def _mechanism() -> Schema:
     text = {"type": "string", "minLength": 1, "maxLength": MOST_TEXT}
     return {
         "anyOf": [text, document],
-        "description": "The name of a shipped mechanism (six-bar); or a mechanism file, as its text in TOML or as its "
-        "document in JSON. Angles are in degrees. `describe` without a mechanism explains the format and lists names.",
+        "description": "The name of a shipped mechanism (six-bar); a linkage by its lengths (four-bar:60,20,50,40); or "
+        "a mechanism file, as its text in TOML or its document in JSON. Angles are in degrees. `describe` without a "
+        "mechanism explains the format and lists names.",
     }
 
 
@@ -318,9 +319,14 @@ def _file(mechanism: str | Mapping[str, Any], folder: Path) -> str:
     """Write a mechanism to a file and return its name; the name of a shipped one is returned as it is."""
     if isinstance(mechanism, str) and "\n" not in mechanism and not mechanism.lstrip().startswith("{"):
         from compoundkin.files.shipped_mechanisms import shipped
+        from compoundkin.synthesis.linkages import is_linkage
 
         # any other word is looked up as a name, never as a path
-        return mechanism if mechanism in shipped() else f"{Path(mechanism).name or 'mechanism'}".replace(".", "-")
+        return (
+            mechanism
+            if is_linkage(mechanism) or mechanism in shipped()
+            else f"{Path(mechanism).name or 'mechanism'}".replace(".", "-")
+        )
     text = mechanism if isinstance(mechanism, str) else json.dumps(mechanism)
     name = "mechanism.json" if text.lstrip().startswith("{") else "mechanism.toml"
     (folder / name).write_text(text, encoding="utf-8")

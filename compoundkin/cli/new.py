@@ -72,22 +72,76 @@ C = [78, 46]
 Examples:
   compoundkin new
   compoundkin new linkage.toml
+  compoundkin new four-bar ground=60 crank=20 coupler=50 rocker=40 -o mine.toml
+  compoundkin new slider-crank 20 60 offset=5 -o mine.toml
+  compoundkin new --list
 """
 )
-@click.argument("path", type=click.Path(), default="mechanism.toml")
+@click.argument("words", nargs=-1, metavar="[PATH | LINKAGE NAME=VALUE ...]")
+@click.option("-o", "--to-file", "path", type=click.Path(), metavar="PATH", help="Where to write it.")
+@click.option("--list", "listed", is_flag=True, help="List the linkages with what they take.")
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
-def command(path: str, force: bool) -> int:
-    """Write a commented mechanism file to PATH, to be changed into your own. It has a four-bar linkage."""
+def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool) -> int:
+    """Write a commented mechanism file, to be changed into your own.
+
+    Without a linkage it has a four-bar to start from. With one it is that linkage by its lengths, angles in degrees.
+    The same words do wherever a FILE is expected: compoundkin report four-bar:60,20,50,40
+    """
     from compoundkin.base.suffixes import suffix_for, suffix_of
     from compoundkin.cli.file_options import write_new
 
-    target = Path(path)
+    if listed:
+        put(linkage_list())
+        return 0
+    name, given = words[0] if words else "", words[1:]
+    is_linkage = bool(given) or (name != "" and suffix_of(Path(name)) == "" and not Path(name).is_dir())
+    if not is_linkage and path is not None and name:
+        raise InvalidInput(Problem(name, "the file is named twice", f"compoundkin new {name}"))
+    target = Path(path or ("mechanism.toml" if is_linkage else name or "mechanism.toml"))
     target = target / "mechanism.toml" if target.is_dir() else target
     if suffix_of(target) != suffix_for("mechanism", "toml"):
-        raise InvalidInput(Problem(path, "only TOML files have comments", "choose a name that ends in .toml"))
-    write_new(target, starting_file(target).encode("utf-8"), force)
+        raise InvalidInput(Problem(str(target), "only TOML files have comments", "choose a name that ends in .toml"))
+    text = linkage_file(name, given, target) if is_linkage else starting_file(target)
+    write_new(target, text.encode("utf-8"), force)
     say(f"Wrote {target}; see it with: compoundkin report {target}")
     return 0
+
+
+def linkage_list() -> str:
+    """Return the linkages with their parameters and an example of each."""
+    from compoundkin.synthesis.linkages import kinds
+
+    lines = []
+    for kind in kinds():
+        lines += [kind.name, f"  {kind.summary}", f"  compoundkin new {kind.name} {kind.example}"]
+        wide = max(len(one.name) for one in kind.parameters)
+        for one in kind.parameters:
+            default = "" if one.is_required or one.default in (None, "") else f" [{one.shown_default}]"
+            left_out = "" if one.is_required else " May be left out."
+            lines.append(f"    {one.name:<{wide}}  {one.meaning}{default}{left_out}")
+        lines.append("")
+    return "\n".join(lines[:-1]) + "\n"
+
+
+def linkage_file(name: str, given: tuple[str, ...], target: Path) -> str:
+    """Return the text of the file of a linkage, with what its numbers mean. Raises InvalidInput, UnknownName."""
+    from compoundkin.files import dumps
+    from compoundkin.synthesis.linkages import kind_named
+
+    kind = kind_named(name)
+    mechanism = kind.written(given)
+    typed = " ".join(" ".join(given).split())
+    meanings = (f"{one.name}: {one.meaning}" for one in kind.parameters if one.name != "unit")
+    comments = (
+        f"{mechanism.title}: compoundkin new {name} {typed}",
+        f"See it with: compoundkin report {target.name}",
+        "",
+        *meanings,
+        "",
+        "A point is written in its own link's frame. Two links that have a point of the same name are pinned there.",
+        "[drawn] has points of one pose: they choose between the ways to assemble the links.",
+    )
+    return "".join(f"# {line}".rstrip() + "\n" for line in comments) + "\n" + dumps(mechanism)
 
 
 def starting_file(target: Path) -> str:

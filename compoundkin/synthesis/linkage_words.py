@@ -1,0 +1,207 @@
+"""The words of linkages that are made from their lengths: what each takes, how it is typed, checked and listed.
+
+One declaration, a function with its annotations and meanings, serves Python (`ck.linkages`), `compoundkin new`, and
+specifications such as "four-bar:60,20,50,40" wherever a file is expected.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import wraps
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.arguments import is_real
+from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.model.geometry import deg
+from compoundkin.model.laws.cam_laws import LAWS
+from compoundkin.model.mechanism import Mechanism
+
+# What a parameter is: its annotation says how it is read, checked and shown.
+Length: TypeAlias = float
+Angle: TypeAlias = float
+Count: TypeAlias = int
+Real: TypeAlias = float
+Place: TypeAlias = "tuple[float, float] | complex"
+Closure: TypeAlias = Literal["open", "crossed"]
+WORDS: Mapping[str, tuple[str, ...]] = {
+    "Closure": ("open", "crossed"),
+    "SixBar": ("Watt I", "Watt II", "Stephenson I", "Stephenson II", "Stephenson III"),
+    "QuickReturn": ("crank-shaper", "Whitworth"),
+    "Follower": ("knife", "roller", "flat"),
+    "ArmOrSun": ("arm", "sun"),
+    "RiseLaw": tuple(name for name in LAWS if name not in ("dwell", "constant-velocity")),
+}
+SixBar: TypeAlias = Literal["Watt I", "Watt II", "Stephenson I", "Stephenson II", "Stephenson III"]
+QuickReturn: TypeAlias = Literal["crank-shaper", "Whitworth"]
+Follower: TypeAlias = Literal["knife", "roller", "flat"]
+ArmOrSun: TypeAlias = Literal["arm", "sun"]
+RiseLaw: TypeAlias = str
+
+
+@dataclass(frozen=True)
+class LinkageParameter:
+    """A parameter of a linkage: its name, its kind ("Length", "Angle", "Place" ...), its meaning, and its default."""
+
+    name: str
+    kind: str
+    meaning: str
+    default: Any
+
+    @property
+    def is_required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is inspect.Parameter.empty
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The words that it may be, empty for numbers."""
+        return WORDS.get(self.kind, ())
+
+    @property
+    def shown_default(self) -> str:
+        """Its default as it is typed, angles in degrees."""
+        return f"{np.rad2deg(self.default):g}" if self.kind == "Angle" else f"{self.default}"
+
+    def value(self, text: str) -> Any:
+        """Return the value that a text means, angles in degrees. Raises InvalidInput."""
+        if self.words:
+            near = {_plain(word): word for word in self.words}
+            if _plain(text) not in near:
+                raise wrong(self.name, f"{text!r} is none of its words", suggestion(text, list(self.words)))
+            return near[_plain(text)]
+        if self.kind == "str":
+            return text
+        try:
+            numbers = [float(part) for part in text.split(",")]
+        except ValueError:
+            raise wrong(self.name, f"{text!r} is no number", self.meaning) from None
+        if self.kind == "Place":
+            if len(numbers) != 2:
+                raise wrong(self.name, f"{text!r} are not two numbers", self.meaning)
+            return tuple(numbers) if self.name == "pivot" else (numbers[0], float(deg(numbers[1])))
+        if len(numbers) != 1:
+            raise wrong(self.name, f"{text!r} is not one number", self.meaning)
+        if self.kind == "Count" and numbers[0] != round(numbers[0]):
+            raise wrong(self.name, f"{text} is not a whole number", self.meaning)
+        if self.kind == "Count":
+            return int(numbers[0])
+        return float(deg(numbers[0])) if self.kind == "Angle" else numbers[0]
+
+
+@dataclass(frozen=True)
+class LinkageKind:
+    """A kind of linkage: its name on the command line, what it is, its parameters, an example, and its function."""
+
+    name: str
+    summary: str
+    parameters: tuple[LinkageParameter, ...]
+    example: str
+    build: Callable[..., Mechanism]
+
+    def written(self, texts: Sequence[str]) -> Mechanism:
+        """Return the linkage of parameters as they are typed: "ground=60", or values alone, in the order of the list.
+
+        Raises InvalidInput for what is missing, unknown, or cannot be.
+        """
+        given: dict[str, Any] = {}
+        known = {one.name: one for one in self.parameters}
+        for text in texts:
+            name, equals, value = text.partition("=")
+            if not equals:
+                free = next((one.name for one in self.parameters if one.name not in given), None)
+                if free is None:
+                    raise wrong(self.name, f"{text!r} is one value too many", f"known: {self.usage}")
+                name, value = free, text
+            name = name.strip().replace("-", "_")
+            if name not in known:
+                raise wrong(name, f"a {self.name} has no such parameter", suggestion(name, list(known)))
+            if name in given:
+                raise wrong(name, "it is given twice", "leave one of them out")
+            given[name] = known[name].value(value.strip())
+        missing = [one for one in self.parameters if one.is_required and one.name not in given]
+        if missing:
+            names = ", ".join(one.name for one in missing)
+            what = f"{names} {'are' if len(missing) > 1 else 'is'} missing"
+            raise InvalidInput(Problem(self.name, what, f"such as {self.name} {self.example}"))
+        return self.build(**given)
+
+    @property
+    def usage(self) -> str:
+        """Its parameters in a line; those that may be left out in brackets."""
+        return " ".join(one.name if one.is_required else f"[{one.name}]" for one in self.parameters)
+
+
+LINKAGES: dict[str, LinkageKind] = {}
+
+
+def linkage(example: str, **meanings: str) -> Callable[[Callable[..., Mechanism]], Callable[..., Mechanism]]:
+    """Return a decorator that lists a function among the linkages, with the meaning of each of its parameters."""
+
+    def listed(function: Callable[..., Mechanism]) -> Callable[..., Mechanism]:
+        parameters = tuple(
+            LinkageParameter(name, str(one.annotation).removesuffix(" | None"), meanings[name], one.default)
+            for name, one in inspect.signature(function).parameters.items()
+        )
+
+        @wraps(function)
+        def checking(*args: Any, **kwargs: Any) -> Mechanism:
+            bound = inspect.signature(function).bind(*args, **kwargs)
+            for one in parameters:
+                if one.name in bound.arguments and bound.arguments[one.name] is not None:
+                    _check(one, bound.arguments[one.name])
+            return function(*args, **kwargs)
+
+        name = function.__name__.replace("_", "-")
+        summary = (function.__doc__ or "").partition("\n")[0].removeprefix("Return a ").removeprefix("Return an ")
+        LINKAGES[name] = LinkageKind(name, summary.removeprefix("Return the "), parameters, example, checking)
+        return checking
+
+    return listed
+
+
+def _check(one: LinkageParameter, value: Any) -> None:
+    """Raise InvalidInput for a value that is not of its parameter's kind."""
+    if one.words:
+        if value not in one.words:
+            raise wrong(one.name, f"{value!r} is none of its words", suggestion(value, list(one.words)))
+    elif one.kind == "Place":
+        place(one.name, value)
+    elif one.kind == "str":
+        if not isinstance(value, str):
+            raise wrong(one.name, f"{value!r} is no word", one.meaning)
+    elif not is_real(value) or not np.isfinite(value) or np.ndim(value):
+        raise wrong(one.name, f"{value!r} is not one number", one.meaning)
+    elif one.kind in ("Length", "Count") and value <= 0:
+        raise wrong(one.name, f"{value:g} is not above zero", one.meaning)
+    elif one.kind == "Count" and value != round(value):
+        raise wrong(one.name, f"{value:g} is not a whole number", one.meaning)
+
+
+def place(name: str, value: Any) -> complex:
+    """Return a place given by x and y, or as a complex number. Raises InvalidInput for anything else."""
+    try:
+        found = complex(*value) if isinstance(value, Sequence) and len(value) == 2 else complex(value)
+    except (TypeError, ValueError):
+        raise wrong(name, f"{value!r} are not two numbers", "write (x, y)") from None
+    if not np.isfinite(found):
+        raise wrong(name, f"{value!r} is not finite", "write (x, y)")
+    return found
+
+
+def polar_place(name: str, value: Any) -> complex:
+    """Return a place given by its distance and angle."""
+    found = place(name, value)
+    return complex(found.real * np.exp(1j * found.imag))
+
+
+def wrong(where: str, what: str, remedy: str = "") -> InvalidInput:
+    """Return the error for a parameter."""
+    return InvalidInput(Problem(where, what, remedy))
+
+
+def _plain(word: str) -> str:
+    return "".join(word.lower().replace("_", " ").replace("-", " ").split())
