@@ -72,7 +72,7 @@ C = [78, 46]
 Examples:
   compoundkin new
   compoundkin new linkage.toml
-  compoundkin new four-bar ground=60 crank=20 coupler=50 rocker=40 -o mine.toml
+  compoundkin new four-bar ground=60 crank=20 coupler=50 rocker=40
   compoundkin new slider-crank 20 60 offset=5 -o mine.toml
   compoundkin new --list
 """

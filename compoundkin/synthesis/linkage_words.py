@@ -15,6 +15,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from compoundkin.base.arguments import is_real
+from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.model.geometry import deg
 from compoundkin.model.laws.cam_laws import LAWS
@@ -151,7 +152,7 @@ def linkage(example: str, **meanings: str) -> Callable[[Callable[..., Mechanism]
         def checking(*args: Any, **kwargs: Any) -> Mechanism:
             bound = inspect.signature(function).bind(*args, **kwargs)
             for one in parameters:
-                if one.name in bound.arguments and bound.arguments[one.name] is not None:
+                if one.name in bound.arguments:
                     _check(one, bound.arguments[one.name])
             return function(*args, **kwargs)
 
@@ -165,16 +166,18 @@ def linkage(example: str, **meanings: str) -> Callable[[Callable[..., Mechanism]
 
 def _check(one: LinkageParameter, value: Any) -> None:
     """Raise InvalidInput for a value that is not of its parameter's kind."""
+    if value is None and one.default is None:
+        return
     if one.words:
-        if value not in one.words:
-            raise wrong(one.name, f"{value!r} is none of its words", suggestion(value, list(one.words)))
+        if not (isinstance(value, str) and value in one.words):
+            raise wrong(one.name, f"{short_repr(value)} is none of its words", suggestion(value, list(one.words)))
     elif one.kind == "Place":
         place(one.name, value)
     elif one.kind == "str":
         if not isinstance(value, str):
-            raise wrong(one.name, f"{value!r} is no word", one.meaning)
-    elif not is_real(value) or not np.isfinite(value) or np.ndim(value):
-        raise wrong(one.name, f"{value!r} is not one number", one.meaning)
+            raise wrong(one.name, f"{short_repr(value)} is no word", one.meaning)
+    elif not is_real(value) or np.ndim(value) or not np.isfinite(value):
+        raise wrong(one.name, f"{short_repr(value)} is not one number", one.meaning)
     elif one.kind in ("Length", "Count") and value <= 0:
         raise wrong(one.name, f"{value:g} is not above zero", one.meaning)
     elif one.kind == "Count" and value != round(value):
@@ -185,10 +188,10 @@ def place(name: str, value: Any) -> complex:
     """Return a place given by x and y, or as a complex number. Raises InvalidInput for anything else."""
     try:
         found = complex(*value) if isinstance(value, Sequence) and len(value) == 2 else complex(value)
-    except (TypeError, ValueError):
-        raise wrong(name, f"{value!r} are not two numbers", "write (x, y)") from None
+    except (TypeError, ValueError, OverflowError):
+        raise wrong(name, f"{short_repr(value)} are not two numbers", "write (x, y)") from None
     if not np.isfinite(found):
-        raise wrong(name, f"{value!r} is not finite", "write (x, y)")
+        raise wrong(name, f"{short_repr(value)} is not finite", "write (x, y)")
     return found
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN
 from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.model.attributes import POSITION
 from compoundkin.model.cam_mechanism import cam_mechanism
 from compoundkin.model.elements import Drive, Item, drawn, drive, link
 from compoundkin.model.geometry import deg
@@ -596,7 +597,7 @@ def scissor(stages: Count, arm: Length, low: Length, high: Length, *, unit: str 
         feet = tops
     left, right = feet
     return _made(
-        f"Scissor lift, {stages} stage{'s' if stages > 1 else ''}", unit, [f"{left}.position", "feet.value"],
+        f"Scissor lift, {stages} stage{'s' if stages > 1 else ''}", unit, [f"{left}.{POSITION}", "feet.value"],
         "The platform stays level.",
         link("frame", A=0), link("foot", B=0), *links, link("block", **{right: 0}),
         link("platform", **{left: 0, "T": 1.2 * high}),
