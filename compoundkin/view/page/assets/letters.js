@@ -64,6 +64,7 @@
     // `seen` are the places on paper of all points, by letter; of those that are not known there is none
     place(numbers, seen) {
       const { player, boxes } = this, points = Object.entries(seen), put = [];
+      this.pixels = player.svg.getScreenCTM()?.a || this.pixels;
       boxes.forEach((name, index) => {
         const own = name?.letter && seen[name.letter];
         if (!own || player.parts[index].classList.contains("missing")) return name?.letter && this.lead(name, null);
