@@ -26,6 +26,8 @@ from compoundkin.model.units import FORCES, LENGTHS
 
 # rad/s in a turn a minute.
 RPM = 2.0 * pi / 60.0
+# An effort below this part of what it is the sum of is rounding.
+ROUNDING = 1e-12
 # Gears tried for the least effective torque: so many, over so many powers of ten to either side.
 TRIED, DECADES = 400, 3.0
 
@@ -151,7 +153,13 @@ class Sizing(ShortRepr):
     @property
     def verdict(self) -> str:
         """The smallest motor that does, in words."""
+        if not self.peak:
+            what = "torque" if self.is_angle else "thrust"
+            return f"It needs no {what} in this motion, so that every motor does: give its loads, friction or a run-up."
         best = self.chosen
+        mean = trapezoid(self.torques * self.speeds, self.times) / (self.times[-1] - self.times[0])
+        if mean < -ROUNDING * self.peak * self.speed:
+            return f"It gives {-mean:.3g} W on the average: it drives its shaft, and a motor there only brakes."
         if best is None:
             return "No motor of the list does."
         return f"The smallest that does: {best.motor.name}, gear {best.gear:.3g}."
@@ -305,9 +313,10 @@ def _needed(forces: Forces, driver: str, efficiency: float, design: int) -> Sizi
     own, units = motion.drives[driver], motion.mechanism.stated_units
     value, speed, second = row(own.value), row(own.rate), row(own.second)
     given, rotor = _given(forces, driver)
-    effort = row(np.asarray(forces.drives[driver].effort).reshape(shape)) + row(given)
     # the rotor of a motor that is there goes with that motor: those of the list bring their own
-    effort -= units.inertia * row(rotor) * second
+    parts = [row(np.asarray(forces.drives[driver].effort).reshape(shape)), row(given),
+             -units.inertia * row(rotor) * second]  # fmt: skip
+    effort = sum(parts, np.zeros(shape[1]))
     if not np.isfinite(effort).all():
         raise InvalidInput(
             Problem("motion", "its efforts are not known at all poses", "size it over poses that are assembled")
@@ -316,7 +325,11 @@ def _needed(forces: Forces, driver: str, efficiency: float, design: int) -> Sizi
     newton, length = FORCES[units.force], LENGTHS[units.length]
     metre, factor = (1.0, newton * length) if own.is_angle else (length, newton)
     inertia = (_felt(forces, driver, design) - float(np.mean(row(rotor)))) * units.inertia * factor / metre
-    return Sizing(driver, own.is_angle, times, speed * metre, second * metre, effort * factor, inertia, efficiency, ())
+    # of its parts, and of twice the kinetic energy, which is the torque that turns it within a radian
+    sizes = [float(np.max(np.abs(part))) * factor for part in parts]
+    least = ROUNDING * max(*sizes, inertia * float(np.max(np.abs(speed * metre))) ** 2)
+    torques = np.where(np.abs(effort * factor) <= least, 0.0, effort * factor)
+    return Sizing(driver, own.is_angle, times, speed * metre, second * metre, torques, inertia, efficiency, ())
 
 
 def _felt(forces: Forces, driver: str, design: int) -> float:
@@ -414,4 +427,4 @@ def _against(motor: ListedMotor, rms: float, speed: float, reserve: float, low: 
     if rms > motor.rated:
         yield f"too warm: {rms:.3g} N m for ever, {motor.rated:.3g} rated"
     if reserve < 1.0:
-        yield f"its curve is too low for {100.0 * low:.2g} % of the time"
+        yield f"its curve is too low for {100.0 * low:.3g} % of the time"

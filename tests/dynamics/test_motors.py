@@ -275,6 +275,20 @@ def test_the_rotor_of_a_motor_that_is_there_is_not_needed_twice() -> None:
     assert driven.inertia == pytest.approx(alone.inertia, rel=1e-9)
 
 
+def test_a_motion_that_needs_no_torque_says_so() -> None:
+    """A rotor at constant speed without loads, also where a motor gives what its driver takes again."""
+    for more in ((), (ck.motor("rotor", stall=5.0, no_load=100.0, gear=3.0, efficiency=0.9, inertia=0.001),)):
+        sized = ck.figures.sizing(ck.force_analysis(ck.solve(rotor(*more), speed=20.0)))
+        assert sized.peak == 0.0
+        assert "It needs no torque in this motion" in sized.text()
+
+
+def test_a_machine_that_drives_its_shaft_is_no_load() -> None:
+    """A constant torque of 3 N m drives a rotor at 20 rad/s, 60 W."""
+    sized = ck.figures.sizing(ck.force_analysis(ck.solve(rotor(ck.torque("rotor", 3.0)), speed=20.0)))
+    assert sized.verdict.startswith("It gives 60 W on the average")
+
+
 def test_a_dwell_cools_the_motor() -> None:
     """At rest for three quarters of the time, the effective torque is half of what it is without."""
     whole = np.linspace(0.0, 4.0 * PERIOD[-1], 4001)
