@@ -21,7 +21,7 @@ from compoundkin.dynamics.friction.coulomb_friction import TINY, NotUniqueMotion
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver, PlainStep, states_between
-from compoundkin.dynamics.simulation.driver_chart import DriverChart, HeldSpeed
+from compoundkin.dynamics.simulation.driver_chart import BESIDE, DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
@@ -42,8 +42,9 @@ from compoundkin.dynamics.simulation.simulation_events import (
     stop_watches,
     watches,
 )
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding, is_no_contact
 from compoundkin.dynamics.simulation.tabulated_chart import FASTER, TabulatedChart
+from compoundkin.model.loads.attachments import PairLoad
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.latch import Latch, Release
 from compoundkin.model.loads.stop import Stop
@@ -466,7 +467,7 @@ def _holding(chart: Chart, time: float, state: Number, course: SimulatedCourse) 
     if not isinstance(chart, DriverChart):
         return None
     n = len(chart.free)
-    loads = [one for some in chart.loads for one in some]
+    loads = [one for some in chart.loads for one in some if one.needs_rates and is_no_contact(one)]
     found = [held for held in (_held_by(load, chart, time, state, course) for load in loads) if held is not None]
     return max(found, key=lambda held: held.jump(chart, time, state[:n], state[n : 2 * n]), default=None)
 
@@ -475,10 +476,19 @@ def _held_by(load: Load, chart: DriverChart, time: float, state: Number, course:
     """Return a load as one that holds its present speed, None where it does not jump there or does not hold it."""
     n = len(chart.free)
     values, speeds = state[:n], state[n : 2 * n]
-    given = load.speed_at(chart.state(time, values, speeds).loaded)
+    loaded = chart.state(time, values, speeds).loaded
+    given = load.speed_at(loaded)
     if given is None:
         return None
     pace, speed = _fastest(chart, course, speeds), float(np.ravel(given)[0])
+    plain = load.plain_effort() if isinstance(load, PairLoad) else None
+    if plain is not None:
+        # most loads show by themselves that they do not jump
+        place = float(np.ravel(loaded.coordinate(load.pair).c[0])[0])
+        wide, narrow = (abs(plain(place, speed + part * pace, time) - plain(place, speed - part * pace, time))
+                        for part in (BESIDE, NARROW * BESIDE))  # fmt: skip
+        if not narrow > MOST * wide:
+            return None
     held = HeldSpeed(load, speed if abs(speed) > AT_REST * pace else 0.0, pace)
     if not _holds(held.sides(chart, time, values, speeds)[2]):
         return None
