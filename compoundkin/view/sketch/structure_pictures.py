@@ -92,8 +92,11 @@ def _taken_apart(what: Drawable) -> Structure:
     return structure
 
 
-# Parts are drawn in this part of the size of a sketch.
-PART_OF_SKETCH = 0.52
+# Parts are drawn in this part of the size of a sketch; many up to the larger one, where the sketch then takes half of
+# a row, so that badges are small beside links.
+PART_OF_SKETCH, LARGER_PART, HALF_ROW = 0.52, 0.8, 0.5 * PAPER_WIDTH
+# The margin around a part, for its letters.
+AROUND_PART = 18.0
 # More loops than this are not compared one by one.
 MOST = 40
 # Panels are drawn in this part of the size of a sketch, and no larger than this, in picture units: two of them, or
@@ -108,9 +111,9 @@ SAME = 1e-9
 def groups_picture(scene: Scene, size: float | None) -> Picture:
     """Draw all parts in solving order, each in its own colour."""
     first = window_on(scene)
-    whole = Window(
-        first.scale * PART_OF_SKETCH, first.corner, first.width * PART_OF_SKETCH, first.height * PART_OF_SKETCH
-    )
+    larger = LARGER_PART if len(scene.structure.groups) > FEW else PART_OF_SKETCH
+    share = float(np.clip(HALF_ROW / max(first.width, first.height), PART_OF_SKETCH, larger))
+    whole = Window(first.scale * share, first.corner, first.width * share, first.height * share)
     ground = frozenset((FRAME, *scene.structure.ground.links))
     parts = [
         _mechanism_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")
@@ -144,7 +147,7 @@ def _mechanism_part(
     painter = Painter(scene, whole, links, outer)
     laid = in_layers(painter)
     shapes = by_links(laid)
-    low, wide, tall = panel_around(shape_corners(shapes) or [0j], len(title) * LETTER * WIDE)
+    low, wide, tall = panel_around(shape_corners(shapes) or [0j], len(title) * LETTER * WIDE, AROUND_PART)
     shapes = moved_shapes(shapes, -low)
     labels = [label.moved(-low) for label in labels_of(painter, laid, LABELS)]
     shapes += label_shapes(scene, placed(labels, shapes, wide, tall))
