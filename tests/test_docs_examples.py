@@ -53,7 +53,8 @@ def test_the_page_on_outlines_prints_what_it_shows(
     ]
 
 
-def test_the_page_on_machines_prints_what_it_shows() -> None:
+def test_the_page_on_machines_prints_what_it_shows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     page = (DOCS / "machine.md").read_text("utf-8")
     lines = [line[4:] for line in page.splitlines() if line.startswith("    ")]
     names: dict[str, Any] = {}
