@@ -481,8 +481,7 @@ def _held_by(load: Load, chart: DriverChart, time: float, state: Number, course:
     if given is None:
         return None
     pace, speed = _fastest(chart, course, speeds), float(np.ravel(given)[0])
-    plain = load.plain_effort() if isinstance(load, PairLoad) else None
-    if plain is not None:
+    if isinstance(load, PairLoad) and (plain := load.plain_effort()) is not None:
         # most loads show by themselves that they do not jump
         place = float(np.ravel(loaded.coordinate(load.pair).c[0])[0])
         wide, narrow = (abs(plain(place, speed + part * pace, time) - plain(place, speed - part * pace, time))
