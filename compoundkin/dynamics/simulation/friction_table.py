@@ -565,7 +565,7 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     table = chart.table
     assert table is not None
     layout = _layout(chart, table.motion)
-    sizes = _sizes_of_scales(layout, table.motion)
+    sizes = _sizes_of_scales(layout, table.motion) | dict(table.least)
     pieces = accurate_pieces(table.course, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
         return None

@@ -334,6 +334,7 @@ class DriveTable:
     pieces: Sequence[TablePiece]
     starts: Sequence[float]
     course: TableCourse
+    least: Mapping[int, float]  # sizes of scales whose rows may be rounding alone
 
     @property
     def motion(self) -> Motion:
@@ -368,15 +369,31 @@ def drive_table(
             values = np.linspace(low, high, POSES)
             motion = solve(mechanism, {driver: values}, speed=1.0, acceleration=0.0, order=2, modes=first)
             course = TableCourse(motion, (low, high))
-            found = accurate_pieces(course, partial(drive_terms, loads=loads), DRIVE_SCALES, pairs)
+            least = {FORCES: _usual_force(motion, loads)}
+            found = accurate_pieces(course, partial(drive_terms, loads=loads), DRIVE_SCALES, pairs, least)
     except CompoundkinError:
         return None
     whole = with_bridges(found, high - low)
-    return DriveTable(low, high, whole, [piece.low for piece in whole], course)
+    return DriveTable(low, high, whole, [piece.low for piece in whole], course, least)
 
 
 # The scales of the rows of a table by number: the bias is a derivative of the inertia; both forces have one scale.
 DRIVE_SCALES = (0, 0, 1, 1)
+FORCES = 1
+
+
+def _usual_force(motion: Motion, loads: Sequence[Sequence[Load]]) -> float:
+    """Return the usual size of forces along a driver: in dwells, and where weights do no work, they are rounding alone.
+
+    It is a median, for next to limit positions forces grow beyond all bounds.
+    """
+    rows, fall = drive_terms(motion, loads), abs(complex(first_entry(motion.mechanism.free_fall)))
+    weights = sum((np.ravel(fall * own.mass * np.abs(own.centre[1])) for own in mass_motions(motion)), np.zeros(1))
+    usual = 0.0
+    for row in (weights, np.abs(rows[2]), np.abs(rows[3])):
+        known = row[np.isfinite(row) & (row > 0.0)]
+        usual = max(usual, float(np.median(known)) if known.size else 0.0)
+    return usual
 
 
 @dataclass(frozen=True, eq=False)
