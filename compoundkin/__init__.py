@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from compoundkin.view.animation import animate
     from compoundkin.view.plot import plot
     from compoundkin.view.report import page, report
+    from compoundkin.view.report.exercises import exercise
     from compoundkin.view.report.forces_section import sheet
     from compoundkin.view.sketch import draw
 
@@ -109,6 +110,7 @@ __all__ = [
     "drive",
     "dyads",
     "effort",
+    "exercise",
     "expect",
     "face",
     "force",
@@ -176,6 +178,7 @@ _LATE = {
     "decompose": "structure",
     "draw": "view.sketch",
     "dyads": "dimensional.dyads",
+    "exercise": "view.report.exercises",
     "force_analysis": "dynamics.force_analysis",
     "gaps": "kinematics.gaps",
     "instant_centres": "analysis.centres.instant_centres",

@@ -42,6 +42,7 @@ from compoundkin.view.animation import Animation
 from compoundkin.view.page import Page
 from compoundkin.view.plot import Plot
 from compoundkin.view.report import Report
+from compoundkin.view.report.exercises import Exercise, Exercises
 from compoundkin.view.sketch import Picture
 
 __all__ = [
@@ -57,6 +58,8 @@ __all__ = [
     "Configuration",
     "Configurations",
     "Dyads",
+    "Exercise",
+    "Exercises",
     "Exported",
     "Finding",
     "Forces",

@@ -152,6 +152,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "roll_around": {"link": "a", "on": "b", "centre_at": "A", "at": "B", "circle": 3.0, "radius": 1.0,
                         "inside": False, "phase": None, "name": "n"},
         "save": {"what": motion, "path": os.devnull + "/x.csv"},
+        "exercise": {"mechanism": h["bar"], "vary": 0.1, "seed": 0, "count": 1, "questions": "mobility"},
         "sheet": {"forces": h["forces"], "at": None, "pose": 1, "design": 0},
         "simulate": {"mechanism": h["heavy"], "start": {"upper": (0.1, 0.2)}, "until": 0.1, "prescribed": {"fore": 1.0},
                      "events": {}, "stop": (), "restitution": None,

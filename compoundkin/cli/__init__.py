@@ -38,6 +38,7 @@ VERBS = {
     "optimise": "Better dimensions: what shall be least, what may change, what must hold.",
     "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
     "synthesise": "Mechanisms that do a task: poses, points, functions, swings, strokes.",
+    "exercise": "Variants of an exercise: sheets, worked solutions, a table of answers.",
     "import": "A mechanism out of another program's file or link: PMKS+, Linkage, pyslvs and others.",
     "export": "A file for another program, or a function in C, Python, JavaScript or MATLAB.",
     "compare": "Two mechanisms side by side: structure, dimensions, how far apart they move.",

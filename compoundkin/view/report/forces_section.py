@@ -121,13 +121,13 @@ def _force_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     yield Paragraph(f"Assumed: {'; '.join(assumptions(sample, forces))}.")
     if mechanism.masses:
         yield Paragraph("Masses, each mass centre in its link's own frame:")
-        yield _masses_table(forces)
+        yield masses_table(forces)
         assumed = [f"{one.link}: {one.assumed}" for one in forces.mechanism.masses.values() if one.assumed]
         if assumed:
             yield Paragraph(f"Assumed, for it was left out: {'; '.join(assumed)}.")
     if mechanism.loads:
         yield Paragraph("Loads:")
-        yield _loads_table(forces)
+        yield loads_table(forces)
     yield from _undetermined_blocks(forces)
     yield from _singular_blocks(sample, forces)
     yield from reactions_blocks(sample, forces)
@@ -246,7 +246,7 @@ def _friction_clause(forces: Forces) -> str:
     return f"Coulomb friction against the motion, coupled to the reactions: {listed(parts)}; none elsewhere"
 
 
-def _masses_table(forces: Forces) -> TableBlock:
+def masses_table(forces: Forces) -> TableBlock:
     """Return the masses as written, of several designs the first."""
     units, mechanism = forces.units, forces.motion.mechanism
     columns = (Column("link"), Column("mass", units.mass, "each"), Column("mass centre"),
@@ -258,7 +258,7 @@ def _masses_table(forces: Forces) -> TableBlock:
     return TableBlock(columns, tuple(rows))
 
 
-def _loads_table(forces: Forces) -> TableBlock:
+def loads_table(forces: Forces) -> TableBlock:
     """Return the loads as written: kind, links, numbers."""
     rows = [
         (one.name, one.title, ", ".join(one.links), _load_values(one)) for one in forces.motion.mechanism.loads.values()
