@@ -58,7 +58,10 @@ def loads(rng: np.random.Generator, mechanism: ck.Mechanism) -> Iterator[Any]:
 
 def stop(rng: np.random.Generator, mechanism: ck.Mechanism, pair: Any, size: float) -> Iterator[Any]:
     """Yield a stop on both sides of where a pair is drawn, rigid or elastic."""
-    motion = ck.solve(mechanism, {name: [value] for name, value in drawn_values(mechanism).items()})
+    try:
+        motion = ck.solve(mechanism, {name: [value] for name, value in drawn_values(mechanism).items()})
+    except ValueError:  # a sketch with arcs has no drawn values there
+        return
     here, unit = float(np.ravel(motion.pairs[pair.name].value)[0]), 1.0 if pair.free_is_angle else size
     low, high = here - unit * float(rng.uniform(0.2, 2.0)), here + unit * float(rng.uniform(0.2, 2.0))
     if rng.random() < 0.5:

@@ -16,6 +16,7 @@ from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.results import Simulation
 from tests.dynamics.cases import SI
 from tests.dynamics.moving_cases import five_bar, slider_crank
+from tests.dynamics.random_machines import tried
 
 G = 9.81
 LOWER, UPPER = 2.0, 1.0
@@ -337,3 +338,11 @@ def test_nothing_is_searched_for_at_rest_where_no_load_depends_on_time(monkeypat
     slipped = ck.simulate(rising, start=0.0, until=3.0)
     assert [event.name for event in slipped.events] == ["sticks", "slips"]
     assert slipped.events[1].time == pytest.approx(0.81, rel=1e-9)
+
+
+@pytest.mark.parametrize("number", [1, 2, 8, 12])
+def test_random_machines_with_motors_stops_and_friction(number: int) -> None:
+    """`python -m tests.dynamics.random_machines --seed 6` tries more; 8 rests in its friction, which took 15 s to tell."""
+    found = tried(6, number, 30.0)
+    assert found is not None
+    assert found.how == "done"
