@@ -21,18 +21,18 @@ from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.scene import fitted_window
 from compoundkin.view.sketch.shapes import Polygon, Polyline
 
-FOLDER = Path(__file__).parents[1] / "docs" / "figures"
-FIRST = Path(__file__).parents[1] / "docs" / "index.md"
+DOCS = Path(__file__).parents[1] / "docs"
+FOLDER = DOCS / "figures"
 SIX_BAR, AT = load("six-bar"), ck.deg(35)
 
 
-def crank_rocker() -> ck.results.Picture:
-    """What the first page makes: its code, run here."""
-    code = re.findall(r"```python\n(.*?)```", FIRST.read_text(encoding="utf-8"), re.DOTALL)
+def made_on(page: str, name: str = "picture") -> ck.results.Picture:
+    """What a page makes under a name: its code, run here."""
+    code = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(encoding="utf-8"), re.DOTALL)
     names: dict[str, Any] = {}
     with TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
         exec("".join(code), names)
-    found: ck.results.Picture = names["picture"]
+    found: ck.results.Picture = names[name]
     return found
 
 
@@ -114,7 +114,7 @@ def cognates() -> ck.results.Picture:
 
 FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "moving": lambda: ck.animate(SIX_BAR, paths="G"),
-    "crank-rocker": crank_rocker,
+    "crank-rocker": lambda: made_on("index.md"),
     "six-bar": six_bar,
     "apart": lambda: ck.draw(posed(), kind="groups"),
     "graph": lambda: ck.draw(SIX_BAR, kind="graph"),
@@ -134,6 +134,11 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "along-bars": lambda: ck.draw(load("engine-gas-pressure"), ck.deg(75), kind="bending-moment"),
     "burmester": burmester,
     "cognates": cognates,
+    "student-four-bar": lambda: made_on("for-students.md", "four_lengths"),
+    "student-construction": lambda: made_on("for-students.md", "construction"),
+    "student-velocities": lambda: made_on("for-students.md", "velocities"),
+    "student-centres": lambda: made_on("for-students.md", "crossings"),
+    "engineer-forces": lambda: made_on("for-engineers.md", "bodies"),
     "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 

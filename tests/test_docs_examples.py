@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import inspect
 import re
+import shlex
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import compoundkin as ck
+from compoundkin.cli import cli
 
 DOCS = Path(__file__).parents[1] / "docs"
+READERS = ["for-students.md", "for-engineers.md", "for-programmers.md"]
 
 
 @pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md", "machine.md", "simulation.md"])
@@ -38,6 +42,32 @@ def test_the_page_on_synthesis_prints_what_it_shows(capsys: pytest.CaptureFixtur
     for code, shown in re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL):
         exec(code, names)
         assert capsys.readouterr().out == shown
+
+
+@pytest.mark.parametrize("page", READERS)
+def test_ten_minutes_of_a_reader_are_true(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text, names, shown = (DOCS / page).read_text("utf-8"), dict[str, Any](), ""
+    for kind, block in re.findall(r"```(python|text)\n(.*?)```", text, re.DOTALL):
+        if kind == "python":
+            exec(block, names)
+            shown = capsys.readouterr().out
+        else:
+            assert shown == block
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("page", READERS)
+def test_the_commands_of_a_reader_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for block in re.findall(r"```sh\n(.*?)```", (DOCS / page).read_text("utf-8"), re.DOTALL):
+        for line in block.splitlines():
+            words = shlex.split(line)[1:]
+            if not (words[-1].endswith(".dxf") and not find_spec("ezdxf")):
+                ran = CliRunner().invoke(cli, words)
+                assert ran.exit_code == 0, f"{line}\n{ran.output}"
 
 
 def test_the_page_on_outlines_prints_what_it_shows(
