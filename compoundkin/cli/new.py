@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from pathlib import Path
 
 import click
@@ -67,7 +69,16 @@ C = [78, 46]
 """
 
 
+class WithNumbers(click.Command):
+    """A command whose words may be negative numbers, where others have options: slider-crank 20 60 -5."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the words; a blank before a number says that it is no option."""
+        return super().parse_args(ctx, [f" {one}" if re.fullmatch(r"-[\d.][\d.,e+-]*", one) else one for one in args])
+
+
 @click.command(
+    cls=WithNumbers,
     epilog="""\b
 Examples:
   compoundkin new
@@ -75,7 +86,7 @@ Examples:
   compoundkin new four-bar ground=60 crank=20 coupler=50 rocker=40
   compoundkin new slider-crank 20 60 offset=5 -o mine.toml
   compoundkin new --list
-"""
+""",
 )
 @click.argument("words", nargs=-1, metavar="[PATH | LINKAGE NAME=VALUE ...]")
 @click.option("-o", "--to-file", "path", type=click.Path(), metavar="PATH", help="Where to write it.")
@@ -103,7 +114,7 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool)
         raise InvalidInput(Problem(str(target), "only TOML files have comments", "choose a name that ends in .toml"))
     text = linkage_file(name, given, target) if is_linkage else starting_file(target)
     write_new(target, text.encode("utf-8"), force)
-    say(f"Wrote {target}; see it with: compoundkin report {target}")
+    say(f"Wrote {target}; see it with: compoundkin report {shlex.quote(str(target))}")
     return 0
 
 

@@ -6,6 +6,7 @@ Lengths and angles are as books give them; what cannot be assembled is refused w
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -713,17 +714,20 @@ def planetary(
 def linkage_of(specification: str) -> Mechanism | None:
     """Return the linkage of a specification such as "four-bar:60,20,50,40", or None for a text that is none.
 
-    Parts are separated by commas, blanks or semicolons. Raises InvalidInput.
+    Parts are separated by commas, blanks or semicolons. Raises InvalidInput, and UnknownName for the name of a linkage
+    with a slip in it.
 
     >>> list(linkage_of("four-bar:60,20,50,40,point=30,20").links["coupler"].points)
     ['B', 'C', 'P']
     >>> linkage_of("six-bar.toml") is None
     True
     """
-    if not is_linkage(specification):
-        return None
     name, _, rest = specification.partition(":")
-    kind = LINKAGES[name.strip()]
+    if not is_linkage(specification):
+        if rest and get_close_matches(_spelled(name), list(LINKAGES), n=1):
+            kind_named(name)
+        return None
+    kind = kind_named(name)
     places = {one.name for one in kind.parameters if one.kind == "Place"}
     parts: list[str] = []
     for part in rest.replace(";", ",").replace(" ", ",").split(","):
@@ -742,11 +746,15 @@ def kinds() -> tuple[LinkageKind, ...]:
 def is_linkage(specification: str) -> bool:
     """Return whether a text names a linkage with its lengths, possible or not."""
     name, colon, _ = specification.partition(":")
-    return bool(colon) and name.strip() in LINKAGES
+    return bool(colon) and _spelled(name) in LINKAGES
 
 
 def kind_named(name: str) -> LinkageKind:
-    """Return the kind of a name. Raises UnknownName with the nearest."""
-    if name not in LINKAGES:
-        raise UnknownName(Problem(name, "there is no such linkage", suggestion(name, list(LINKAGES))))
-    return LINKAGES[name]
+    """Return the kind of a name, "four-bar" as well as Python's "four_bar". Raises UnknownName with the nearest."""
+    if _spelled(name) not in LINKAGES:
+        raise UnknownName(Problem(name, "there is no such linkage", suggestion(_spelled(name), list(LINKAGES))))
+    return LINKAGES[_spelled(name)]
+
+
+def _spelled(name: str) -> str:
+    return name.strip().lower().replace("_", "-")

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.errors import InvalidInput
+from compoundkin.errors import InvalidInput, UnknownName
 from compoundkin.synthesis.linkages import kinds, linkage_of
 
 KINDS = {kind.name: kind for kind in kinds()}
@@ -185,3 +185,26 @@ def test_a_specification_does_wherever_a_file_does(tmp_path: Path) -> None:
         assert run(verb, "four-bar:60,20,50,40").exit_code == 0
     assert run("draw", "slider-crank:20,60,offset=5", "-o", str(tmp_path / "s.svg")).exit_code == 0
     assert all(name in run("new", "--list").stdout for name in KINDS)
+
+
+def test_names_are_known_as_python_spells_them_and_with_a_slip() -> None:
+    for name in ("four_bar", "Four-Bar", " four-bar "):
+        made = linkage_of(f"{name}:60,20,50,40")
+        assert made is not None
+        assert made.title == "Four-bar linkage"
+    with pytest.raises(UnknownName, match="did you mean 'five-bar'"):
+        linkage_of("fivebar:60,20,50,40,20")
+    for other in ("C:/drafts/press.toml", "https://example.org/?mech=1", "press.toml:1", "four-bar"):
+        assert linkage_of(other) is None
+
+
+def test_a_negative_number_is_no_option(tmp_path: Path) -> None:
+    path = tmp_path / "my linkage.toml"
+    made = run("new", "slider-crank", "20", "60", "-5", "-o", str(path))
+    assert made.exit_code == 0, made.output
+    by_name = make.slider_crank(20, 60, offset=-5)
+    assert one(ck.solve(ck.load(path), [0.3]).points["B"].x) == pytest.approx(
+        one(ck.solve(by_name, [0.3]).points["B"].x)
+    )
+    assert f"compoundkin report {shlex.quote(str(path))}" in made.output
+    assert "-20 is not above zero" in run("new", "four-bar", "60", "-20", "50", "40").output
