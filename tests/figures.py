@@ -143,6 +143,11 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
 }
 
 
+# The figures of the paper, whose printers take no SVG.
+PAPER = ("apart", "burmester")
+
 if __name__ == "__main__":
     for name, figure in FIGURES.items():
         figure().save(FOLDER / f"{name}.svg")
+    for name in PAPER:
+        FIGURES[name]().save(FOLDER.parents[1] / "paper" / f"{name}.png")

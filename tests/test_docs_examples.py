@@ -158,3 +158,10 @@ def test_the_help_of_an_arc_names_its_parameters() -> None:
     named = re.findall(r"`(\w+)`", (ck.arc.__doc__ or "").partition("Held:")[0])
     assert "centre_at" in named
     assert set(named) <= set(inspect.signature(ck.arc).parameters)
+
+
+def test_the_paper_cites_what_its_bibliography_has() -> None:
+    paper = DOCS.parent / "paper"
+    text, bibliography = ((paper / name).read_text("utf-8") for name in ("paper.md", "paper.bib"))
+    assert set(re.findall(r"@(\w+)", text)) == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.MULTILINE))
+    assert all((paper / picture).is_file() for picture in re.findall(r"\]\((\w+\.png)\)", text))

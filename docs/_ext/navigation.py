@@ -14,7 +14,7 @@ from sphinx.application import Sphinx
 CONTENTS: dict[str, tuple[str, ...]] = {
     "Start": (
         *("Quickstart <self>", "for-students", "for-engineers", "for-programmers", "notebooks/first*", "notebooks/*"),
-        *("linkages", "press-drive", "outlines", "loads", "machine", "simulation"),
+        *("linkages", "press-drive", "outlines", "loads", "machine", "simulation", "exercises"),
     ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "synthesis", "pictures", "animation", "plots", "page"),
