@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
 from compoundkin.files import toml_text
-from compoundkin.files.parsed_document import Syntax, known_syntax, parsed, text_of, too_deep, unreadable
+from compoundkin.files.parsed_document import Syntax, known_syntax, located, parsed, text_of, too_deep, unreadable
 from compoundkin.files.reader import read
 from compoundkin.files.shipped_mechanisms import resolve
 from compoundkin.files.writer import document
@@ -36,7 +36,11 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
     # a word alone is a name of the catalog, unless there is such a file
     is_name = isinstance(path, str) and not Path(path).suffix and Path(path).name == path
     file = resolve(path) if is_name else path
-    return loads(*text_of(file, "mechanism"), str(path))
+    text, syntax = text_of(file, "mechanism")
+    try:
+        return loads(text, syntax, str(path))
+    except InvalidMechanism as error:
+        raise (located(error, text) if syntax == "toml" else error) from None
 
 
 def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -109,3 +110,25 @@ def test_dimensions_by_name() -> None:
         ck.with_dimensions(bar, {"crank.X": 22})
     published = ck.load("crank-rocker")
     assert not ck.with_dimensions(published, {"crank.B.x": 2.1}).expectations
+
+
+def test_problems_of_a_file_have_line_column_and_nearest_word(file: Path) -> None:
+    text = file.read_text().replace('link = "crank"', 'link = "crnk"')
+    file.write_text(text.replace("B = [25, 0] }", 'B = [25, "a"] }'))
+    with pytest.raises(ck.errors.InvalidMechanism) as told:
+        ck.load(file)
+    lines = file.read_text().splitlines()
+    for problem in told.value.problems:
+        name, line, column = re.fullmatch(r"(\S+) \(line (\d+), column (\d+)\)", problem.where).groups()  # type: ignore[union-attr]
+        assert lines[int(line) - 1][int(column) - 1 :].startswith(re.sub(r"\W", "", name.rpartition(".")[2]))
+    assert any(one.remedy == "did you mean 'crank'?" for one in told.value.problems)
+    assert run("report", file)[0] != 0
+
+
+def test_one_line_tells_of_the_schema(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file.write_text(file.read_text().replace("values =", "valeus ="))
+    with pytest.raises(SystemExit):
+        cli.main(["report", str(file)], standalone_mode=True)
+    told = capsys.readouterr().err
+    assert told.count("#:schema") == 1
+    assert "drives[0].valeus (line 28, column 1)" in told
