@@ -130,6 +130,12 @@ def report_or_table_options(command: F) -> F:
     return _with_format(to_file(here)(_with_whole(command)))
 
 
+def report_or_mechanism_options(command: F) -> F:
+    """Add the options of a report or a changed mechanism; the command decides by the suffix."""
+    here = "Write the report here, or the mechanism with its new dimensions: .toml."
+    return _with_format(to_file(here)(_with_whole(command)))
+
+
 def _with_format(command: F) -> F:
     text = "Text unless PATH ends in .md, .json or .html."
     # read first, as it overrules the suffix

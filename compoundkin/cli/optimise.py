@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_of
+from compoundkin.base.suffixes import file_format, suffix_for, suffix_of
 from compoundkin.cli.drive_options import explain_gaps, motion_options, read_assembly_modes, split_names
-from compoundkin.cli.file_options import mechanism_argument, put_report, report_or_table_options, solvable_structure
+from compoundkin.cli.file_options import mechanism_argument, put_report, report_or_mechanism_options, solvable_structure
 from compoundkin.cli.shell import counting, say
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ Examples:
 @click.option("--starts", type=click.IntRange(min=1), default=64, show_default=True, help="How many searches begin.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Makes the search repeatable.")
 @motion_options
-@report_or_table_options
+@report_or_mechanism_options
 def command(file: str, form: str | None, path: str | None, **options: Any) -> int:
     """Find the dimensions with which a mechanism does best, and report what changed and how sure it is.
 
@@ -58,7 +58,7 @@ def command(file: str, form: str | None, path: str | None, **options: Any) -> in
     """
     from compoundkin.view.report.study_reports import optimum_report
 
-    is_mechanism = path is not None and form is None and suffix_of(path) in SUFFIXES["mechanism"]
+    is_mechanism = path is not None and form is None and suffix_of(path) == suffix_for("mechanism", "toml")
     if path is not None and form is None and not is_mechanism:
         file_format("report", path)
     found = search(solvable_structure(file, form, None), options)

@@ -25,7 +25,8 @@ from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, disp
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.dyads import PR, RR, Dyad
-from compoundkin.dimensional.linkages import COUPLER, INPUT, OUTPUT, POINT, Linkage, of_dyads
+from compoundkin.dimensional.linkages import COUPLER, POINT, Linkage, of_dyads
+from compoundkin.dimensional.tasks import INPUT, OUTPUT
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.attributes import POSITION
 from compoundkin.model.elements import Drive, Item, drawn, drive, link

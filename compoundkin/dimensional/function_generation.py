@@ -27,8 +27,16 @@ from compoundkin.base.arrays import TURN, Number, wrapped
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dimensional.dyads import PR, RP, RR, Dyad, Dyads, dyads_of
-from compoundkin.dimensional.linkages import COUPLER, INPUT, OUTPUT, Candidates, Linkage, of_dyads
-from compoundkin.dimensional.tasks import FunctionTask, PoseTask, StrokeTask, SwingTask, chebyshev_spacing
+from compoundkin.dimensional.linkages import COUPLER, Candidates, Linkage, of_dyads
+from compoundkin.dimensional.tasks import (
+    INPUT,
+    OUTPUT,
+    FunctionTask,
+    PoseTask,
+    StrokeTask,
+    SwingTask,
+    chebyshev_spacing,
+)
 from compoundkin.model.elements import link
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import slide

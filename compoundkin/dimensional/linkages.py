@@ -15,6 +15,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.dimensional.dyads import PR, RP, RR, Dyad
+from compoundkin.dimensional.tasks import INPUT, OUTPUT
 from compoundkin.model.attributes import ANGLE, POSITION
 from compoundkin.model.elements import Item, Link, drawn, drive, link
 from compoundkin.model.geometry import FRAME
@@ -23,7 +24,6 @@ from compoundkin.model.pairs import slide
 
 # The coupler's name where a task names no body, and its point.
 COUPLER, POINT = "coupler", "P"
-INPUT, OUTPUT = "input", "output"
 # What pairs of dyads are called.
 TITLES = {
     (RR, RR): "Four-bar",

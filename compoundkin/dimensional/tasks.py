@@ -15,6 +15,8 @@ from compoundkin.base.arguments import checked, planar_numbers, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr, count_phrase, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.validation import PRINTABLE, is_name
 
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
@@ -22,6 +24,8 @@ SAME = 1e-9
 # A function's error is seen at so many places of its range.
 WHOLE = 181
 TRANSMISSION, COMPACTNESS, ACCURACY = "transmission", "compactness", "accuracy"
+# Links on the frame, beside the body of a task.
+INPUT, OUTPUT = "input", "output"
 PREFERENCES = (TRANSMISSION, COMPACTNESS, ACCURACY)
 
 
@@ -49,6 +53,8 @@ class Conditions(ShortRepr):
         if not 0.0 <= transmission < np.pi / 2:
             raise InvalidInput(Problem("transmission", f"{transmission:g} is no transmission angle", "0 to pi / 2"))
         known = () if ground is None else tuple(places("ground", ground).tolist())
+        if len(set(known)) < len(known):
+            raise InvalidInput(Problem("ground", "a place is given twice", "no two fixed pivots are at one place"))
         return cls(_polygon(region), _bounds(lengths), known, transmission, turning, prefer)
 
     def holds(self, place: complex) -> bool:
@@ -264,6 +270,15 @@ class DwellTask(Task):
         return f"a swing of {np.rad2deg(self.swing):.6g} degrees with dwells of {first} and {second}"
 
 
+def _check_body(link: Any) -> None:
+    """Check that a body has a name of its own beside the links that guide it. Raises InvalidInput."""
+    taken = (FRAME, INPUT, OUTPUT)
+    if link in taken:
+        raise InvalidInput(Problem("link", f"another link is called {link!r}", "give the body a name of its own"))
+    if not isinstance(link, str) or not is_name(link):
+        raise InvalidInput(Problem("link", f"{link!r} is not a name", PRINTABLE))
+
+
 @checked
 def poses(
     link: str,
@@ -282,6 +297,7 @@ def poses(
     >>> poses("plate", [(0, 0, 0), (1, 0, 0.5), (1, 1, 1.0)]).in_words
     'plate through 3 poses'
     """
+    _check_body(link)
     z, u = read_poses("poses", poses)
     rates = {key: _twists(key, given, len(z)) for key, given in
              (("velocities", velocities), ("accelerations", accelerations))}  # fmt: skip
@@ -328,6 +344,7 @@ def mixed(*, poses: Any, points: Any, link: str = "coupler", tolerance: float = 
     >>> mixed(poses=[(0, 0, 0), (1, 0, 0.5)], points=[(2, 1)]).in_words
     'coupler through 2 poses and 1 point'
     """
+    _check_body(link)
     z, u = read_poses("poses", poses)
     found = places("points", points)
     every = np.concatenate([z, found])

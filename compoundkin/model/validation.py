@@ -28,7 +28,7 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.prescribed_motion import PrescribedMotion
 
-_PRINTABLE = "use printable text without dots, commas or outer blanks"
+PRINTABLE = "use printable text without dots, commas or outer blanks"
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
 ZERO_LENGTH = 1e-12
 # The numbers that a driver states of its coordinate.
@@ -69,15 +69,15 @@ def _naming_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
         yield Problem("links", f"no link is called {FRAME!r}", remedy)
     seen: set[tuple[str, str]] = set()
     for where, kind, name in _named_elements(mechanism):
-        if not _is_name(name):
-            yield Problem(where, f"{name!r} is not a name", _PRINTABLE)
+        if not is_name(name):
+            yield Problem(where, f"{name!r} is not a name", PRINTABLE)
         if (kind, name) in seen:
             one = "there is one frame: give all fixed points to it; " if (kind, name) == ("link", FRAME) else ""
             yield Problem(where, f"the name {name!r} is used twice", f"{one}names are unique")
         seen.add((kind, name))
     for letter in mechanism.carriers:
-        if not _is_name(letter):
-            yield Problem(f"points.{letter}", f"{letter!r} is not a name", _PRINTABLE)
+        if not is_name(letter):
+            yield Problem(f"points.{letter}", f"{letter!r} is not a name", PRINTABLE)
         if letter in mechanism.links:
             yield Problem(f"links.{letter}", "a link and a point have the same name", "rename one of them")
 
@@ -94,7 +94,8 @@ def _named_elements(mechanism: MechanismDefinition) -> Iterator[tuple[str, str, 
         yield f"{DRIVES}[{index}].name", "drive", drive.name
 
 
-def _is_name(name: str) -> bool:
+def is_name(name: str) -> bool:
+    """Return whether a text may be a name."""
     return bool(name) and name == name.strip() and _is_printable(name)
 
 
@@ -534,7 +535,7 @@ def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterat
     for where, item in placed_loads(mechanism):
         kind = "load" if isinstance(item, Load) else item.title
         if isinstance(item, Load) and not _is_printable(item.name):
-            yield Problem(f"{where}.name", f"{item.name!r} is not a name", _PRINTABLE)
+            yield Problem(f"{where}.name", f"{item.name!r} is not a name", PRINTABLE)
         if (kind, meant := _load_identity(item, names)) in seen and isinstance(item, Load):
             yield Problem(where, f"the name {item.name!r} is used twice", "names are unique: give one of them a name")
         elif (kind, meant) in seen:
@@ -674,7 +675,7 @@ def _repeated_outlines(mechanism: MechanismDefinition) -> Iterator[Problem]:
     seen = set[str]()
     for where, item in placed_outlines(mechanism):
         if not _is_printable(item.name):
-            yield Problem(f"{where}.name", f"{item.name!r} is not a name", _PRINTABLE)
+            yield Problem(f"{where}.name", f"{item.name!r} is not a name", PRINTABLE)
         if item.name in seen:
             yield Problem(where, f"the name {item.name!r} is used twice", "give one of both outlines a name")
         seen.add(item.name)

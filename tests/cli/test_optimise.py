@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 from pathlib import Path
 
@@ -68,3 +69,13 @@ def test_what_is_wrong_is_named(args: tuple[str, ...], said: str) -> None:
     done = run(*CRANK_ROCKER, *args)
     assert done.exit_code == 2
     assert said in done.stderr
+
+
+def test_a_json_file_is_the_report_and_its_help_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "better.json"
+    assert (
+        run(*CRANK_ROCKER, "--free", "crank.B.x=1:3", "--target", "rocker.angle.stroke=60", "-o", str(path)).exit_code
+        == 0
+    )
+    assert "sections" in json.loads(path.read_text(encoding="utf-8"))
+    assert ".csv" not in run("--help").stdout

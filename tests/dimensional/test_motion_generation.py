@@ -438,3 +438,17 @@ def test_two_poses_and_a_velocity_have_a_dyad_for_each_centre():
         moved = complex(*speed[:2]) + 1j * speed[2] * u[0] * crank.moving
         arm = z[0] + u[0] * crank.moving - crank.fixed
         assert abs((np.conj(moved) * arm).real) < 1e-12 * abs(moved) * abs(arm) + 1e-13
+
+
+@pytest.mark.parametrize("link", ["frame", "input", "output", "", "a.b", " plate"])
+def test_a_body_has_a_name_of_its_own(link: str) -> None:
+    with pytest.raises(ck.errors.InvalidInput, match="link: "):
+        ck.tasks.poses(link, [(0, 0, 0), (1, 0.4, 0.35), (1.6, 1.1, 0.7)])
+    with pytest.raises(ck.errors.InvalidInput, match="link: "):
+        ck.tasks.mixed(poses=[(0, 0, 0), (1, 0, 0.5)], points=[(2, 1)], link=link)
+
+
+def test_two_fixed_pivots_are_at_two_places() -> None:
+    lid = ck.tasks.poses("lid", [(0, 0, 0), (1, 0.4, 0.35), (1.6, 1.1, 0.7)])
+    with pytest.raises(ck.errors.InvalidInput, match="ground: a place is given twice"):
+        ck.synthesise(lid, ground=[(-0.6, -1.2), (-0.6, -1.2)])
