@@ -42,6 +42,8 @@ CALLS = {
     "simulate": ["simulate engine-gas-pressure --until 0.01"],
     "study": ["study study.toml"],
     "optimise": ["optimise crank-rocker --free crank.B.x=1:3 --least rocker.angle.stroke --starts 2"],
+    "synthesise": ["synthesise task.toml"],
+    "exercise": ["exercise four-bar:60,20,50,40 --count 2 -o exercises"],
     "mcp": ["mcp"],
     "tolerance": ["tolerance crank-rocker --tolerance crank.B=0.05"],
     "import": ["import crank-rocker.linkage2 -o imported.toml"],
@@ -61,7 +63,13 @@ mechanism = "crank-rocker"
 outputs = ["rocker.angle.stroke"]
 
 [dimensions]
-"crank.B" = { centre = [14, 0], within = 0.5 }
+"crank.B" = { centre = [2, 0], within = 0.1 }
+"""
+TASK = """\
+format = 1
+task = "swing"
+angle = 40
+time_ratio = 1.25
 """
 
 
@@ -105,7 +113,8 @@ def tried(name: str, requirements: list[str], folder: Path) -> Iterator[str]:
     command = str(programs / "compoundkin")
     run([command, "report", "six-bar"], work)
     yield f"{name}: installed, first report after {time.perf_counter() - start:.0f} s"
-    (work / "study.toml").write_text(STUDY, encoding="utf-8")
+    for file, text in (("study.toml", STUDY), ("task.toml", TASK)):
+        (work / file).write_text(text, encoding="utf-8")
     run([command, "export", "crank-rocker", "-o", "crank-rocker.linkage2"], work)
     for call in (call for calls in CALLS.values() for call in calls):
         done = _run([command, *call.split()], work)

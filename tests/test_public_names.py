@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 
 import compoundkin as ck
+from compoundkin.cli import VERBS
+from tests.packages import CALLS
 from tests.source import FILES, PACKAGE, ROOT
 from tests.test_architecture import only_shrinks
 
@@ -126,3 +128,7 @@ def test_nothing_names_what_is_gone() -> None:
         named = {*paths(text), *(described(text) if path.suffix == ".rst" else ())}
         offenders += [f"{path.relative_to(ROOT)}: {name}" for name in sorted(named - NOT_OURS) if not is_there(name)]
     only_shrinks(offenders)
+
+
+def test_packages_are_tried_with_every_verb() -> None:
+    assert set(CALLS) == set(VERBS)
