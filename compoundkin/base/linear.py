@@ -175,6 +175,26 @@ def inverted(matrix: Number) -> Number:
         return np.where(singular[..., None, None], np.nan, np.linalg.inv(safe))
 
 
+def eliminated(matrix: Number, right: Number) -> Number:
+    """Solve many small systems by elimination without exchange of rows: `matrix` (d, d, n), `right` (d, k, n).
+
+    Both are overwritten. With the batch last all is long rows, some ten times as fast as LAPACK for eight unknowns.
+    Where a pivot is nearly zero digits are lost: for steps whose result is looked at, as those of Newton's method.
+
+    >>> eliminated(np.array([[[2.0], [1.0]], [[4.0], [4.0]]]), np.array([[[3.0]], [[8.0]]]))[:, 0, 0].tolist()
+    [1.0, 1.0]
+    """
+    count = len(matrix)
+    for k in range(count - 1):
+        share = matrix[k + 1 :, k] / matrix[k, k]
+        matrix[k + 1 :, k + 1 :] -= share[:, None] * matrix[k, k + 1 :]
+        right[k + 1 :] -= share[:, None] * right[k]
+    for k in range(count - 1, -1, -1):
+        right[k] /= matrix[k, k]
+        right[:k] -= matrix[:k, k, None] * right[k]
+    return right
+
+
 # Systems of so many unknowns or fewer are solved by Cramer's rule, as everywhere here.
 CRAMER = 3
 

@@ -30,6 +30,7 @@ from compoundkin.dimensional.motion_generation import (
     many_poses,
     three_poses,
 )
+from compoundkin.dimensional.path_generation import mixed_positions, path_points
 from compoundkin.dimensional.tasks import (
     ACCURACY,
     COMPACTNESS,
@@ -37,7 +38,9 @@ from compoundkin.dimensional.tasks import (
     Conditions,
     DwellTask,
     FunctionTask,
+    MixedTask,
     OutputTask,
+    PointTask,
     PoseTask,
     StrokeTask,
     SwingTask,
@@ -71,6 +74,10 @@ METHODS: tuple[Method, ...] = (
     Method(OutputTask, added_output),
     Method(DwellTask, double_dwell),
     Method(StrokeTask, stroke_linkage),
+    Method(PointTask, path_points),
+    Method(
+        MixedTask, mixed_positions, lambda task: len(task.z) in (2, 3, 4) and 2 * len(task.z) + len(task.points) == 10
+    ),
     Method(TimedPointTask, few_poses_with_timing, lambda task: 3 <= len(task.points) <= 5),
 )
 

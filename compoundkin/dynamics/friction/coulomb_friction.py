@@ -22,9 +22,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
-from compoundkin.base.continuation import Corrector, MovingSystem, StepLengths, follow_paths
+from compoundkin.base.continuation import Corrector, StepLengths, follow_paths, homotopy_of
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import solve
+from compoundkin.base.newton import largest_change
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_contacts import LoadedContact, in_one_row, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
@@ -48,8 +49,8 @@ ALL_GROWN = 8
 TOGETHER = 64
 # The path along which frictions grow bends so far into complex numbers; its steps and corrections.
 BEND = 0.6j
-GROWTH = StepLengths(first=0.1, longest=0.3, shortest=1e-7, easy=2, most=400)
-CORRECTED = Corrector(accurate=1e-7, near=0.05, steps=3)
+GROWTH = StepLengths(first=0.02, longest=0.3, shortest=1e-7, easy=400, most=400)
+CORRECTED = Corrector(near=0.05, accurate=1e-4, goal=0.01, size=lambda step, x: largest_change(step.T, x.T))
 ONE, NONE, SEVERAL, UNKNOWN = range(4)
 
 
@@ -203,8 +204,8 @@ def _grown(influence: FrictionInfluence, signs: Number) -> Number:
         moved = sum((x * np.einsum("pjk,pk->pj", c, m) for x, c in axes(i, m, t)), 0.0)
         return extra - 2.0 * rate * moved
 
-    moving = MovingSystem(value, by_m, by_t)
-    ends = follow_paths(moving, start.reshape(-1, count), GROWTH, CORRECTED).reshape(poses, each, count)
+    growing = homotopy_of(value, by_m, by_t)
+    ends = follow_paths(growing, start.reshape(-1, count).T, GROWTH, CORRECTED).T.reshape(poses, each, count)
     real = np.where(np.isfinite(ends), ends.real, 0.0)
     forces = every[:, None] + np.einsum("pjk,psk->psj", by_every, real)
     return _directions(forces, np.abs(forces), 1.0).transpose(2, 1, 0)

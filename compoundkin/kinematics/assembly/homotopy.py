@@ -18,7 +18,7 @@ from itertools import combinations
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.continuation import Corrector, MovingSystem, StepLengths, follow_paths
+from compoundkin.base.continuation import Corrector, Homotopy, StepLengths, follow_paths, homotopy_of
 from compoundkin.kinematics.assembly.loop_closure import GroupGraph, random_equations
 from compoundkin.kinematics.assembly.rotation_equations import (
     RotationEquations,
@@ -31,9 +31,9 @@ from compoundkin.kinematics.assembly.rotation_equations import (
 
 # The paths of the generic instance are followed this often, with other random numbers, to find any that was lost.
 RUNS = 2
-# Steps and corrections, in parts of each unknown.
-LENGTHS = StepLengths(first=0.02, longest=0.1, shortest=1e-9, easy=3, most=2000)
-CORRECTOR = Corrector(accurate=1e-8, near=1e-3, steps=3, size=relative)
+# Steps and corrections, in parts of each unknown. Steps grow by what their corrections say, not by their number.
+LENGTHS = StepLengths(first=1e-3, longest=0.1, shortest=1e-9, easy=4000, most=4000)
+CORRECTOR = Corrector(accurate=1e-6, near=1e-3, goal=2e-4, size=lambda step, x: relative(step.T, x.T))
 
 
 @lru_cache(maxsize=64)
@@ -54,11 +54,11 @@ def roots(loops: RotationEquations, graph: GroupGraph) -> Number:
     """Find candidates for all solutions (poses, candidates, unknowns). Paths that go to infinity give NaN."""
     start, x = generic(graph)
     poses = len(loops.constant)
-    ends = follow_paths(_between(start, loops, len(x)), np.tile(x, (poses, 1)), LENGTHS, CORRECTOR)
+    ends = follow_paths(_between(start, loops, len(x)), np.tile(x.T, poses), LENGTHS, CORRECTOR).T
     return ends.reshape(poses, len(x), -1)
 
 
-def _between(start: RotationEquations, target: RotationEquations, each: int) -> MovingSystem:
+def _between(start: RotationEquations, target: RotationEquations, each: int) -> Homotopy:
     """Move the dimensions of the loop equations from one instance to those of every pose."""
     constant, columns = target.constant - start.constant, target.columns - start.columns
 
@@ -77,7 +77,7 @@ def _between(start: RotationEquations, target: RotationEquations, each: int) -> 
             constant[i // each], columns[i // each], target.guides, target.body_rotations, target.origins
         )
 
-    return MovingSystem(
+    return homotopy_of(
         lambda i, x, t: residual(at(i, t), x[:, None])[:, 0],
         lambda i, x, t: jacobian(at(i, t), x[:, None])[:, 0],
         lambda i, x, t: residual(moved(i), x[:, None])[:, 0],
@@ -94,7 +94,7 @@ def _all_paths(loops: RotationEquations, rng: np.random.Generator) -> Number:
     twist = np.exp(2j * np.pi * rng.random())
     first = np.stack([_start(start, patches, kept) for kept in combinations(range(2 * loops.count), loops.count)])
     forms = twist * start[0][:, :, None] * start[1][:, None, :]
-    ends = follow_paths(_bilinear(forms, target - forms, patches), first, LENGTHS, CORRECTOR)
+    ends = follow_paths(_bilinear(forms, target - forms, patches), first.T, LENGTHS, CORRECTOR).T
     full = ends[:, :size] @ bases[0].T
     with np.errstate(all="ignore"):
         return full[:, 1:] / full[:, :1]
@@ -133,7 +133,7 @@ def _start(start: list[Number], patches: list[Number], kept: tuple[int, ...]) ->
     return np.concatenate(halves)
 
 
-def _bilinear(start: Number, change: Number, patches: list[Number]) -> MovingSystem:
+def _bilinear(start: Number, change: Number, patches: list[Number]) -> Homotopy:
     """Write x' (start + t change) y = 0 with both vectors on their patches."""
     size = len(patches[0])
 
@@ -157,7 +157,7 @@ def _bilinear(start: Number, change: Number, patches: list[Number]) -> MovingSys
         x, y = z[:, :size], z[:, size:]
         return np.concatenate([np.einsum("kij,ni,nj->nk", change, x, y), np.zeros((len(z), 2))], axis=-1)
 
-    return MovingSystem(value, by_z, by_t)
+    return homotopy_of(value, by_z, by_t)
 
 
 def _random(rng: np.random.Generator, *shape: int) -> Number:

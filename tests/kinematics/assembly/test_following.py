@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compoundkin.base.continuation import MovingSystem, follow_paths
+from compoundkin.base.continuation import follow_paths, homotopy_of
 from compoundkin.kinematics.assembly import homotopy, rotation_equations
 from compoundkin.kinematics.assembly.homotopy import CORRECTOR, LENGTHS
 from compoundkin.kinematics.assembly.loop_closure import random_equations, rotation_equations_of
@@ -13,12 +13,12 @@ from tests.kinematics.assembly.trusses import baranov_trusses
 
 def test_paths_end_at_all_roots_and_not_at_infinity():
     """From z^3 = 1 to (z - 2) (z - 3) = 0, one path to infinity."""
-    moving = MovingSystem(
+    moving = homotopy_of(
         lambda i, z, t: (1 - t)[:, None] * 1j * (z**3 - 1) + t[:, None] * (z - 2) * (z - 3),
         lambda i, z, t: ((1 - t)[:, None] * 3j * z**2 + t[:, None] * (2 * z - 5))[..., None],
         lambda i, z, t: -1j * (z**3 - 1) + (z - 2) * (z - 3),
     )
-    ends = follow_paths(moving, np.exp(2j * np.pi * np.arange(3) / 3)[:, None], LENGTHS, CORRECTOR)[:, 0]
+    ends = follow_paths(moving, np.exp(2j * np.pi * np.arange(3) / 3)[None], LENGTHS, CORRECTOR)[0]
     found = ends[np.isfinite(ends) & (np.abs(ends) < 1e6)]
     assert np.allclose(sorted(found.real), [2, 3], atol=1e-7)
     assert np.allclose(found.imag, 0, atol=1e-7)
