@@ -37,6 +37,8 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
 )
 # Kinds that messages call "mechanism files", not "mechanisms".
 _OF_FILES: tuple[Kind, ...] = ("mechanism", "study", "task")
+# Kinds that are written by hand and read, and not saved: messages of what can be saved leave them out.
+READ_ALONE: tuple[Kind, ...] = ("task",)
 # What a name without a suffix means, where there is one form that everybody expects.
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 
@@ -65,7 +67,7 @@ an animation is; plots end in .png, .svg, .pdf
 
 def all_suffixes() -> str:
     """Return what can be saved as what, in words."""
-    return "; ".join(map(_suffix_phrase, SUFFIXES))
+    return "; ".join(_suffix_phrase(kind) for kind in SUFFIXES if kind not in READ_ALONE)
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:
@@ -104,7 +106,9 @@ def _suffix_phrase(kind: Kind) -> str:
 
 def _other_kinds(suffix: str) -> str:
     """What else is saved with a suffix."""
-    *most, last = [_with_article(kind) for kind in SUFFIXES if suffix in SUFFIXES[kind]] or [""]
+    *most, last = [
+        _with_article(kind) for kind, own in SUFFIXES.items() if suffix in own and kind not in READ_ALONE
+    ] or [""]
     if most:
         return f", {', '.join(most)} and {last} are"
     return f", {last} is" if last else ""
