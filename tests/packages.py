@@ -53,6 +53,7 @@ CALLS = {
     "catalog": ["catalog list"],
     "atlas": ["atlas --links 6"],
     "new": ["new mine.toml"],
+    "set": ["set mine.toml crank.B.x=22"],
     "schema": ["schema"],
     "completion": ["completion bash"],
 }
