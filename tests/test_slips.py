@@ -184,11 +184,11 @@ def test_half_a_surrogate_pair_reaches_no_page_and_no_picture() -> None:
 
 
 def test_a_key_with_20000_dots_is_refused_at_once() -> None:
-    begun = time.monotonic()
+    begun = time.process_time()
     for text in (f"a{'.a' * 20000} = 1", f"{FOUR_BAR}values{'.a' * 20000} = 1", f"a = {'[' * 20000}"):
         with pytest.raises(ck.errors.InvalidMechanism, match="nested too deeply"):
             loads(text)
-    assert time.monotonic() - begun < 2.0
+    assert time.process_time() - begun < 2.0
 
 
 @pytest.mark.parametrize("k", [0, 3, 11])

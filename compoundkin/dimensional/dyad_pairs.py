@@ -135,7 +135,7 @@ class Pairs:
 
 
 class _Road:
-    """DesignPositions that move from some to others, straight; orientations on logarithmic spirals."""
+    """Positions that move from some to others, straight; orientations on logarithmic spirals."""
 
     def __init__(self, start: DesignPositions, end: DesignPositions) -> None:
         self.family = start.family

@@ -457,9 +457,9 @@ def test_a_whole_motion_takes_a_moment(kind: str) -> None:
     curve.foot(p.c[0][:9])
     times = []
     for _ in range(3):
-        start = time.perf_counter()
+        start = time.process_time()
         found = curve.foot(p)
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     period = curve.high - curve.low
     assert np.max(np.abs((found.c[0] - s + period / 2) % period - period / 2)) < 1e-12 * period
     assert np.max(np.abs(found.c[1] - 1.0)) < 1e-8

@@ -74,10 +74,10 @@ def test_what_is_too_large_is_refused_at_once(tmp_path: Path) -> None:
     link = "https://app.pmksplus.com/?" + "0" * 1_000_000
     for source in (large, link, "mech=" + "a" * 1_000_000, "M[" * 500_000, "0\n" * MOST_BYTES):
         for form in ("", READ[0]):
-            begin = time.perf_counter()
+            begin = time.process_time()
             with pytest.raises(ck.errors.InvalidInput, match="bytes; a mechanism's has at most"):
                 ck.exchange.read(source, form)
-            assert time.perf_counter() - begin < 5.0
+            assert time.process_time() - begin < 5.0
 
 
 @pytest.mark.parametrize("form", READ)
@@ -88,10 +88,10 @@ def test_what_repeats_to_the_bound_is_answered_soon(form: str, tmp_path: Path) -
     room = readable_formats()[form].most - len(text) - 1
     for piece in (text.splitlines()[len(text.splitlines()) // 2] + "\n", "[", "9"):
         large = text[:half] + piece * (room // len(piece)) + text[half:]
-        begin = time.perf_counter()
+        begin = time.process_time()
         with suppress(ck.errors.CompoundkinError):  # lines without a word may repeat
             ck.exchange.read(large + "\n", form)
-        assert time.perf_counter() - begin < 5.0, piece
+        assert time.process_time() - begin < 5.0, piece
 
 
 @pytest.mark.parametrize("form", BOTH)
