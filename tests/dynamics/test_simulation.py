@@ -888,3 +888,33 @@ def test_the_explicit_method_comes_back_where_motions_no_longer_die_away_fast() 
     late = times > 0.75
     np.testing.assert_allclose(np.diff(speed[late]), torque / 0.05 * np.diff(times[late]), rtol=1e-7)
     assert found.energy.worst < 1e-7
+
+
+@pytest.mark.parametrize(("at", "width"), [(0.73, 0.003), (1.9, 0.02)])
+def test_no_step_goes_over_a_smooth_pulse(at: float, width: float) -> None:
+    """What it gives is its integral over the inertia, whatever the rotor did before it."""
+    parts = (
+        ck.link("frame", O=0),
+        ck.link("rotor", O=0, P=1),
+        ck.drive("rotor"),
+        ck.mass("rotor", 1.0, at="O", inertia=0.05),
+    )
+    pulse = ck.torque("rotor", lambda t: 500 * np.exp(-(((t - at) / width) ** 2)))
+    rotor = ck.Mechanism("Rotor", *parts, pulse, units={"length": "m", "mass": "kg", "force": "N"})
+    for speed in (0.0, 3.0):
+        pushed = ck.simulate(rotor, start=(0.0, speed), until=2.0)
+        gained = 500 * width * np.sqrt(np.pi) / 0.05
+        assert pushed.motion.drives["rotor"].rate[-1] - speed == pytest.approx(gained, rel=1e-9)
+        assert not pushed.events
+
+
+def test_an_event_is_one_number() -> None:
+    parts = (
+        ck.link("frame", O=0),
+        ck.link("rotor", O=0, P=1),
+        ck.drive("rotor"),
+        ck.mass("rotor", 1.0, at="O", inertia=0.05),
+    )
+    rotor = ck.Mechanism("Rotor", *parts, units={"length": "m", "mass": "kg", "force": "N"})
+    with pytest.raises(ck.errors.InvalidInput, match="it returns 2 numbers"):
+        ck.simulate(rotor, start=(0.0, 1.0), until=1.0, events={"both": lambda state: np.array([1.0, 2.0])})

@@ -91,7 +91,10 @@ class Watch:
         n = len(chart.free)
         here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]), chart.order)
         try:
-            result = np.ravel(self.function(here))[0]
+            returned = np.ravel(self.function(here))
+            if self.asked and returned.size != 1:
+                raise ValueError(f"it returns {returned.size} numbers")
+            result = returned[0]
             if self.asked and (np.iscomplexobj(result) or np.isnan(result)):
                 raise ValueError(f"it returns {result}")
             found = float(result)
@@ -576,7 +579,7 @@ def _zero(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 class LoadBreak(NamedTuple):
-    """A time at which a load jumps or has a corner, as the neighbouring times before and behind it."""
+    """A time at which a load jumps, wakes or has a corner, as the neighbouring times before and behind it."""
 
     before: float
     behind: float
@@ -586,6 +589,8 @@ class LoadBreak(NamedTuple):
 # Functions of the time are sampled at so many places of a simulation. Between two of them is a jump where the function
 # changes by this part of its range at least, most of that between neighbouring numbers.
 SAMPLED, CHANGES, MOST = 4096, 1e-6, 0.5
+# A function that has not changed for so many of these places wakes where it does.
+STILL = 8
 # Times that differ by this part of the whole are one time but for rounding.
 SAME_TIME = 1e-14
 # A table with more corners than this within a simulation is followed by the length of steps alone.
@@ -593,7 +598,7 @@ CORNERS = 2000
 
 
 def load_breaks(mechanism: Mechanism, until: float) -> tuple[LoadBreak, ...]:
-    """Return the times within a simulation at which functions of the time jump, or tables over it have corners."""
+    """Return the times within a simulation at which functions of the time jump or wake, or tables have corners."""
     amounts = [part for load in mechanism.loads.values() for held in load.amounts_held
                for part in (held if isinstance(held, tuple) else (held,))]  # fmt: skip
     found: list[LoadBreak] = []
@@ -608,7 +613,14 @@ def load_breaks(mechanism: Mechanism, until: float) -> tuple[LoadBreak, ...]:
 def _breaks(amount: Any, until: float) -> Iterator[LoadBreak]:
     values = function_of_time(amount)
     if values is not None:
-        yield from _jumps(values, np.linspace(0.0, until, SAMPLED + 1))
+        times = np.linspace(0.0, until, SAMPLED + 1)
+        jumps = list(_jumps(values, times))
+        yield from jumps
+        yield from (
+            one
+            for one in _wakes(values, times)
+            if not any(0.0 <= jump.before - one.before < times[1] for jump in jumps)
+        )
     yield from (LoadBreak(at, at, False) for at in corners_in_time(amount, until, CORNERS))
 
 
@@ -628,6 +640,15 @@ def _jumps(values: Callable[[Number], Number], times: Number) -> Iterator[LoadBr
             )
         if abs(last - first) > MOST * steps[k]:
             yield LoadBreak(low, high, True)
+
+
+def _wakes(values: Callable[[Number], Number], times: Number) -> Iterator[LoadBreak]:
+    """Yield the times at which a function that stood still begins to change: no step goes over a short pulse."""
+    known = values(times)
+    moves = np.abs(np.diff(known)) > CHANGES * float(np.ptp(np.abs(known - known[0])))
+    for k in np.flatnonzero(moves):
+        if k >= STILL and not moves[k - STILL : k].any():
+            yield LoadBreak(float(times[k]), float(times[k]), False)
 
 
 class Impact(NamedTuple):
