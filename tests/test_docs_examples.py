@@ -20,7 +20,16 @@ DOCS = Path(__file__).parents[1] / "docs"
 READERS = ["for-students.md", "for-engineers.md", "for-programmers.md"]
 
 
-@pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md", "machine.md", "simulation.md"])
+@pytest.mark.parametrize(
+    "page",
+    [
+        "pictures.md",
+        "circuits.md",
+        "press-drive.md",
+        "machine.md",
+        pytest.param("simulation.md", marks=pytest.mark.full),
+    ],
+)
 def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     lines = [line[4:] for line in (DOCS / page).read_text("utf-8").splitlines() if line.startswith("    ")]

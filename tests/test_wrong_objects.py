@@ -411,6 +411,7 @@ def test_every_public_function_is_tried() -> None:
     assert untried == {"figures.Port"} & untried
 
 
+@pytest.mark.full
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", sorted(calls()))
 def test_wrong_objects_are_refused_by_errors_of_the_package(name: str) -> None:

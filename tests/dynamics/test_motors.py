@@ -144,6 +144,7 @@ def test_statics_of_a_motor_behind_a_lossy_gear_has_no_rotor() -> None:
     assert ck.verify(still).passed
 
 
+@pytest.mark.full
 def test_a_lossy_rotor_in_a_linkage_with_two_drivers() -> None:
     """The equation of motion holds at all times: drivers are left without effort, and powers add up."""
     links = [ck.link("frame", A=0), ck.link("upper", A=0, B=1), ck.link("lower", B=0, C=0.7)]
@@ -415,6 +416,7 @@ def piston(*more: object) -> ck.Mechanism:
     )
 
 
+@pytest.mark.full
 def test_a_piston_under_two_pressures_accelerates() -> None:
     """(p A - b (A - a)) / m from rest, and its effort held at a speed is that thrust the other way."""
     area, rod = np.pi * 50.0**2 / 4.0, np.pi * 28.0**2 / 4.0

@@ -349,6 +349,7 @@ def test_a_follower_lifts_off_and_lands_against_another_integrator() -> None:
     assert found.energy.worst < 1e-9
 
 
+@pytest.mark.full
 def test_conjugate_cams_hold_each_other() -> None:
     """Gravity pulls the follower off one cam, and on the other: by the cycloidal law itself, SciPy's way to go on."""
     from scipy.integrate import solve_ivp

@@ -22,6 +22,7 @@ def flywheel(inertia: float, *loads: object) -> ck.Mechanism:
     )
 
 
+@pytest.mark.full
 def test_a_punch_press_with_its_flywheel_on_the_shaft_of_an_induction_motor() -> None:
     """R. Budynas, J. Nisbett, Shigley's Mechanical Engineering Design, chapter 16, flywheel on the motor's shaft.
 
@@ -72,6 +73,7 @@ def test_a_load_that_jumps_at_the_end_of_a_simulation() -> None:
     assert abs(run.motion.drives["rotor"].rate[-1] - 1.75) < 1e-12
 
 
+@pytest.mark.full
 def test_a_laboratory_trebuchet_of_three_phases() -> None:
     """E. Horsdal, F. Johansen, J. Rasmussen, The swinging counterweight trebuchet, arXiv:2502.19442, tables 1 to 3.
 

@@ -78,6 +78,7 @@ OF_SIZES = (
 )  # fmt: skip
 
 
+@pytest.mark.full
 @settings(deadline=None, max_examples=40)
 @given(st.sampled_from(OF_SIZES), st.lists(st.integers(-6, 6), min_size=2, max_size=4))
 def test_designs_of_an_array_are_what_each_is_alone(name: str, powers: list[int]) -> None:

@@ -71,6 +71,7 @@ def test_it_equals_solve_and_the_tape_under_jit_and_vmap() -> None:
     assert found["G.position"].dtype == complex
 
 
+@pytest.mark.full
 def test_slopes_are_those_of_differences() -> None:
     """Of a cost, by dimensions, driver values and speed at once."""
     function = compile(six_bar.mechanism(), ["G.acceleration", "bar.angle"], free=["plate.C", "crank.D"]).jax()

@@ -60,6 +60,7 @@ SMOOTH = {
 PARTS = {"slider-crank-offset": 72, "crank-rocker": 90, "six-bar": 120}
 
 
+@pytest.mark.full
 @settings(max_examples=25)
 @given(st.sampled_from(list(SMOOTH)), st.floats(-1.0, 1.0), st.integers(-8, -1))
 @example("slider-crank-offset", 0.3, -2)

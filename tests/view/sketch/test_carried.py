@@ -128,6 +128,7 @@ def test_labels_stay_upright_and_near_their_points() -> None:
     assert all(isinstance(next(leaves(p.shapes)), CircleShape) for p in badges)
 
 
+@pytest.mark.full
 def test_the_mechanisms_of_the_catalog_move() -> None:
     for name in catalog.CHOSEN:
         try:
