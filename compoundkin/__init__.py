@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from compoundkin.kinematics.gaps import gaps
     from compoundkin.kinematics.quantities import quantity
     from compoundkin.programs.compiled_path import compile
+    from compoundkin.programs.dimensions import with_dimensions
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
     from compoundkin.studies.optimisation.design_optimisation import optimise
@@ -156,6 +157,7 @@ __all__ = [
     "tolerance",
     "torque",
     "verify",
+    "with_dimensions",
     "with_driver",
     "with_frame",
 ]
@@ -200,6 +202,7 @@ _LATE = {
     "synthesise": "dimensional.synthesis",
     "tolerance": "studies.tolerances.tolerance",
     "verify": "analysis.checks",
+    "with_dimensions": "programs.dimensions",
     "with_driver": "synthesis.inversion",
     "with_frame": "synthesis.inversion",
 }

@@ -182,6 +182,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                       "percentiles": (1, 50)},
         "torque": {"link": "a", "torque": 3.0, "name": "n"},
         "verify": {"motion": motion},
+        "with_dimensions": {"mechanism": m, "dimensions": {"crank.B.x": 1.0}},
         "with_driver": {"mechanism": m, "link": "rocker", "on": "frame", "pair": "", "instead": "crank", "speed": 1.0,
                         "values": None},
         "with_frame": {"mechanism": m, "link": "crank"},

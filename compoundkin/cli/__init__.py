@@ -47,6 +47,7 @@ VERBS = {
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",
     "new": "Write a commented mechanism file to start from.",
     "mcp": "A server for programs that talk (Model Context Protocol).",
+    "set": "Change values in a mechanism file; its comments stay.",
     "schema": "The JSON Schema of mechanism files and of study files.",
     "completion": "The script that completes commands in your shell.",
 }
@@ -57,6 +58,7 @@ _COMMANDS = {
     "configurations": ("circuits", "configurations_command"),
     "workspace": ("circuits", "workspace_command"),
     "completion": ("new", "completion_command"),
+    "set": ("new", "set_command"),
     "schema": ("new", "schema_command"),
     "atlas": ("catalog", "atlas_command"),
     "import": ("import_command", "command"),

@@ -13,9 +13,9 @@ from compoundkin.cli.shell import say, working
 @click.command(
     epilog="""\b
 Examples:
-  compoundkin exercise four-bar-norton --vary 10% --seed 7 --count 30 -o exercises
-  compoundkin exercise six-bar --question positions --question velocities -o exercises
-  compoundkin exercise four-bar:60,20,50,40 --count 5 -o exercises
+  compoundkin exercise crank-rocker --vary 10% --seed 7 --count 30 -o sheets
+  compoundkin exercise six-bar --question positions,velocities -o sheets
+  compoundkin exercise four-bar:60,20,50,40 --count 5 -o sheets
 """
 )
 @mechanism_argument

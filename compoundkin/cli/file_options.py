@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from compoundkin.base.errors import InvalidInput, NotDetermined, Problem
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotDetermined, Problem
 from compoundkin.base.suffixes import SUFFIXES, alternatives, file_format, suffix_for, suffix_of
 from compoundkin.cli.shell import NOT_ASSEMBLED, has_colour, put, report_width, say, working
 
@@ -33,6 +33,11 @@ F = TypeVar("F", bound=Callable[..., Any])
 FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
 # The key of a command's context under which --whole is stored.
 WHOLE = "whole report"
+# What an editor does about wrong files, while they are written.
+SCHEMA_HINT = (
+    'Editors check and complete such files: compoundkin schema > mechanism.schema.json, and "#:schema '
+    "mechanism.schema.json\" as the file's first line."
+)
 # Names of standard output where a file is expected.
 STDOUT = ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
 # Mechanisms with more pairs are not decomposed for a summary: finding redundant constraints may take minutes.
@@ -88,7 +93,11 @@ def load_mechanism(file: str) -> Mechanism:
     if is_foreign_file(file):
         return import_with_notes(file).mechanism
     # `load` judges what is no regular file, such as a pipe
-    return load(file if exists(file) else resolve(file))
+    try:
+        return load(file if exists(file) else resolve(file))
+    except InvalidMechanism as error:
+        error.add_note(SCHEMA_HINT)
+        raise
 
 
 def _linkage(text: str) -> Mechanism | None:

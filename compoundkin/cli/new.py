@@ -166,6 +166,42 @@ def starting_file(target: Path) -> str:
     return TEMPLATE.replace("@FILE@", target.name).replace("@TITLE@", title)
 
 
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin set mine.toml crank.B.x=22
+  compoundkin set mine.toml crank.B.x=22 rocker.C.x=45 title="My linkage"
+  compoundkin set mine.toml coupler.P.radius=30 crank.speed=10
+"""
+)
+@click.argument("file", metavar="FILE", type=click.Path())
+@click.argument("changes", metavar="NAME=VALUE ...", nargs=-1, required=True)
+def set_command(file: str, changes: tuple[str, ...]) -> int:
+    """Change values in a mechanism file; its comments and its layout stay.
+
+    Angles are in degrees, as in the file. The changed file is read again before it is written, and written whole or
+    not at all: a mistake leaves it as it was.
+    """
+    from compoundkin.files.atomic import write_atomically
+    from compoundkin.files.mechanism_files import changed_text
+    from compoundkin.files.parsed_document import text_of
+
+    pairs: dict[str, str] = {}
+    for change in changes:
+        name, is_there, value = change.partition("=")
+        if not is_there or not name.strip() or not value.strip():
+            raise InvalidInput(Problem(change, "this is no change of a value", "write crank.B.x=22"))
+        if name.strip() in pairs:
+            raise InvalidInput(Problem(name.strip(), "it is changed twice", "name it once"))
+        pairs[name.strip()] = value
+    text, syntax = text_of(file, "mechanism")
+    mark = b"\xef\xbb\xbf" if Path(file).read_bytes().startswith(b"\xef\xbb\xbf") else b""
+    content = mark + changed_text(text, pairs, syntax, file).encode("utf-8")
+    write_atomically(file, lambda to: to.write(content))
+    say(f"Changed {', '.join(pairs)} in {file}.")
+    return 0
+
+
 KINDS = ("mechanism", "study")
 
 

@@ -132,6 +132,8 @@ def show_error(error: CompoundkinError) -> None:
         for term, text in (("where", problem.where), ("remedy", problem.remedy)):
             if text:
                 say(f"{indent}{term + ':':8}{escaped_text(text)}")
+    for note in getattr(error, "__notes__", ()):
+        say(note)
 
 
 def has_colour(stream: Any) -> bool:

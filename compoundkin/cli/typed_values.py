@@ -191,7 +191,8 @@ def with_loads(mechanism: Mechanism, options: Mapping[str, Any]) -> Mechanism:
     twice = next((one for k, one in enumerate(items) if _key(one) in map(_key, items[:k])), None)
     if twice is not None:
         raise _invalid("--load, --torque, --mass", f"two are on {_key(twice)[-1]}", "add them up, or leave one out")
-    return mechanism.replace(*items, **({} if mechanism.units is not None else {"unit": "", "units": units}))
+    words: dict[str, Any] = {} if mechanism.units is not None else {"unit": "", "units": units}
+    return mechanism.replace(*items, **words)
 
 
 # The options of masses and loads, by their values' names.

@@ -158,7 +158,7 @@ class _Road:
         return steps
 
 
-class _Dyad(NamedTuple):
+class _DyadEquations(NamedTuple):
     """The equations of one dyad at all places (places, paths): residuals, derivatives by x, x*, a, a*, by t, by u."""
 
     value: Number
@@ -167,7 +167,7 @@ class _Dyad(NamedTuple):
     by_u: Number
 
 
-def _dyad(numbers: Number, u: Number, at: DesignPositions, change: DesignPositions) -> _Dyad:
+def _dyad(numbers: Number, u: Number, at: DesignPositions, change: DesignPositions) -> _DyadEquations:
     x, xc, a, ac = numbers
     w = 1.0 / u
     forth, back = u * x + (at.d - a), w * xc + (at.e - ac)
@@ -176,7 +176,7 @@ def _dyad(numbers: Number, u: Number, at: DesignPositions, change: DesignPositio
     by_t = change.d * back + change.e * forth
     by_u = x * back - w * w * (xc * forth)
     by_t[: len(change.u)] += by_u[: len(change.u)] * change.u
-    return _Dyad(forth * back - arm * arm_back, by_numbers, by_t, by_u)
+    return _DyadEquations(forth * back - arm * arm_back, by_numbers, by_t, by_u)
 
 
 def _newton(family: Family, unknowns: Number, at: DesignPositions, change: DesignPositions) -> tuple[Number, Number]:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Mapping
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
 from compoundkin.files import toml_text
-from compoundkin.files.parsed_document import Syntax, known_syntax, parsed, text_of, too_deep, unreadable
+from compoundkin.files.parsed_document import Syntax, known_syntax, located, parsed, text_of, too_deep, unreadable
 from compoundkin.files.reader import read
 from compoundkin.files.shipped_mechanisms import resolve
 from compoundkin.files.writer import document
@@ -33,7 +36,11 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
     # a word alone is a name of the catalog, unless there is such a file
     is_name = isinstance(path, str) and not Path(path).suffix and Path(path).name == path
     file = resolve(path) if is_name else path
-    return loads(*text_of(file, "mechanism"), str(path))
+    text, syntax = text_of(file, "mechanism")
+    try:
+        return loads(text, syntax, str(path))
+    except InvalidMechanism as error:
+        raise (located(error, text) if syntax == "toml" else error) from None
 
 
 def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:
@@ -72,6 +79,109 @@ def written_text(whole: Mapping[str, Any], syntax: Syntax) -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
+def changed_text(text: str, changes: Mapping[str, str], syntax: Syntax = "toml", where: str = "") -> str:
+    """Return the text of a mechanism file in which some values are others; comments and layout stay.
+
+    A name is that of a dimension as it is written: "crank.B.x", "crank.B.radius" and "crank.B.angle" of a polar point,
+    "stroke.angle" of a pair, a driver or a load; "title" is a word of the file. Angles are in degrees, as in the file.
+    Every change is one value of the text replaced by another, and the text is read again: nothing else has changed, and
+    the whole is a mechanism. Raises UnknownName for what is not written in the file, InvalidInput for what cannot be
+    replaced, InvalidMechanism where the changed file has none.
+
+    >>> text = 'format = 1\\ntitle = "Pin"  # of a door\\n[links.frame]\\npoints = { A = [0, 5] }  # mm'
+    >>> print(changed_text(text, {"frame.A.y": "6.5"}))
+    format = 1
+    title = "Pin"  # of a door
+    [links.frame]
+    points = { A = [0, 6.5] }  # mm
+    """
+    syntax = known_syntax(syntax)
+    for name, value in changes.items():
+        text = _with_value(text, name, value, syntax, where)
+    loads(text, syntax, where)
+    return text
+
+
+# A value as it stands in a text: a number or a quoted word.
+_VALUE = re.compile(r'"(?:[^"\\\n]|\\.)*"|(?<![\w."-])[-+]?\d[\w.+-]*|\b(?:true|false)\b')
+# How coordinates and parts of a point are written.
+_COORDINATES = {"x": 0, "y": 1}
+_POLAR = {"radius": 0, "angle": 1}
+
+
+def _with_value(text: str, name: str, value: str, syntax: Syntax, where: str) -> str:
+    """Return a text with one value replaced, where that and nothing else changes what the text says."""
+    whole = parsed(text, syntax, where)
+    places = _places(whole)
+    if name not in places:
+        owner = name.partition(".")[0]
+        known = [one for one in places if one.partition(".")[0] == owner] or list(places)
+        raise UnknownName(Problem(name, "there is no such value in the file", suggestion(name, known)))
+    *way, last = places[name]
+    wanted = parsed(text, syntax, where)
+    holder: Any = wanted
+    for key in way:
+        holder = holder[key]
+    old = holder[last]
+    new = value if isinstance(old, str) else _number(name, value)
+    if old == new:
+        return text
+    holder[last] = new
+    written = json.dumps(new, ensure_ascii=False) if isinstance(new, str) else value.strip()
+    for found in _VALUE.finditer(text):
+        changed = text[: found.start()] + written + text[found.end() :]
+        try:
+            is_it = parsed(changed, syntax, where) == wanted
+        except InvalidInput:
+            continue
+        if is_it:
+            return changed
+    raise InvalidInput(Problem(name, f"{old!r} cannot be replaced in the text alone", "change it in an editor"))
+
+
+def _number(name: str, value: str) -> float | int:
+    try:
+        found = float(value)
+        if not isfinite(found):
+            raise ValueError
+    except ValueError:
+        raise InvalidInput(Problem(name, f"{value!r} is not a number", f"{name}=22")) from None
+    return int(found) if re.fullmatch(r"\s*[-+]?\d+\s*", value) else found
+
+
+def _places(whole: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
+    """Return where the values of a document are, by their names."""
+    found: dict[str, tuple[Any, ...]] = {}
+
+    def note(name: str, way: tuple[Any, ...], value: Any) -> None:
+        if isinstance(value, bool | int | float | str):
+            found.setdefault(name, way)
+        elif isinstance(value, dict) and isinstance(value.get("polar"), list):
+            for word, k in _POLAR.items():
+                found.setdefault(f"{name}.{word}", (*way, "polar", k))
+        elif isinstance(value, dict):
+            for key, inner in value.items():
+                note(f"{name}.{key}", (*way, key), inner)
+        elif isinstance(value, list) and len(value) == 2:
+            for word, k in _COORDINATES.items():
+                note(f"{name}.{word}", (*way, k), value[k])
+
+    for key, value in whole.items():
+        if key == "links" and isinstance(value, dict):
+            for link, table in value.items():
+                points = table.get("points") if isinstance(table, dict) else None
+                for letter, point in points.items() if isinstance(points, dict) else ():
+                    note(f"{link}.{letter}", ("links", link, "points", letter), point)
+        elif isinstance(value, list):
+            for k, table in enumerate(value):
+                owner = (table.get("name") or table.get("link")) if isinstance(table, dict) else None
+                for word, inner in table.items() if isinstance(owner, str) else ():
+                    note(f"{owner}.{word}", (key, k, word), inner)
+        else:
+            note(key, (key,), value)
+    return found
+
+
 def encoded(mechanism: Mechanism, syntax: str, path: str | os.PathLike[str]) -> bytes:
     """Return the bytes of a mechanism file. Raises InvalidInput, which names the file, for text that has no UTF-8."""
     try:
@@ -80,4 +190,4 @@ def encoded(mechanism: Mechanism, syntax: str, path: str | os.PathLike[str]) -> 
         raise unreadable(path, f"{error.object[error.start]!r} cannot be written as UTF-8") from None
 
 
-__all__ = ["Syntax", "dumps", "encoded", "load", "loads", "written_text"]
+__all__ = ["Syntax", "changed_text", "dumps", "encoded", "load", "loads", "written_text"]

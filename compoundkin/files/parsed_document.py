@@ -6,6 +6,8 @@ import json
 import os
 import re
 import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -88,6 +90,58 @@ def parsed(text: str, syntax: Syntax, where: str, kind: Kind = "mechanism") -> d
     if repeats:
         raise failed(repeats, where)
     return found
+
+
+def located(error: InvalidMechanism, text: str) -> InvalidMechanism:
+    """Return an error about a TOML text with the line and column of each problem.
+
+    >>> problem = Problem("links.crank.points.B", "the text 'a' is not a number")
+    >>> text = '[links.crank]\\npoints = { A = [0, 0], B = [1, "a"] }'
+    >>> print(located(InvalidMechanism(problem), text))
+    links.crank.points.B (line 2, column 24): the text 'a' is not a number
+    """
+    places = _toml_places(text)
+    found = [
+        replace(one, where=f"{one.where} ({_place(*place)})") if (place := _nearest(places, one.where)) else one
+        for one in error.problems
+    ]
+    return InvalidMechanism(found, error.heading)
+
+
+# The heading of a table or of one of several, and a key with its value; a key may be quoted.
+_HEADING = re.compile(r"\s*(\[\[?)\s*([^\]]+?)\s*\]")
+_KEY = re.compile(r"""(?P<before>^|[{,])\s*(?P<key>[\w-]+(?:\.[\w-]+)*|"[^"]*"|'[^']*')\s*=(?!=)""")
+
+
+def _toml_places(text: str) -> dict[str, tuple[int, int]]:
+    """Return the line and column of each heading and key of a TOML text, by the names that problems have for them."""
+    places: dict[str, tuple[int, int]] = {}
+    counts: dict[str, int] = {}
+    table, last = "", ""
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.lstrip().startswith("#"):
+            continue
+        if heading := _HEADING.match(line):
+            table = heading[2].replace('"', "").replace("'", "")
+            if heading[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+                table = f"{table}[{counts[table]}]"
+            places.setdefault(table, (number, heading.start(2) + 1))
+            continue
+        for found in _KEY.finditer(line):
+            key = found["key"].strip("\"'")
+            outer = table if found["before"] == "" else last
+            name = f"{outer}.{key}" if outer else key
+            last = name if found["before"] == "" else last
+            places.setdefault(name, (number, found.start("key") + 1))
+    return places
+
+
+def _nearest(places: Mapping[str, tuple[int, int]], where: str) -> tuple[int, int] | None:
+    """Return the place of a name, else of the table that it would be in."""
+    while where and where not in places:
+        where = where.rpartition(".")[0]
+    return places.get(where)
 
 
 def too_deep(where: str) -> InvalidMechanism:

@@ -22,7 +22,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import constant
 from compoundkin.model.attributes import CATALOGUE, DERIVED
 from compoundkin.model.definition import MechanismDefinition, MechanismNames
-from compoundkin.model.elements import Drawn, Expectation, Item, Link, Mode
+from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.geometry import FRAME, Geometry, link_from_drawing, pose_from_points, real
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import DrawnPair, Ends, as_orienting, as_turn_counting, misfit_problems
@@ -160,19 +160,50 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
         """The links, points and pairs that loads may name."""
         return MechanismNames(self)
 
-    def replace(self, *items: Item, **changes: Any) -> Mechanism:
+    def replace(self, *items: Item, without: str | Sequence[str] = (), **changes: Any) -> Mechanism:
         """Return a copy in which items replace those of the same name.
 
         An item without a counterpart is added; `title`, `unit`, `source`, `description`, `outputs`, `time` by keyword.
+        What `without` names is taken out first, as by the method of that name; the whole is validated once, so that a
+        pin is swapped for a slide in one call. Raises InvalidMechanism, and UnknownName for what there is not.
 
         >>> from compoundkin.model.elements import drive, link
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
         >>> crank.replace(link("crank", A=0, B=2)).links["crank"].points["B"]
         (2+0j)
+        >>> from compoundkin.model.pairs import slide
+        >>> guided = crank.replace(slide("crank", on="frame", through="O"), link("frame", O=0), without="crank.A")
+        >>> sorted(guided.pins), [pair.name for pair in guided.written_pairs]
+        ([], ['crank/frame'])
         """
+        if without:
+            names = (without,) if isinstance(without, str) else tuple(without)
+            kept = copy(self)
+            for cached in [name for name in vars(kept) if name not in (*_ABOUT, "items")]:
+                del kept.__dict__[cached]
+            kept.items = _items_without(self, names)
+            kept.outputs = _outputs_of(kept.items, self)
+            return kept.replace(*items, **changes)
         words = {**{k: getattr(self, k) for k in _ABOUT[1:-2]}, **({} if "units" in changes else self.unit_words)}
         title = changes.pop("title", self.title)
         return Mechanism(title, *self._replaced(items), **{**words, **changes})
+
+    def without(self, *names: str) -> Mechanism:
+        """Return a copy without links, pairs, drivers, loads of these names, or points: "rocker.C" is C of the rocker.
+
+        With a link goes all that is written of it: pairs, drivers, masses, loads, outlines, modes, and the outputs and
+        published numbers that name it. Raises UnknownName for what there is not, InvalidMechanism where what is left is
+        no mechanism.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), link("rod", B=0, C=3), drive("crank"))
+        >>> list(crank.without("rod").links)
+        ['frame', 'crank']
+        >>> crank.without("rot")
+        Traceback (most recent call last):
+        compoundkin.base.errors.UnknownName: rot: there is nothing of this name; did you mean 'rod'?
+        """
+        return self.replace(without=names)
 
     def as_design(self, *items: Item) -> Mechanism:
         """Return a copy as `replace` does, as one of several designs: if its wheels do not fit it is not assembled."""
@@ -219,6 +250,53 @@ class Mechanism(MechanismDefinition, DisplaysPicture):
 
     def __repr__(self) -> str:
         return f"Mechanism({self.title!r}: {self.in_numbers}, {count_phrase(len(self.drives), 'driver')})"
+
+
+def _items_without(mechanism: Mechanism, names: Sequence[str]) -> tuple[Item, ...]:
+    """Return the items that are left where some are taken out by name. Raises UnknownName."""
+    named = {getattr(item, "name", "") for item in mechanism.items if not isinstance(item, Mode | Drawn)}
+    letters = {f"{link}.{letter}" for link, own in mechanism.links.items() for letter in own.points}
+    unknown = [name for name in names if name not in named | letters]
+    if unknown:
+        known = sorted(filter(None, named)) + sorted(letters)
+        raise UnknownName([Problem(n, "there is nothing of this name", suggestion(str(n), known)) for n in unknown])
+    gone = set(names)
+    left: list[Item] = []
+    for item in mechanism.items:
+        if getattr(item, "name", None) in gone or gone & _links_of(item):
+            continue
+        if isinstance(item, Drive) and item.pair in gone:
+            continue
+        if isinstance(item, Link):
+            points = {letter: p for letter, p in item.points.items() if f"{item.name}.{letter}" not in gone}
+            item = replace(item, points=points) if len(points) < len(item.points) else item
+        left.append(item)
+    letters_left = {letter for item in left if isinstance(item, Link) for letter in item.points}
+    drawn = ({k: p for k, p in item.points.items() if k in letters_left} for item in left if isinstance(item, Drawn))
+    places = next(drawn, {})
+    left = [item for item in left if not isinstance(item, Drawn)] + ([Drawn(places)] if places else [])
+    owners = {getattr(item, "name", "") for item in left} | letters_left
+    return tuple(item for item in left if not isinstance(item, Expectation) or _owners_of(item) <= owners)
+
+
+def _links_of(item: Item) -> set[str]:
+    """The links that an item joins or acts on."""
+    if isinstance(item, Link):
+        return set()
+    several = (*getattr(item, "members", ()), *getattr(item, "links", ()))
+    return {*several, *(getattr(item, word, "") for word in ("link", "on"))} - {""}
+
+
+def _owners_of(expected: Expectation) -> set[str]:
+    """What a published number names: the owner of its quantity, and drivers."""
+    return {name.partition(".")[0] for name in (expected.quantity, *(key for key, _ in expected.at))}
+
+
+def _outputs_of(items: Sequence[Item], mechanism: Mechanism) -> tuple[str, ...]:
+    """Return the outputs of a mechanism that name something among these items."""
+    links = [item for item in items if isinstance(item, Link)]
+    owners = {getattr(item, "name", "") for item in items} | {letter for link in links for letter in link.points}
+    return tuple(name for name in mechanism.outputs if "(" in name or name.partition(".")[0] in owners)
 
 
 def _identity(item: Item) -> tuple[Any, ...]:

@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arguments import as_python_number, real_numbers
+from compoundkin.base.arguments import as_python_number, checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import AXES, PARTS, Dimension, component_names, unit_of
-from compoundkin.model.elements import Drive, Link
+from compoundkin.model.elements import Drive, Expectation, Link
 from compoundkin.model.fields import changed_fields, stated_numbers
 from compoundkin.model.geometry import vector
 from compoundkin.model.laws.law_numbers import law_numbers, law_of_designs, law_with
@@ -200,6 +200,42 @@ class StatedDimensions(ShortRepr):
 
     def _stated(self, owner: str) -> Mapping[str, Number]:
         return {**stated_numbers(self.items[owner]), **self.read_off.get(owner, {})}
+
+
+@checked
+def with_dimensions(mechanism: Mechanism, dimensions: Mapping[str, Any]) -> Mechanism:
+    """Return a mechanism with other dimensions, by the names that studies and programs have for them.
+
+    "crank.B.x" is a coordinate of a point in its link's frame, "crank.B" both, "way.angle" a number of a pair
+    (radians), "rod.mass" one of a mass or load. What pairs read off the drawing stays as it was; published numbers,
+    which are those of the old dimensions, are left out. Raises UnknownName for names that are no dimensions,
+    InvalidInput for values that are no finite numbers or points, InvalidMechanism for dimensions that no such mechanism
+    can have.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> with_dimensions(crank, {"crank.B.x": 22}).links["crank"].points["B"]
+    (22+0j)
+    >>> with_dimensions(crank, {"crank.C": 22})
+    Traceback (most recent call last):
+    compoundkin.base.errors.UnknownName: dimensions.crank.C: it has no such dimension, or it is not stated; \
+did you mean 'crank.B'?
+    """
+    geometry = mechanism.geometry
+    stated = StatedDimensions(mechanism, {pair.name: pair.ends(geometry) for pair in mechanism.written_pairs})
+    if not isinstance(dimensions, Mapping):
+        raise InvalidInput(Problem("dimensions", f"{short_repr(dimensions)} is no table", 'write {"crank.B.x": 22}'))
+    unknown = [_unknown_dimension(stated, str(name)) for name in dimensions if name not in stated.known]
+    if unknown:
+        raise UnknownName([replace(one, where=one.where.replace("free.", "dimensions.", 1)) for one in unknown])
+    free = free_dimensions(stated, list(dimensions))
+    changed = mechanism_with(stated, dimension_values(stated, free, dimensions))
+    published = [item for item in changed.items if isinstance(item, Expectation)] if dimensions else []
+    if not published:
+        return changed
+    words: dict[str, Any] = {name: getattr(changed, name) for name in ("source", "description", "outputs", "time")}
+    kept = (item for item in changed.items if not isinstance(item, Expectation))
+    return Mechanism(changed.title, *kept, **words, **changed.unit_words)
 
 
 def free_dimensions(stated: StatedDimensions, names: Sequence[str]) -> tuple[FreeDimension, ...]:

@@ -54,6 +54,8 @@ def _pin(first: complex, one: float, second: complex, two: float, closure: Closu
     """Return where circles about two places meet, to the left of the way from the first to the second where open."""
     way = second - first
     distance = abs(way)
+    if distance == 0.0:  # one pin: any place of two equal circles, none that is chosen
+        return None
     along = (distance**2 + one**2 - two**2) / (2.0 * distance)
     square = one**2 - along**2
     if square < 0.0:
