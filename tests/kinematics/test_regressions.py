@@ -198,7 +198,7 @@ def test_a_rise_in_a_file_says_how_far(tmp_path):
     assert ck.load(path) == mechanism
     assert text.count("rise") == 2
     path.write_text(text.replace(", rise = 0", ""))
-    with pytest.raises(ck.errors.InvalidMechanism, match=r"segments\[2\].rise: it is missing"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"segments\[2\].rise .line 10, column 3.: it is missing"):
         ck.load(path)
 
 

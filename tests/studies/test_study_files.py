@@ -127,7 +127,7 @@ def test_the_mechanism_is_found_from_the_file(tmp_path: Path) -> None:
     text = 'format = 1\nmechanism = "own.toml"\noutputs = ["C"]\n[dimensions]\n"coupler.C.x" = { low = 1, high = 2 }'
     assert read(text, tmp_path)["mechanism"].title == ck.load("crank-rocker").title
     (tmp_path / "own.toml").write_text("format = 1\ntitle = 3", "utf-8")
-    with pytest.raises(InvalidInput, match=r"mechanism title: 3 is not a text"):
+    with pytest.raises(InvalidInput, match=r"mechanism title .line 2, column 1.: 3 is not a text"):
         read(text, tmp_path)
 
 
