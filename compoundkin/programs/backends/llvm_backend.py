@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import sys
 import threading
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
+from itertools import count
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -173,9 +175,9 @@ RUN_ALL = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, *[NUMBER] * 4)
 
 @dataclass(frozen=True)
 class CompiledCode:
-    """Code in memory, which lives as long as its engine does."""
+    """Code in memory, which lives as long as its library does."""
 
-    engine: Any
+    library: Any
     run: Any
     run_all: Any
 
@@ -185,7 +187,6 @@ def host_target() -> tuple[Machine, str]:
     """Return what of this processor decides on the text, and its name."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    _add_library_symbols()
     has = {name for name, there in llvm.get_host_cpu_features().items() if there}
     triple = llvm.get_process_triple()
     lanes = 16 if "avx512f" in has else 8 if "avx" in has else 4
@@ -199,9 +200,9 @@ def host_target() -> tuple[Machine, str]:
 LONG = 300_000
 
 
-def _new_machine(text: str) -> Any:
-    """Return LLVM's machine for this processor and a text; an engine takes it for its own."""
-    return llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+def _object_of(text: str) -> bytes:
+    """Compile a text for this processor."""
+    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
         cpu=llvm.get_host_cpu_name(),
         features=llvm.get_host_cpu_features().flatten(),
         opt=1 if len(text) > LONG else 2,
@@ -209,26 +210,35 @@ def _new_machine(text: str) -> Any:
         codemodel="small",
         jit=True,
     )
+    return machine.emit_object(llvm.parse_assembly(text))  # type: ignore[no-any-return]
 
 
-def _add_library_symbols() -> None:
-    """Tell LLVM where the system's functions are."""
+@cache
+def _linker() -> tuple[Any, dict[str, int], Any]:
+    """Return what links objects in memory, where the system's functions are, and numbers for names.
+
+    The small code model needs the parts of an object within 2 GB of each other. LLVM's older linker asks the system
+    for each part alone, and stops the process where they come to lie further apart, as happens in a process that has
+    much memory; the newer one, JITLink, takes one piece for all.
+    """
+    found = {}
     with suppress(OSError, AttributeError, TypeError):
         library = ctypes.CDLL(ctypes.util.find_library("m") or ctypes.util.find_library("msvcrt"))
         for name in LIBRARY:
-            llvm.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
+            found[name] = ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0
+    return llvm.create_lljit_compiler(use_jit_link=sys.platform != "win32"), found, count()
 
 
 def compile_text(text: str) -> CompiledCode:
     """Return the code of a text, from disk where it was compiled before."""
     key = f"{host_target()[1]}\n{text}"
-    machine = _new_machine(text)
     content = cached_object(key)
     if content is None:
-        content = machine.emit_object(llvm.parse_assembly(text))
+        content = _object_of(text)
         store_object(key, content)
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
-    engine.add_object_file(llvm.ObjectFileRef.from_data(content))
-    engine.finalize_object()
-    run, run_all = (engine.get_function_address(name) for name in ("run", "run_all"))
-    return CompiledCode(engine, RUN(run), RUN_ALL(run_all))
+    linker, functions, numbers = _linker()
+    builder = llvm.JITLibraryBuilder().add_object_img(content).export_symbol("run").export_symbol("run_all")
+    for name, address in functions.items():
+        builder.import_symbol(name, address)
+    library = builder.link(linker, f"program {next(numbers)}")
+    return CompiledCode(library, RUN(library["run"]), RUN_ALL(library["run_all"]))
