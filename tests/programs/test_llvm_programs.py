@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -220,3 +223,24 @@ def test_a_back_end_is_chosen_by_its_name(monkeypatch: pytest.MonkeyPatch) -> No
     assert chosen_back_end() == "numpy"
     with pytest.raises(InvalidInput, match=r"pip install 'compoundkin\[compiled\]'"):
         chosen_back_end("llvm")
+
+
+def test_code_is_linked_where_memory_is_in_pieces() -> None:
+    """LLVM's older linker ended the process: it asked for each part of an object alone, and they lay 2 GB apart."""
+    script = """
+import mmap, random
+import numpy as np
+import compoundkin as ck
+from compoundkin.programs.backends import llvm_backend
+
+compiled, texts = llvm_backend.compile_text, []
+llvm_backend.compile_text = lambda text: (texts.append(text), compiled(text))[1]
+ck.compile(ck.load("six-bar"), ["G.position"])({"crank": np.linspace(0, 1, 30)})
+chance, kept, others = random.Random(1), [], []
+for _ in range(150):
+    kept.append(compiled(texts[0]))
+    others.append(mmap.mmap(-1, chance.choice([1 << 16, 1 << 20, 1 << 27, 1 << 31]), prot=mmap.PROT_READ))
+    if len(others) > 40:
+        others.pop(chance.randrange(40))
+"""
+    subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[2], check=True)
