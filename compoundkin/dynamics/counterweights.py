@@ -19,7 +19,7 @@ from compoundkin.base.display import ShortRepr, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.linear import one_thread
 from compoundkin.dynamics.balance_conditions import BALANCED, BalanceConditions, PinDirections, pin_directions
-from compoundkin.dynamics.course_quadrature import nodes, smooth_pieces
+from compoundkin.dynamics.driver_course import nodes, smooth_pieces
 from compoundkin.dynamics.mass_motion import mass_centre_place, mass_motions, units_of_masses
 from compoundkin.kinematics.extremes import Measure, between, closed_cycles, extremes
 from compoundkin.kinematics.jacobian import moved_alone

@@ -11,8 +11,17 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.course_quadrature import Pieces, integrals, smooth_pieces
-from compoundkin.dynamics.driver_course import NO_MEAN, DriverCourse, Line, driver_course, in_units, texts_of_designs
+from compoundkin.dynamics.driver_course import (
+    NO_MEAN,
+    DriverCourse,
+    Line,
+    Pieces,
+    driver_course,
+    in_units,
+    integrals,
+    smooth_pieces,
+    texts_of_designs,
+)
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.mass_motion import equivalent_inertia
 from compoundkin.kinematics.extremes import Places, between, zeros

@@ -18,8 +18,7 @@ from compoundkin.base.display import ShortRepr, aligned_text, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.balance_conditions import BALANCED
 from compoundkin.dynamics.counterweights import BalanceFigure
-from compoundkin.dynamics.course_quadrature import nodes, smooth_pieces
-from compoundkin.dynamics.driver_course import DriverCourse, Line, in_units
+from compoundkin.dynamics.driver_course import DriverCourse, Line, in_units, nodes, smooth_pieces
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics.extremes import between, extremes

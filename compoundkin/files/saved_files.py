@@ -1,6 +1,7 @@
 """`save`: whatever can be saved, in the form that the file's suffix tells.
 
-Tables are CSV and JSON for people, angles in degrees; NPZ and Parquet for programs, angles in radians.
+Tables are CSV and JSON for people, angles in degrees; NPZ and Parquet for programs, angles in radians. The library of
+Parquet files is an extra of the package, imported when it is needed.
 """
 
 from __future__ import annotations
@@ -18,11 +19,10 @@ from typing import Any, BinaryIO, ClassVar, Protocol, TypeAlias, runtime_checkab
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, missing_extra
 from compoundkin.base.suffixes import Kind, all_suffixes, file_format
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.mechanism_files import encoded
-from compoundkin.files.parquet_library import parquet
 from compoundkin.kinematics.quantities import ANGLES, Table
 from compoundkin.model.mechanism import Mechanism
 
@@ -167,3 +167,12 @@ def save(what: Any, path: str | os.PathLike[str]) -> None:
     else:
         told = f"a {type(what).__name__} cannot be saved"
         raise InvalidInput(Problem(str(path), told, all_suffixes()))
+
+
+def parquet(where: str = "") -> Any:
+    """Return `pyarrow.parquet`. Raises InvalidInput, which names a place, where it is not installed."""
+    try:
+        import_module("pyarrow")
+        return import_module("pyarrow.parquet")
+    except ImportError:
+        raise missing_extra(where, "this needs pyarrow", "parquet") from None

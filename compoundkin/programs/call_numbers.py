@@ -27,8 +27,7 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.runner import Runner
 from compoundkin.programs.dimensions import FreeDimension, drives_of_call
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, Carried, FlatProgram, flat_program
-from compoundkin.programs.graph.operation_graph import DRIVE, PARAMETER, SEED, STEP, InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import INPUT
+from compoundkin.programs.graph.operation_graph import DRIVE, INPUT, PARAMETER, SEED, STEP, InputNumber, OperationGraph
 
 FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
 

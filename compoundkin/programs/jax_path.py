@@ -24,8 +24,17 @@ from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector
 from compoundkin.programs.call_numbers import Call
-from compoundkin.programs.graph.operation_graph import DRIVE, SEED, InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS, TOTAL
+from compoundkin.programs.graph.operation_graph import (
+    CONSTANT,
+    DRIVE,
+    INPUT,
+    OPERATIONS,
+    REDUCTIONS,
+    SEED,
+    TOTAL,
+    InputNumber,
+    OperationGraph,
+)
 from compoundkin.programs.limit_screening import safe_margin
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits

@@ -23,8 +23,7 @@ from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import LEAST
+from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, LEAST, InputNumber, OperationGraph
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 

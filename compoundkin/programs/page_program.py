@@ -24,8 +24,15 @@ from compoundkin.model.attributes import OF_LINKS
 from compoundkin.programs.backends.tape_program import Instruction, allocate_rows
 from compoundkin.programs.dimensions import FreeDimension, StatedDimensions, mechanism_with
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, node_strata
-from compoundkin.programs.graph.operation_graph import DRIVE, SEED, InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS
+from compoundkin.programs.graph.operation_graph import (
+    CONSTANT,
+    DRIVE,
+    INPUT,
+    OPERATIONS,
+    SEED,
+    InputNumber,
+    OperationGraph,
+)
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, record_mechanism
 from compoundkin.programs.recording.recorded_motion import ProgramOutput, RecordedLink, RecordedMotion, record_outputs
 from compoundkin.programs.recording.recorded_number import RecordedNumber

@@ -26,7 +26,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, StudyStopped, warn
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.atomic import write_atomically
-from compoundkin.files.parquet_library import parquet
+from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples import sample_from
 from compoundkin.studies.samples.variations import variation_from
 from compoundkin.studies.study_plan import (

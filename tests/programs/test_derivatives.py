@@ -6,8 +6,7 @@ import pytest
 from compoundkin.programs.backends.tape_backend import Tape
 from compoundkin.programs.derivatives.differentiation import SLOPE_RULES, forward, reverse, slopes
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, flat_program
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, OPERATIONS, TOTAL
+from compoundkin.programs.graph.operation_graph import CONSTANT, OPERATIONS, TOTAL, InputNumber, OperationGraph
 
 SHAPE = (3, 5)
 ROWS = {FIXED_NUMBER: (1, 1), BY_DESIGN: (3, 1), BY_POSE: (1, 5), BY_BOTH: SHAPE}

@@ -11,8 +11,7 @@ import pytest
 
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.graph.flat_program import BY_POSE, FIXED_NUMBER, flat_program
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import OPERATIONS
+from compoundkin.programs.graph.operation_graph import OPERATIONS, InputNumber, OperationGraph
 
 pytest.importorskip("llvmlite")
 SPECIAL = (

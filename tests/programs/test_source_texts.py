@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from compoundkin.base.arrays import Number
 from compoundkin.programs.backends.tape_backend import TapeRunner
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import OPERATIONS
+from compoundkin.programs.graph.operation_graph import OPERATIONS, InputNumber, OperationGraph
 from compoundkin.programs.sources import LANGUAGES
 from compoundkin.programs.sources.statements import RESERVED, Identifiers, identifier, reading_order
 from compoundkin.programs.sources.written_program import Argument, Result, WrittenProgram

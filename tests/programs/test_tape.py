@@ -10,8 +10,14 @@ import pytest
 from compoundkin.programs.backends import tape_backend
 from compoundkin.programs.backends.tape_backend import Tape
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, Carried, flat_program
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS
+from compoundkin.programs.graph.operation_graph import (
+    CONSTANT,
+    INPUT,
+    OPERATIONS,
+    REDUCTIONS,
+    InputNumber,
+    OperationGraph,
+)
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from tests.benchmarks import six_bar
 

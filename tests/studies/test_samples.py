@@ -15,8 +15,7 @@ import compoundkin as ck
 from compoundkin.kinematics.quantities import Quantity, Table
 from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.studies.samples import SAMPLES, sample_from, sample_of
-from compoundkin.studies.samples.random_sample import LatinHypercubeSample, RandomSample, permuted
-from compoundkin.studies.samples.sobol import SobolSample
+from compoundkin.studies.samples.random_samples import LatinHypercubeSample, RandomSample, SobolSample, permuted
 from compoundkin.studies.samples.value_ranges import Levels
 from compoundkin.studies.samples.variation import Variation
 from compoundkin.studies.samples.variations import check_kinds, variation_from, variation_of, variations_of

@@ -11,7 +11,7 @@ import pytest
 from scipy import stats
 
 import compoundkin as ck
-from compoundkin.studies.samples.random_sample import RandomSample
+from compoundkin.studies.samples.random_samples import RandomSample
 from compoundkin.studies.tolerances.output_tolerance import SampledOutput
 
 TURN = ck.deg(np.arange(0, 360, 15))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, FlatProgram
-from compoundkin.programs.graph.operations import TOTAL
+from compoundkin.programs.graph.operation_graph import TOTAL
 
 # Sections, in the order in which they run, each with what its values are computed for.
 FIXED, BEFORE, ROWS, LOOP, AFTER = "fixed", "before", "rows", "loop", "after"

@@ -39,7 +39,7 @@ from compoundkin.programs.backends.llvm_plan import (
 )
 from compoundkin.programs.backends.llvm_text import ControlText, LaneText, bits_of
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, TOTAL
+from compoundkin.programs.graph.operation_graph import CONSTANT, INPUT, OPERATIONS, TOTAL
 
 # The arrays, scratch, designs and poses, which designs and segments, where their sums are, whether it is the last call
 # for these designs, poses of a segment.

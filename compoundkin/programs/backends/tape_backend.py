@@ -29,7 +29,7 @@ from compoundkin.programs.backends.tape_program import (
     tape_phases,
 )
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FlatProgram
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, REDUCTIONS, TOTAL
+from compoundkin.programs.graph.operation_graph import CONSTANT, INPUT, REDUCTIONS, TOTAL
 
 # So many shapes of blocks keep their rows from call to call.
 SHAPES_KEPT = 8

@@ -15,8 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, Carried, FlatProgram
-from compoundkin.programs.graph.operation_graph import OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS
+from compoundkin.programs.graph.operation_graph import CONSTANT, INPUT, OPERATIONS, REDUCTIONS, OperationGraph
 
 
 @dataclass(frozen=True)

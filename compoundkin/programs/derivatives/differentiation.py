@@ -13,8 +13,7 @@ from math import isnan
 from typing import NamedTuple, TypeAlias
 
 from compoundkin.programs.graph.flat_program import BY_POSE, node_strata
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, TOTAL
+from compoundkin.programs.graph.operation_graph import CONSTANT, TOTAL, InputNumber, OperationGraph
 
 
 def reverse(

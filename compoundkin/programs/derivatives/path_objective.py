@@ -41,8 +41,7 @@ from compoundkin.programs.derivatives.solved_inputs import (
     known_poses,
     solved_inputs,
 )
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import TOTAL
+from compoundkin.programs.graph.operation_graph import TOTAL, InputNumber, OperationGraph
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_number import RecordedNumber, one_pose, selected
 

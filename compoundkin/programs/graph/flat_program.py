@@ -8,8 +8,7 @@ from functools import reduce
 from operator import or_
 
 from compoundkin.base.display import ShortRepr
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, INPUT
+from compoundkin.programs.graph.operation_graph import CONSTANT, INPUT, InputNumber, OperationGraph
 
 # Strata: by which axes of (designs, poses) a value varies. What is given as one number counts as fixed by the design.
 FIXED_NUMBER, BY_DESIGN, BY_POSE, BY_BOTH = 0, 1, 2, 3

@@ -17,8 +17,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.solution import FAST
-from compoundkin.programs.graph.operation_graph import OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, LEAST
+from compoundkin.programs.graph.operation_graph import CONSTANT, LEAST, OperationGraph
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 

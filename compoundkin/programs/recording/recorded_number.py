@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.programs.graph.operation_graph import OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT
+from compoundkin.programs.graph.operation_graph import CONSTANT, OperationGraph
 
 
 class NumpyOperand(ABC):

@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT, REDUCTIONS
+from compoundkin.programs.graph.operation_graph import CONSTANT, REDUCTIONS, InputNumber, OperationGraph
 from compoundkin.programs.sources.spellings import QUOTIENT, Phrase, Spelling
 from compoundkin.programs.sources.written_program import WrittenProgram, within_comment
 

@@ -9,8 +9,7 @@ from typing import Protocol
 
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.version import VERSION
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT
+from compoundkin.programs.graph.operation_graph import CONSTANT, InputNumber, OperationGraph
 
 
 @dataclass(frozen=True)

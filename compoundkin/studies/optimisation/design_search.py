@@ -28,7 +28,7 @@ from compoundkin.studies.optimisation.refinement import (
     refine_together,
 )
 from compoundkin.studies.responses.assembled_range import failed_name
-from compoundkin.studies.samples.sobol import SobolSample
+from compoundkin.studies.samples.random_samples import SobolSample
 
 # The greatest number of steps.
 STEPS = 100

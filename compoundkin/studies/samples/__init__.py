@@ -10,8 +10,7 @@ from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.studies.samples.design_sample import DesignSample
 from compoundkin.studies.samples.grid_sample import GridSample, TableSample
-from compoundkin.studies.samples.random_sample import LatinHypercubeSample, RandomSample
-from compoundkin.studies.samples.sobol import SobolSample
+from compoundkin.studies.samples.random_samples import LatinHypercubeSample, RandomSample, SobolSample
 from compoundkin.studies.samples.variation import Variation
 
 KINDS_OF_SAMPLES: tuple[type[DesignSample], ...] = (

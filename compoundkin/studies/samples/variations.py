@@ -17,7 +17,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.base.suffixes import file_format
-from compoundkin.files.parquet_library import parquet
+from compoundkin.files.saved_files import parquet
 from compoundkin.model.attributes import DEGREES
 from compoundkin.programs.dimensions import FreeDimension
 from compoundkin.studies.samples.distribution import Distribution

@@ -36,7 +36,7 @@ from compoundkin.programs.dimensions import StatedDimensions
 from compoundkin.studies.responses import Designs, Response, StudiedPath, studied_path
 from compoundkin.studies.responses.assembled_range import assembled_range, failure, is_misfit
 from compoundkin.studies.responses.designs import design_blocks, name_freeing_argument
-from compoundkin.studies.samples.random_sample import RandomSample
+from compoundkin.studies.samples.random_samples import RandomSample
 from compoundkin.studies.tolerances.error_sources import (
     ErrorSource,
     ErrorSpec,

@@ -18,7 +18,7 @@ from compoundkin.kinematics.quantities import Quantity, Table
 from compoundkin.model.attributes import DEGREES, RADIANS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.samples.design_sample import checked_count, checked_seed
-from compoundkin.studies.samples.random_sample import RandomSample
+from compoundkin.studies.samples.random_samples import RandomSample
 from compoundkin.studies.tolerances.error_sources import ErrorSource
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 

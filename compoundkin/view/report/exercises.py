@@ -41,10 +41,9 @@ from compoundkin.structure import Structure, roman
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.equations_sections import constants_section, equations_section, pose_section, rates_section
 from compoundkin.view.report.groups_section import solving_section
-from compoundkin.view.report.latex_text import latex_document
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column, Paragraph, Section, TableBlock
-from compoundkin.view.report.report_forms import Report
+from compoundkin.view.report.report_forms import Report, latex_document
 from compoundkin.view.report.structure_sections import loops_section, mobility_section
 from compoundkin.view.report.wording import listed, number_text
 

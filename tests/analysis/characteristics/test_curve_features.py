@@ -8,8 +8,13 @@ from scipy.optimize import linprog
 
 import compoundkin as ck
 from compoundkin.analysis.characteristics.output_figures import Sampled, dwells
-from compoundkin.analysis.characteristics.path_features import fitted_circles, fitted_lines, path_features, straightness
-from compoundkin.analysis.characteristics.traced_path import monotonic_stretches
+from compoundkin.analysis.characteristics.path_features import (
+    fitted_circles,
+    fitted_lines,
+    monotonic_stretches,
+    path_features,
+    straightness,
+)
 from tests import catalog
 
 CRANK = ck.deg(np.arange(0, 361, 5))

@@ -17,8 +17,7 @@ import compoundkin as ck
 from compoundkin.files.mechanism_files import dumps, loads
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.programs.dimensions import StatedDimensions, mechanism_with
-from compoundkin.view.page.live.mechanism_template import mechanism_template
-from compoundkin.view.page.live.panel_data import template_data
+from compoundkin.view.page.live.panel_data import mechanism_template, template_data
 from tests import catalog
 
 from .conftest import DESK, PHONE

@@ -21,8 +21,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.outline_shapes import outline_shapes
 from compoundkin.model.pairs.contract import Ends, guided_point
 from compoundkin.programs.dimensions import FreeDimension, StatedDimensions
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import CONSTANT
+from compoundkin.programs.graph.operation_graph import CONSTANT, InputNumber, OperationGraph
 from compoundkin.programs.page_program import operation_table
 from compoundkin.programs.recording.recorded_mechanism import recorded_ends, recorded_geometry
 from compoundkin.programs.recording.recorded_number import RecordedNumber
