@@ -621,6 +621,69 @@ def test_short_pulses_and_corners_in_time() -> None:
     assert swung.motion.drives["rotor"].value[-1] == pytest.approx(2.0 * 20.0 * (np.pi / 40.0) ** 2, rel=1e-9)
 
 
+WINDOW = {"at": [0.0, 3.0, 3.01, 3.02, 2.0 * np.pi], "values": [0.0, 0.0, 100.0, 0.0, 0.0], "period": 2.0 * np.pi}
+
+
+@pytest.mark.parametrize(
+    ("load", "work", "jumps"),
+    [
+        (ck.effort("rotor", lambda q: np.where((q > 3.0) & (q < 3.02), 50.0, 0.0)), 1.0, 2),
+        (ck.effort("rotor", lambda q, w: np.where((q > 3.0) & (q < 3.02), 50.0, 0.0)), 1.0, 2),
+        (ck.effort("O", lambda q: np.exp(-(((q - 3.0) / 0.004) ** 2)) / (0.004 * np.sqrt(np.pi)) - 0.01 * q), 1.0, 0),
+        (ck.spring(pair="O", stiffness=lambda q: np.where((q > 3.0) & (q < 3.02), -50.0, 0.0), free=0.5), 1.0, 2),
+        (ck.torque("rotor", {"over": "rotor", **WINDOW}), 1.0, 0),
+    ],
+    ids=["function", "with speed", "smooth", "spring", "table"],
+)
+def test_a_narrow_window_over_a_coordinate_is_not_stepped_over(load: Any, work: float, jumps: int) -> None:
+    """Steps of a radian went over 0.02 rad: the speed is that of the work in it."""
+    found = ck.simulate(rotor_under(load), start=(0.0, 5.0), until=1.2)
+    place, speed = found.motion.drives["rotor"].value, found.motion.drives["rotor"].rate
+    assert 4.0 < place[-1] < 9.0
+    sloped = -0.005 * place[-1] ** 2 if load.name == "effort along O" else 0.0
+    assert speed[-1] == pytest.approx(np.sqrt(25.0 + 2.0 * (work + sloped) / 0.05), rel=1e-9)
+    assert [event.name for event in found.events] == ["jump"] * jumps
+    assert found.energy.worst < 1e-11
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+@pytest.mark.parametrize(
+    "load",
+    [
+        ck.effort("guide", lambda s: np.where((s > 3.5) & (s < 3.505), 200.0, 0.0)),
+        ck.effort("guide", {"at": [1.0, 3.5, 3.502, 3.504, 5.0], "values": [0.0, 0.0, 500.0, 0.0, 0.0]}),
+        ck.spring("piston", "B", at="O", stiffness=lambda q: np.where((q > 3.5) & (q < 3.505), -200.0, 0.0)),
+    ],
+    ids=["function", "table", "spring"],
+)
+def test_a_narrow_window_over_another_coordinate(load: Any, friction: float) -> None:
+    """Inward over it by 1 J once; pieces of the table end where it does."""
+    machine = press(load, *((ck.friction("guide", friction),) if friction else ()))
+    found = ck.simulate(machine, start=(0.3, 8.0), until=0.3)
+    assert found.motion.drives["crank"].value[-1] > 2.0
+    assert found.energy.work[-1] + sum(found.losses.values()) == pytest.approx(-1.0, abs=1e-8)
+    assert found.energy.worst < 1e-8
+
+
+def test_a_narrow_window_under_several_drivers() -> None:
+    """A block on a block, 1 J on 2 kg."""
+    ways = (
+        ck.slide("one", on="frame", at="P", through="O", angle=0.0, name="rail"),
+        ck.slide("two", on="one", at="Q", through="P", angle=0.0, name="gap"),
+    )
+    blocks = ck.Mechanism(
+        "Blocks",
+        *(ck.link("frame", O=0), ck.link("one", P=0), ck.link("two", Q=0), *ways),
+        *(ck.drive("one"), ck.drive("two", on="one")),
+        *(ck.mass("one", 2.0, at="P", inertia=0), ck.mass("two", 3.0, at="Q", inertia=0)),
+        ck.effort("rail", lambda s: np.where((s > 0.35) & (s < 0.3505), 2000.0, 0.0)),
+        units={"length": "m", "mass": "kg", "force": "N"},
+    )
+    found = ck.simulate(blocks, start={"one": (0.0, 1.0), "two": 0.1}, until=0.5)
+    assert found.motion.drives["one"].rate[-1] == pytest.approx(np.sqrt(2.0), rel=1e-9)
+    assert [event.name for event in found.events] == ["jump", "jump"]
+
+
 def test_a_buffer_is_met_and_left() -> None:
     """A function with a corner: half a period of the buffer's, then back with the same speed."""
     found = ck.simulate(

@@ -24,10 +24,11 @@ from compoundkin.dynamics.simulation.coordinate_change import Chart, chart_of, i
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import rotors_that_lose
 from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
+from compoundkin.dynamics.simulation.load_breaks import breaks_in_time
 from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
-from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, load_breaks, watches
+from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, watches
 from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -103,7 +104,7 @@ def simulate(
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
     watched = watches(mechanism, events or {}, (stop,) if isinstance(stop, str) else tuple(stop))
-    breaks = load_breaks(mechanism, float(until))
+    breaks = breaks_in_time(mechanism, float(until))
     course = SimulatedCourse(float(until), float(tolerance), watched, restitution, breaks=breaks)
     with np.errstate(all="ignore"):
         _check_inertia(chart, state)

@@ -25,14 +25,18 @@ from compoundkin.dynamics.simulation.driver_chart import BESIDE, DriverChart, He
 from compoundkin.dynamics.simulation.driver_state import DriverState, KnownState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
+from compoundkin.dynamics.simulation.load_breaks import SAMPLED, LoadBreak
 from compoundkin.dynamics.simulation.phases import OpenPair, landed, without_pair
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
+    JUMP,
     REST,
     REVERSES,
+    BreakWatch,
     ContactWatch,
     LiftOffWatch,
-    LoadBreak,
+    Passed,
+    PlaceWatch,
     SimulationEvent,
     StopWatch,
     Watch,
@@ -55,8 +59,6 @@ LONGEST_MOVE = 1.0
 SHORTER = 8.0
 # The integration stalls where a step is below this part of the longest.
 STALLED = 1e-7
-# The name of the event where a load jumps.
-JUMP = "jump"
 # The name of the event where friction holds a mechanism.
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
@@ -100,6 +102,7 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
         loosened = max(1.0, min(chart.digits_lost(solver.t, y), LOOSEST) / course.tolerance)
         solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
         before = _Begin(solver.t, y, f)
+        _shorten(chart, solver, before, course)
         _step(solver, course)
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
@@ -111,7 +114,7 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
         course.steps.append(
             Step(chart, float(solver.t_old), float(solver.t), _between(solver, before, n), chart.memory)
         )
-        passed = _passed(course)
+        passed = _passed(course, _by_ends(before, solver, n))
         if passed is not None and (passed.state is None or passed.time >= course.until):
             return None
         released = _released(chart, course) if passed is None and chart.held is not None else None
@@ -138,7 +141,7 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
                 chart, state = _next_phase(chart, passed, state, course)
                 n = len(chart.free)
             # friction changes, and nothing else: steps are as long as before
-            paced = solver.h_abs if passed.is_smooth and not solver.is_implicit else None
+            paced = solver.h_abs if passed.is_smooth and not solver.is_implicit else passed.step
             solver = _begun(chart, passed.time, state, course, paced)
         if progress is not None:
             progress(int(PARTS * course.last / course.until), PARTS)
@@ -217,14 +220,17 @@ class _Interruption(NamedTuple):
     released: Release | None = None  # the pair that comes apart there
     landing: OpenPair | None = None  # the contact that closes there
     is_smooth: bool = False  # whether speeds and states go on as they are
+    step: float | None = None  # the first step from there
 
 
-def _passed(course: SimulatedCourse) -> _Interruption | None:
+def _passed(course: SimulatedCourse, by_ends: Callable[[Number], Number]) -> _Interruption | None:
     """Record the events of the last step; return the interruption by one, if any."""
     step = course.steps[-1]
-    watched = (*course.watched, *stop_watches(step.chart))
-    for one in first_passed(watched, step.chart, (step.first, step.last), step.between) if watched else ():
+    watched, times = (*course.watched, *stop_watches(step.chart)), (step.first, step.last)
+    for one in first_passed(watched, step.chart, times, step.between, by_ends) if watched else ():
         n, watch = len(step.chart.free), one.watch
+        if isinstance(watch, BreakWatch):
+            return _up_to_break(one, watch, step, course)
         if isinstance(watch, ContactWatch):
             course.cut(one.time, False)
             damped = course.damped(watch.contact, True) if isinstance(watch, StopWatch) else 0.0
@@ -261,7 +267,98 @@ def _passed(course: SimulatedCourse) -> _Interruption | None:
             course.fastest = max(course.fastest, impact.approach)
             speeds = impact.speeds[:n]
             return _Interruption(one.time, np.array([*one.state[:n], *speeds, one.state[-1] - impact.lost]))
+    if course.near is not None:
+        watch, course.near = course.near, None
+        beyond = step.last + BEYOND * (step.last - step.first)
+        found = watch.passed(step.chart, (step.last, beyond), step.between) if beyond < course.until else None
+        if found is not None:
+            state = step.between(np.array(found.time))
+            return _behind_place(Passed(watch, found.time, state, found.at), step, course)
     return None
+
+
+# A step that is made again up to a break of a load ends before it by this part of its length, so that nothing behind
+# the break is in it, and is extended by as much again at most: its polynomial holds as well there.
+SHORT, BEYOND = 1e-3, 1e-2
+# What is nearer to a break than this part of the whole is there; jumps nearer than the second are one.
+AT_BREAK, ONE_JUMP = 1e-13, 1e-10
+
+
+def _shorten(chart: Chart, solver: Any, before: _Begin, course: SimulatedCourse) -> None:
+    """Let the next step end just before a break of a load to which the present acceleration leads."""
+    watched = [one for one in course.watched if isinstance(one, BreakWatch) and not one.is_idle(chart)]
+    if not watched:
+        return
+    n, t = len(chart.free), float(before.time)
+    accelerated = np.concatenate([before.rates[: 2 * n], [0.0]])
+    second = np.concatenate([before.rates[n : 2 * n], np.zeros(n + 1)])
+
+    def states(times: Number) -> Number:
+        since = np.atleast_1d(times) - t
+        moved = before.state[:, None] + accelerated[:, None] * since + 0.5 * second[:, None] * np.square(since)
+        return moved if np.ndim(times) else moved[:, 0]
+
+    end = min(t + solver.h_abs, course.until)
+    for watch in watched:
+        found = watch.passed(chart, (t, end), states)
+        if found is not None and found.time - t > AT_BREAK * course.until:
+            end, course.near = found.time, watch
+            solver.h_abs = (end - t) * (1.0 - SHORT)
+
+
+def _up_to_break(passed: Passed, watch: BreakWatch, step: Step, course: SimulatedCourse) -> _Interruption:
+    """Return the interruption by which a step over a break of a load is made again up to it."""
+    far = passed.time - step.first
+    if step.last - step.first < AT_BREAK * course.until or far < AT_BREAK * course.until:
+        return _behind_place(passed, step, course)
+    course.steps.pop()
+    course.near = watch
+    return _Interruption(step.first, step.between(np.array(step.first)), step=far * (1.0 - SHORT))
+
+
+def _by_ends(begin: _Begin, solver: Any, n: int) -> Callable[[Number], Number]:
+    """Return coordinates and speeds in the last step by values, speeds and accelerations at both ends."""
+    y, f, length = solver.y, solver.f, solver.t - begin.time
+    q0, v0, a0 = begin.state[:n], begin.state[n : 2 * n] * length, begin.rates[n : 2 * n] * length**2
+    v1, a1 = y[n : 2 * n] * length, f[n : 2 * n] * length**2
+    off, over, last = y[:n] - q0 - v0 - a0 / 2.0, v1 - v0 - a0, a1 - a0
+    c3, c4, c5 = 10 * off - 4 * over + last / 2, -15 * off + 7 * over - last, 6 * off - 3 * over + last / 2
+
+    def states(times: Number) -> Number:
+        x = (np.atleast_1d(times) - begin.time) / length
+        rows = [one[:, None] for one in (q0, v0, a0 / 2.0, c3, c4, c5)]
+        places = sum(row * x**k for k, row in enumerate(rows))
+        speeds = sum(k * row * x ** (k - 1) for k, row in enumerate(rows) if k) / length
+        found = np.concatenate([places, speeds, np.zeros((1, len(x)))])
+        return found if np.ndim(times) else found[:, 0]
+
+    return states
+
+
+def _behind_place(passed: Passed, step: Step, course: SimulatedCourse) -> _Interruption:
+    """Return the interruption at a break of a load; where the motion goes to and fro between both sides, it ends."""
+    assert passed.at is not None
+    course.steps[-1] = replace(step, last=passed.time)
+    since = passed.time - AGAIN * STALLED * course.until
+    recent = [place for time, place in course.places if time > since and place == passed.at]
+    course.places.append((passed.time, passed.at))
+    if len(recent) >= MOST_JUMPS:
+        _stop(course, JUMP, TO_AND_FRO)
+        return _Interruption(passed.time, None)
+    last = course.events[-1] if course.events else None
+    is_known = last is not None and last.name == JUMP and passed.time - last.time < ONE_JUMP * course.until
+    if passed.at.jumps and not is_known:
+        course.events.append(SimulationEvent(passed.time, JUMP, passed.watch.text, False))
+    first = None
+    if passed.at.wakes and isinstance(passed.watch, PlaceWatch):
+        # in the first step behind it no short pulse is gone over
+        ends = [passed.watch.value(step.chart, t, step.between(np.array(t))) for t in (step.first, passed.time)]
+        moved, size = abs(ends[1] - ends[0]), step.chart.order.size
+        first = (passed.time - step.first) * passed.watch.place.sample(size) / moved if moved else None
+    elif passed.at.wakes:
+        moved = abs(float(step.between(np.array(passed.time))[0] - step.between(np.array(step.first))[0]))
+        first = (passed.time - step.first) * float(step.chart.scales[0]) / (SAMPLED * moved) if moved else None
+    return _Interruption(passed.time, passed.state, step=first)
 
 
 def _changed(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart, Number] | None:
@@ -296,8 +393,7 @@ def _changed(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart,
             course.restarts.append(course.last)
             return chart, solver.y
         solver.status = "finished"
-        text = "the loads change there faster than they can be followed, or hold the motion between two sides of a jump"
-        _stop(course, JUMP, text)
+        _stop(course, JUMP, TO_AND_FRO)
     return None
 
 
@@ -374,6 +470,7 @@ def _grows(course: SimulatedCourse) -> bool:
 AHEAD, NEXT, HALVINGS, JUMPS, MOST = 64.0, 8.0, 80, 1e-9, 0.5
 # Jumps that follow each other within so many stalled steps are one at which the motion cannot go on to either side.
 AGAIN, MOST_JUMPS = 1e3, 4
+TO_AND_FRO = "the loads change there faster than they can be followed, or hold the motion between two sides of a jump"
 
 
 class _Jump(NamedTuple):
@@ -560,7 +657,8 @@ def _behind_break(chart: Chart, solver: Any, course: SimulatedCourse) -> Any:
         return None
     if one.jumps:
         course.events.append(SimulationEvent(one.behind, JUMP, "the loads jump", False))
-    return _begun(chart, one.behind, solver.y, course)
+    # in the first step behind it no short pulse is gone over
+    return _begun(chart, one.behind, solver.y, course, course.until / SAMPLED if one.wakes else None)
 
 
 def _stop(course: SimulatedCourse, name: str, text: str) -> None:
@@ -796,6 +894,8 @@ class SimulatedCourse:
     fastest: float = 0.0
     changed: float = -np.inf  # the time of the last change of coordinate
     breaks: tuple[LoadBreak, ...] = ()
+    near: BreakWatch | None = None  # of a break behind the present step
+    places: list[tuple[float, LoadBreak]] = field(default_factory=list)  # breaks over coordinates, when passed
     restarts: list[float] = field(default_factory=list)  # times of restarts behind steps that collapsed
     ended: bool = False
     implicit: bool = False  # whether an implicit method has taken over

@@ -14,13 +14,14 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation.coordinate_change import Chart
-from compoundkin.dynamics.simulation.driver_state import KnownState, SimulatedState
+from compoundkin.dynamics.simulation.driver_state import KnownState, LoadedState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
+from compoundkin.dynamics.simulation.load_breaks import BreakPassed, LoadBreak, LoadPlace, first_break, load_places
 from compoundkin.dynamics.simulation.phases import LANDED, OpenPair, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
+from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics.solving_order import AT_END
-from compoundkin.model.loads.amounts import corners_in_time, function_of_time
 from compoundkin.model.loads.latch import Latch, Release, as_latch, as_release
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -45,6 +46,8 @@ STOP, RESTS, LEAVES = "stop", "rests", "leaves"
 CATCHES, OPENS, TOOTH, IDLE = "catches", "opens", "tooth", "idle"
 # The names of the events at which a contact that has let go closes, or is left again at once.
 LANDS, REBOUNDS = "lands", "rebounds"
+# The name of the event where a load jumps.
+JUMP = "jump"
 Function = Callable[[SimulatedState], Any]
 
 
@@ -172,6 +175,65 @@ class StickWatch(SlidingWatch):
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return how far ahead the next one is."""
         return chart.margin_at(time, state) if isinstance(chart, FrictionChart) else 1.0
+
+
+class BreakWatch(Watch):
+    """Places of the driver at which loads in its table jump, wake or have corners."""
+
+    def is_idle(self, chart: Chart) -> bool:
+        """Return whether there are none."""
+        return not (isinstance(chart, TabulatedChart) and chart.table is not None and chart.table.breaks)
+
+    def passed(
+        self, chart: Chart, times: tuple[float, float], between: Callable[[Number], Number]
+    ) -> BreakPassed | None:
+        """Return the first one that is passed in a step."""
+        assert isinstance(chart, TabulatedChart)
+        samples = np.linspace(*times, EVENT_SAMPLES + 1)
+        return first_break(samples.tolist(), between(samples)[0].tolist(), lambda t: float(between(np.array(t))[0]),
+                           chart.breaks)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class PlaceWatch(BreakWatch):
+    """Places of a coordinate at which a load that is in no table jumps, wakes or has corners."""
+
+    place: LoadPlace = field(kw_only=True)
+
+    def is_idle(self, chart: Chart) -> bool:
+        """Return whether the load acts no more."""
+        return self.place.load.name not in chart.mechanism.loads
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return the coordinate."""
+        n = len(chart.free)
+        return float(np.ravel(self.place.value(chart.seen(time, state[:n], state[n : 2 * n]).loaded))[0])
+
+    def passed(
+        self, chart: Chart, times: tuple[float, float], between: Callable[[Number], Number]
+    ) -> BreakPassed | None:
+        """Return the first one that is passed in a step."""
+        n, samples = len(chart.free), np.linspace(*times, EVENT_SAMPLES + 1)
+        states = between(samples)
+        if isinstance(chart, TabulatedChart) and chart.has_in_table(self.place.load, states[0]):
+            return None
+        slope, offset = chart.straight(self.place) if isinstance(chart, TabulatedChart) else (0.0, 0.0)
+        if slope:
+            places = (slope * states[0] + offset).tolist()
+        else:
+            places = [self.value(chart, t, y) for t, y in zip(samples.tolist(), states.T, strict=True)]
+
+        def place(time: float) -> float:
+            y = between(np.array(time))
+            return slope * float(y[0]) + offset if slope else self.value(chart, time, y)
+
+        def begun() -> LoadedState:
+            return chart.seen(times[0], states[:n, 0], states[n : 2 * n, 0]).loaded
+
+        def breaks(low: float, high: float) -> Sequence[LoadBreak]:
+            return self.place.breaks(low, high, chart.order.size, begun)
+
+        return first_break(samples.tolist(), places, place, breaks)
 
 
 class StopPassage(NamedTuple):
@@ -470,11 +532,12 @@ def idle_latches(chart: Chart, time: float) -> Iterator[SimulationEvent]:
 
 @dataclass(frozen=True, eq=False)
 class Passed:
-    """A zero of a watched function: its time, and the state there."""
+    """A zero of a watched function, or a break of a load: its time, and the state there."""
 
     watch: Watch
     time: float
     state: Number
+    at: LoadBreak | None = None
 
 
 def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ...]) -> tuple[Watch, ...]:
@@ -487,7 +550,13 @@ def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ..
         if name not in events:
             raise InvalidInput(Problem("stop", f"there is no event {name!r}", f"known: {', '.join(events) or 'none'}"))
     own = [Watch(name, function, "as asked for", name in stop, asked=True) for name, function in events.items()]
-    return (*(FRICTIONS if mechanism.frictions else ()), *_of_pairs(mechanism), *own)
+    places = load_places(mechanism.loads.values())
+    text = "the loads jump"
+    breaks = [
+        BreakWatch(JUMP, _speed, text, False),
+        *(PlaceWatch(JUMP, _speed, text, False, place=one) for one in places),
+    ]
+    return (*(FRICTIONS if mechanism.frictions else ()), *_of_pairs(mechanism), *own, *(breaks if places else ()))
 
 
 def _speed(state: SimulatedState) -> float:
@@ -526,21 +595,32 @@ def ended_pair(state: SimulatedState) -> Pair:
 
 
 def first_passed(
-    watched: tuple[Watch, ...], chart: Chart, times: tuple[float, float], between: Callable[[float], Number]
-) -> list[Passed]:
-    """Return the zeros in a step, in the order of time."""
+    watched: tuple[Watch, ...], chart: Chart, times: tuple[float, float], between: Callable[[Number], Number],
+    by_ends: Callable[[Number], Number],
+) -> list[Passed]:  # fmt: skip
+    """Return the zeros and the breaks in a step, in the order of time.
+
+    `between` are the states in the step, and `by_ends` those by both ends alone: a pulse that the step has not met may
+    be in the former.
+    """
     asked = [one for one in watched if not one.is_idle(chart)]
-    found = [Passed(one, time, between(time)) for one in asked for time in _zeros(one, chart, times, between)]
+    found = list[Passed]()
+    for one in asked:
+        if isinstance(one, BreakWatch):
+            if (passed := one.passed(chart, times, by_ends)) is not None:
+                found.append(Passed(one, passed.time, between(np.array(passed.time)), passed.at))
+        else:
+            found += [Passed(one, time, between(np.array(time))) for time in _zeros(one, chart, times, between)]
     return sorted(found, key=lambda one: one.time)
 
 
 def _zeros(
-    watch: Watch, chart: Chart, times: tuple[float, float], between: Callable[[float], Number]
+    watch: Watch, chart: Chart, times: tuple[float, float], between: Callable[[Number], Number]
 ) -> Iterator[float]:
     """Yield the times of zeros; the first time where the function is negative throughout."""
 
     def value(time: float) -> float:
-        return watch.value(chart, time, between(time))
+        return watch.value(chart, time, between(np.array(time)))
 
     samples = np.linspace(*times, watch.samples + 1)
     known = [value(float(time)) for time in samples]
@@ -576,79 +656,6 @@ def _zero(function: Callable[[float], float], low: float, high: float) -> float:
     while found < high and (function(found) > 0.0) is is_above:
         found, fine = min(found + fine, high), 2.0 * fine
     return found
-
-
-class LoadBreak(NamedTuple):
-    """A time at which a load jumps, wakes or has a corner, as the neighbouring times before and behind it."""
-
-    before: float
-    behind: float
-    jumps: bool
-
-
-# Functions of the time are sampled at so many places of a simulation. Between two of them is a jump where the function
-# changes by this part of its range at least, most of that between neighbouring numbers.
-SAMPLED, CHANGES, MOST = 4096, 1e-6, 0.5
-# A function that has not changed for so many of these places wakes where it does.
-STILL = 8
-# Times that differ by this part of the whole are one time but for rounding.
-SAME_TIME = 1e-14
-# A table with more corners than this within a simulation is followed by the length of steps alone.
-CORNERS = 2000
-
-
-def load_breaks(mechanism: Mechanism, until: float) -> tuple[LoadBreak, ...]:
-    """Return the times within a simulation at which functions of the time jump or wake, or tables have corners."""
-    amounts = [part for load in mechanism.loads.values() for held in load.amounts_held
-               for part in (held if isinstance(held, tuple) else (held,))]  # fmt: skip
-    found: list[LoadBreak] = []
-    for one in sorted({one for amount in amounts for one in _breaks(amount, until)}):
-        if found and one.before <= found[-1].behind + SAME_TIME * until:
-            found[-1] = LoadBreak(found[-1].before, max(one.behind, found[-1].behind), found[-1].jumps or one.jumps)
-        else:
-            found.append(one)
-    return tuple(found)
-
-
-def _breaks(amount: Any, until: float) -> Iterator[LoadBreak]:
-    values = function_of_time(amount)
-    if values is not None:
-        times = np.linspace(0.0, until, SAMPLED + 1)
-        jumps = list(_jumps(values, times))
-        yield from jumps
-        yield from (
-            one
-            for one in _wakes(values, times)
-            if not any(0.0 <= jump.before - one.before < times[1] for jump in jumps)
-        )
-    yield from (LoadBreak(at, at, False) for at in corners_in_time(amount, until, CORNERS))
-
-
-def _jumps(values: Callable[[Number], Number], times: Number) -> Iterator[LoadBreak]:
-    known = values(times)
-    least = CHANGES * float(np.ptp(np.abs(known - known[0])))
-    steps = np.abs(np.diff(known))
-    # beside a jump a function changes less by far
-    beside = np.fmin(np.append(steps[1:], np.inf), np.insert(steps[:-1], 0, np.inf))
-    for k in np.flatnonzero((steps > least) & (steps > 2.0 * beside)):
-        low, high = float(times[k]), float(times[k + 1])
-        first, last = known[k], known[k + 1]
-        while low < (middle := 0.5 * (low + high)) < high:
-            found = values(np.array([middle]))[0]
-            low, high, first, last = (
-                (low, middle, first, found) if abs(found - first) > abs(found - last) else (middle, high, found, last)
-            )
-        if abs(last - first) > MOST * steps[k]:
-            yield LoadBreak(low, high, True)
-
-
-def _wakes(values: Callable[[Number], Number], times: Number) -> Iterator[LoadBreak]:
-    """Yield the times at which a function that stood still begins to change: no step goes over a short pulse."""
-    known = values(times)
-    moves = np.abs(np.diff(known)) > CHANGES * float(np.ptp(np.abs(known - known[0])))
-    for k in np.flatnonzero(moves):
-        if k >= STILL and not moves[k - STILL : k].any():
-            yield LoadBreak(float(times[k]), float(times[k]), False)
 
 
 class Impact(NamedTuple):

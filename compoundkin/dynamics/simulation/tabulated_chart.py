@@ -36,6 +36,7 @@ from compoundkin.dynamics.simulation.driver_state import (
     needs_time,
     rotors_that_lose,
 )
+from compoundkin.dynamics.simulation.load_breaks import LoadBreak, LoadPlace, joined, load_places
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -67,6 +68,7 @@ class TabulatedChart(DriverChart):
                             for loads, known in zip(self.loads, self.timeless, strict=True))  # fmt: skip
         self.table: DriveTable | None = None
         self.wraps = False
+        self._straight: dict[int, tuple[float, float]] = {}
         first = {name: float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items()}[self.free[0]]
         self._tabulate(first, self.start.poses)
 
@@ -254,6 +256,43 @@ class TabulatedChart(DriverChart):
         self.table = drive_table(here, name, *ends, self.timeless, self.candidates)
         self.wraps = self.table is not None and self.is_angle and not self.order.turning and self._comes_back()
 
+    def breaks(self, low: float, high: float) -> list[LoadBreak]:
+        """Return where the loads of the table jump, wake or have corners, between two values in neighbouring turns."""
+        table = self.table
+        if table is None:
+            return []
+        turns = [self._turned_by(value) for value in (low, high)] if self.wraps else [0.0]
+        near = max(abs(table.low), abs(table.high))
+        moved = (own.moved(turn, near) for turn in sorted({*turns}) for own in table.breaks)
+        return [one for one in moved if low <= one.behind and one.before <= high]
+
+    def _turned_by(self, value: float) -> float:
+        """Return the turns between a value and where the table has it."""
+        assert self.table is not None
+        return TURN * float(np.floor((value - self.table.low) / TURN))
+
+    def has_in_table(self, load: Load, values: Number) -> bool:
+        """Return whether the table has a load at values of the driver."""
+        table = self.table
+        if table is None or load not in (*self.timeless[0], *self.timeless[1]):
+            return False
+        return self.wraps or bool(table.low <= min(values) and max(values) <= table.high)
+
+    def straight(self, place: LoadPlace) -> tuple[float, float]:
+        """Return the slope of a load's coordinate by the driver, zero where it is another one, and its offset."""
+        known = self._straight.get(id(place))
+        if known is None:
+            own = self.start.structure.driven[self.free[0]]
+            meant = self.order.pair_meant(place.pair) if place.pair else None
+            known = 0.0, 0.0
+            if meant is not None and meant[0].name == own.pair.name:
+                first = np.array([float(np.ravel(self.start.inputs.drives[self.free[0]][0])[0])])
+                slope = float(meant[1] * own.pair.driven_by(own.drive.link))
+                begun = place.value(self.seen(0.0, first, np.zeros(1)).loaded)
+                known = slope, float(np.ravel(begun)[0]) - slope * float(first[0])
+            self._straight[id(place)] = known
+        return known
+
     def _comes_back(self) -> bool:
         """Whether all poses are the same after a whole turn."""
         assert self.table is not None
@@ -335,6 +374,7 @@ class DriveTable:
     starts: Sequence[float]
     course: TableCourse
     least: Mapping[int, float]  # sizes of scales whose rows may be rounding alone
+    breaks: Sequence[LoadBreak] = ()  # where its loads jump, wake or have corners, which are ends of pieces
 
     @property
     def motion(self) -> Motion:
@@ -368,13 +408,14 @@ def drive_table(
             warnings.simplefilter("ignore")
             values = np.linspace(low, high, POSES)
             motion = solve(mechanism, {driver: values}, speed=1.0, acceleration=0.0, order=2, modes=first)
-            course = TableCourse(motion, (low, high))
+            breaks = table_breaks(TableCourse(motion, (low, high)), [load for some in loads for load in some])
+            course = TableCourse(motion, (low, high), tuple(one.behind for one in breaks))
             least = {FORCES: _usual_force(motion, loads)}
             found = accurate_pieces(course, partial(drive_terms, loads=loads), DRIVE_SCALES, pairs, least)
     except CompoundkinError:
         return None
     whole = with_bridges(found, high - low)
-    return DriveTable(low, high, whole, [piece.low for piece in whole], course, least)
+    return DriveTable(low, high, whole, [piece.low for piece in whole], course, least, breaks)
 
 
 # The scales of the rows of a table by number: the bias is a derivative of the inertia; both forces have one scale.
@@ -402,6 +443,7 @@ class TableCourse:
 
     motion: Motion
     ends: tuple[float, float]
+    breaks: tuple[float, ...] = ()
     known: dict[tuple[tuple[float, float], ...], Motion] = field(default_factory=dict)
 
     def at(self, parts: Sequence[tuple[float, float]]) -> Motion:
@@ -424,8 +466,7 @@ def accurate_pieces(
 
     Rows of one scale have the same number; `least` are sizes of scales whose rows may be rounding alone.
     """
-    edges, found = np.linspace(*course.ends, PIECES + 1), []
-    todo = list(pairwise(edges.tolist()))
+    found, todo = [], list(pairwise(_edges(course)))
     for _ in range(HALVED + 1):
         made = _solved(course, todo, terms, pairs)
         held = [_is_accurate(piece, scales, least or {}) for piece in made]
@@ -440,12 +481,78 @@ def accurate_pieces(
     return sorted(found, key=lambda piece: piece.low)
 
 
+def _edges(course: TableCourse) -> list[float]:
+    """Return the ends of the pieces to begin with: even ones, but for those beside a break of a load."""
+    low, high = course.ends
+    breaks = np.array([one for one in course.breaks if low < one < high])
+    even, near = np.linspace(low, high, PIECES + 1), BESIDE_BREAK * (high - low)
+    apart = [float(one) for one in even if one in course.ends or not np.any(np.abs(breaks - one) < near)]
+    return sorted({*apart, *breaks.tolist()})
+
+
+# An even end of a piece is left out within this part of the table from a break.
+BESIDE_BREAK = 1e-4
+# Poses of a table are so many times as dense where breaks are looked for; their places are found by so many steps.
+DENSER, REFINED = 8, 60
+
+
+def table_breaks(course: TableCourse, loads: Sequence[Load]) -> tuple[LoadBreak, ...]:
+    """Return the values of the driver at which loads that depend on the pose alone jump, wake or have corners."""
+    places = load_places(loads)
+    if not places:
+        return ()
+    motion, found = course.motion, list[LoadBreak]()
+    index = np.linspace(0.0, POSES - 1.0, (POSES - 1) * DENSER + 1)
+    dense = between(motion, 0, index)
+    for place in places:
+        row = _place_row(place, dense)
+        known = row[np.isfinite(row)]
+        if not known.size:
+            continue
+        begun = partial(_first_block, dense)
+        breaks = place.breaks(float(known.min()), float(known.max()), motion.size, begun)
+        goals = np.array([one.behind for one in breaks])
+        above = row[:, None] >= goals
+        here, which = np.nonzero((above[1:] != above[:-1]) & np.isfinite(row[1:] + row[:-1])[:, None])
+        low, high, rises = index[here], index[here + 1], above[here + 1, which]
+        for _ in range(REFINED if len(here) else 0):
+            middle = 0.5 * (low + high)
+            is_behind = (_place_row(place, between(motion, 0, middle)) >= goals[which]) == rises
+            low, high = np.where(is_behind, low, middle), np.where(is_behind, middle, high)
+        width = (course.ends[1] - course.ends[0]) / (POSES - 1)
+        for value, k in zip((course.ends[0] + width * high).tolist(), which.tolist(), strict=True):
+            found.append(LoadBreak(value, value, *breaks[k][2:]))
+    return joined(found, JOINED * (course.ends[1] - course.ends[0]))
+
+
+# Breaks within this part of a table are one.
+JOINED = 1e-10
+
+
+def _first_block(motion: Motion) -> LoadedBlock:
+    return next(iter(loaded_blocks(motion)))
+
+
+def _place_row(place: LoadPlace, motion: Motion) -> Number:
+    """Return the coordinate of a load at the poses of a motion."""
+    return np.concatenate(
+        [np.broadcast_to(np.ravel(place.value(at)), at.block.shape[1]) for at in loaded_blocks(motion)]
+    )
+
+
 def _is_accurate(piece: TablePiece, scales: Sequence[int], least: Mapping[int, float], part: float = HOLDS) -> bool:
     rows, largest = np.array(scales), np.zeros(max(scales) + 1)
     for scale, size in least.items():
         largest[scale] = size
     np.maximum.at(largest, rows, np.max(np.abs(piece.terms), axis=1))
-    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * largest[rows, None]))
+    # steep loads have the rounding of the driver's value, enlarged
+    slopes = np.abs(piece.terms) @ np.square(_DEGREES) * 2.0 / (piece.high - piece.low)
+    rounding = ROUNDINGS * np.finfo(float).eps * max(abs(piece.low), abs(piece.high)) * slopes
+    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= (part * largest[rows] + rounding)[:, None]))
+
+
+# So many roundings of the driver's value may be in a load.
+ROUNDINGS = 8.0
 
 
 def _solved(

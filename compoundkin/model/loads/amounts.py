@@ -393,25 +393,18 @@ def tables_of(amount: Any) -> Iterator[LoadTable]:
             yield part
 
 
-def function_of_time(amount: Any) -> Callable[[Number], Number] | None:
-    """Return an amount as a function of the times, None where it is not a function of them alone."""
-    if not isinstance(amount, LoadFunction) or amount.takes != (TIME,):
-        return None
-    return lambda times: amount.value("amount", (times,))
-
-
-def corners_in_time(amount: Any, until: float, most: int) -> list[float]:
-    """Return the times up to another one at which a table over the time has corners, none where more than `most`."""
-    if not isinstance(amount, LoadTable) or amount.over != TIME or amount.smooth:
+def corners(amount: LoadTable, low: float, high: float, most: int) -> list[float]:
+    """Return the places between two at which a table has corners, none where there are more than `most`."""
+    if amount.smooth:
         return []
     period = amount.period
     turns = np.zeros(1) if period is None else period * np.arange(
-        np.floor(-amount.at[-1] / period), np.ceil((until - amount.at[0]) / period) + 1.0
+        np.floor((low - amount.at[-1]) / period), np.ceil((high - amount.at[0]) / period) + 1.0
     )  # fmt: skip
     if turns.size * amount.at.size > most:
         return []
-    times = np.unique((amount.at[:, None] + turns).ravel())
-    return [float(time) for time in times[(times > 0.0) & (times < until)]]
+    places = np.unique((amount.at[:, None] + turns).ravel())
+    return [float(place) for place in places[(places > low) & (places < high)]]
 
 
 # Places beyond an end of a table by this part of its range or less are that end: rounding of 0.1 + 0.1 + 0.1.

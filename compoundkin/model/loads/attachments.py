@@ -80,6 +80,11 @@ class PairLoad(Load):
         pair = written.pair(self.pair)
         return self if pair is None else replace(self, members=pair.members[:2], turns=pair.free_is_angle)
 
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the coordinate and its rate."""
+        series = at.coordinate(self.pair)
+        return {COORDINATE: lambda: series.c[0], "rate": lambda: rate_of(series)}
+
     @abstractmethod
     def effort(self, at: LoadedPoses) -> Number:
         """Return the effort: positive where it drives the coordinate up."""
@@ -153,12 +158,11 @@ class Effort(PairLoad):
 
     def effort(self, at: LoadedPoses) -> Number:
         """Return the thrust or torque."""
-        series = at.coordinate(self.pair)
-        own = {"coordinate": lambda: series.c[0], "rate": lambda: rate_of(series)}
+        own = self.variables(at)
         amount = value_of(self.where, self.amount, at, own)
         if self.only is None:
             return amount
-        rate = rate_of(series) * (1.0 if self.only == FORWARD else -1.0)
+        rate = own["rate"]() * (1.0 if self.only == FORWARD else -1.0)
         return np.where(rate > 0.0, amount, np.where(np.isnan(rate), np.nan, 0.0))
 
     def plain_effort(self) -> PlainEffort | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol, Self
@@ -162,6 +162,10 @@ class Load(ShortRepr, ABC):
     @abstractmethod
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the links it acts on, with the wrenches in the mechanism's units."""
+
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the variables of its amounts but the time, by their names; tables are over the first."""
+        return {}
 
     def speed_at(self, at: LoadedPoses) -> Number | None:
         """Return the speed on which it may depend, None where it depends on none."""

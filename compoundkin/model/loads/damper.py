@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -15,13 +15,13 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import Amount, as_amount, plain_amount, value_of
 from compoundkin.model.loads.attachments import (
+    COORDINATE,
     EndSeparation,
     PairLoad,
     PlainEffort,
     PointToPointLoad,
     attachment_point,
     check_ends,
-    rate_of,
 )
 from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 from compoundkin.model.loads.spring import is_force_law
@@ -63,10 +63,14 @@ class Damper(Damping, PointToPointLoad):
 
     wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a damper has its ends on two links")
 
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the speed of extension and the length."""
+        gap = self.gap(at)
+        return {"rate": lambda: gap.rate, "length": lambda: gap.length}
+
     def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
         """Return its force; where its ends coincide, along their relative velocity."""
-        own = {"rate": lambda: gap.rate, "length": lambda: gap.length}
-        amount = value_of(self.where, self.rate, at, own)
+        amount = value_of(self.where, self.rate, at, self.variables(at))
         # ends that coincide move along the line on which they are before and after
         line = np.where(np.asarray(gap.length) == 0.0, gap.velocity, gap.vector)
         pull = amount if is_force_law(self.rate) else amount * gap.rate
@@ -79,12 +83,16 @@ class PairDamper(Damping, PairLoad):
 
     rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
 
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the rate of the coordinate, and the coordinate."""
+        own = super().variables(at)
+        return {"rate": own["rate"], COORDINATE: own[COORDINATE]}
+
     def effort(self, at: LoadedPoses) -> Number:
         """Return its effort, against the rate of the coordinate."""
-        series = at.coordinate(self.pair)
-        own = {"rate": lambda: rate_of(series), "coordinate": lambda: series.c[0]}
+        own = self.variables(at)
         amount = value_of(self.where, self.rate, at, own)
-        return 0.0 - (amount if is_force_law(self.rate) else amount * rate_of(series))
+        return 0.0 - (amount if is_force_law(self.rate) else amount * own["rate"]())
 
     def plain_effort(self) -> PlainEffort | None:
         """Return the effort as a function of plain numbers."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -127,9 +127,13 @@ class Torque(Load):
         """Return the angular velocity of its link."""
         return at.pose(self.link).u.turning().c[0]
 
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the angular velocity of its link."""
+        return {"rate": lambda: self.speed_at(at)}
+
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the torque."""
-        yield self.link, Wrench(0j, value_of(self.where, self.torque, at, {"rate": lambda: self.speed_at(at)}))
+        yield self.link, Wrench(0j, value_of(self.where, self.torque, at, self.variables(at)))
 
 
 @checked

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
@@ -15,7 +15,7 @@ from compoundkin.base.errors import Problem
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
 from compoundkin.model.loads.amounts import Amount, as_amount, plain_amount, value_of
-from compoundkin.model.loads.attachments import PairLoad, PlainEffort, rate_of
+from compoundkin.model.loads.attachments import COORDINATE, PairLoad, PlainEffort, rate_of
 from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 
 # What says which motor it is, with what belongs to it.
@@ -164,6 +164,11 @@ class Motor(PairLoad):
         """Return the link that its rotor moves with, and the inertia that the link feels; none without its links."""
         moved = [link for link in self.members if link != "frame"]
         return (moved[0] if moved else ""), np.square(self.gear) * self.inertia
+
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the speed of its shaft, and the coordinate."""
+        own = super().variables(at)
+        return {"rate": lambda: at.fitted(self.gear, self.where) * own["rate"](), COORDINATE: own[COORDINATE]}
 
     def shaft_torque(self, at: LoadedPoses, speed: Number, coordinate: Number = 0.0) -> Number:
         """Return its torque at a speed of its shaft, before the gear.

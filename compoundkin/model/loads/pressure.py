@@ -14,7 +14,7 @@ from compoundkin.base.errors import Problem
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
 from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, value_of
-from compoundkin.model.loads.attachments import COORDINATE, VARIABLES, PairLoad, rate_of
+from compoundkin.model.loads.attachments import COORDINATE, VARIABLES, PairLoad
 from compoundkin.model.loads.contract import LoadedPoses, NamedParts
 
 
@@ -76,8 +76,7 @@ class Pressure(PairLoad):
 
     def effort(self, at: LoadedPoses) -> Number:
         """Return the thrust of both pressures."""
-        series = at.coordinate(self.pair)
-        own = {"coordinate": lambda: series.c[0], "rate": lambda: rate_of(series)}
+        own = self.variables(at)
         front, back = (value_of(self.where, amount, at, own) for amount in (self.pressure, self.back))
         piston, rod = at.fitted(self._piston, self.where), at.fitted(_circle(self.rod), self.where)
         return front * piston - back * (piston - rod)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -22,7 +22,6 @@ from compoundkin.model.loads.attachments import (
     PointToPointLoad,
     attachment_point,
     check_ends,
-    rate_of,
 )
 from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
 
@@ -63,13 +62,17 @@ class Spring(PointToPointLoad):
         if np.any(np.asarray(self.free_length) < 0.0):
             yield Problem(f"{where}.free_length", "a length is not negative", "give a preload instead")
 
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the extension and its speed."""
+        gap = self.gap(at)
+        return {"extension": lambda: gap.length - at.fitted(self.free_length), "rate": lambda: gap.rate}
+
     def pull(self, gap: EndSeparation, at: LoadedPoses) -> Number:
         """Return its force, exact where the ends of a spring without free length coincide."""
         preload, free = (at.fitted(value, self.where) for value in (self.preload, self.free_length))
         extension = gap.length - free
         if is_force_law(self.stiffness):
-            own = {"extension": lambda: extension, "rate": lambda: gap.rate}
-            pull = value_of(self.where, self.stiffness, at, own) + preload
+            pull = value_of(self.where, self.stiffness, at, self.variables(at)) + preload
             return gap.along(one_sided_pull(pull, self.only), self.where)
         stiffness = at.fitted(self.stiffness, self.where)
         # the part in proportion to the length needs no direction
@@ -116,14 +119,17 @@ class PairSpring(PairLoad):
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
 
+    def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
+        """Return the excess of the coordinate over its free one, and its rate."""
+        own = super().variables(at)
+        return {"extension": lambda: own[COORDINATE]() - at.fitted(self.free, self.where), "rate": own["rate"]}
+
     def effort(self, at: LoadedPoses) -> Number:
         """Return its effort, against the excess of the coordinate over its free one."""
-        series, preload = at.coordinate(self.pair), at.fitted(self.preload, self.where)
-        extension = series.c[0] - at.fitted(self.free, self.where)
+        own, preload = self.variables(at), at.fitted(self.preload, self.where)
         if is_force_law(self.stiffness):
-            own = {"extension": lambda: extension, "rate": lambda: rate_of(series)}
             return 0.0 - one_sided_pull(value_of(self.where, self.stiffness, at, own) + preload, self.only)
-        return 0.0 - one_sided_pull(at.fitted(self.stiffness, self.where) * extension + preload, self.only)
+        return 0.0 - one_sided_pull(at.fitted(self.stiffness, self.where) * own["extension"]() + preload, self.only)
 
     def energy(self, at: LoadedPoses) -> Number | None:
         """Return its energy, zero at its free coordinate; None where its effort is a function or a table."""
