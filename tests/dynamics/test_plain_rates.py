@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dynamics.simulation import tabulated_chart
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
@@ -47,6 +48,11 @@ LOADS = {
     "a law of damping": (ck.damper(pair="O", rate=lambda w, q: 0.01 * w * abs(w) * (2 + np.sin(q))),),
     "direct current": (ck.motor("crank", stall=0.2, no_load=200.0, gear=-5.0, efficiency=0.8, limit=0.15),),
     "induction": (ck.motor("crank", breakdown=0.9, synchronous=40.0, slip=0.2, power=12.0),),
+    "losses at a rotor": (ck.motor("crank", stall=0.2, no_load=200.0, gear=-5.0, efficiency=0.8, inertia=2e-4),),
+    "two of them": (
+        ck.motor("crank", stall=0.2, no_load=200.0, gear=5.0, efficiency=0.7, inertia=3e-4),
+        ck.motor("O", speed=lambda t: 40 * t, gain=0.05, limit=0.6, gear=-2.0, efficiency=0.6, inertia=1e-3, name="b"),
+    ),
     "a servo": (ck.motor("crank", speed=lambda t: 10 * t, gain=0.05, limit=0.6),),
     "points": (ck.damper("rocker", "B", to="frame", at="O", rate=2.0), ck.torque("rocker", lambda t: 0.3 * t)),
 }
@@ -115,3 +121,24 @@ def test_tables_hold_in_the_dwells_of_cams(name: str) -> None:
     assert held > 0.97 * (chart.table.high - chart.table.low)
     assert np.ptp(found.motion.drives[driver.name].value) > 0.5
     assert found.energy.worst < 1e-9
+
+
+def test_a_way_of_many_sizes_takes_few_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A letter for each link has no size: two metres in millimetres took 2,001 tables, one for each."""
+    made, drive_table = [], tabulated_chart.drive_table
+
+    def counted(*given: Any) -> Any:
+        made.append(given)
+        return drive_table(*given)
+
+    monkeypatch.setattr(tabulated_chart, "drive_table", counted)
+    block = ck.Mechanism(
+        "Block",
+        *(ck.link("frame", O=0), ck.link("block", P=0)),
+        ck.slide("block", on="frame", at="P", through="O", angle=0.0, name="way"),
+        *(ck.drive("block"), ck.mass("block", 1.0, at="P", inertia=0), ck.effort("way", 1.0)),
+        units={"length": "mm", "mass": "kg", "force": "N"},
+    )
+    found = ck.simulate(block, start=0.0, until=2.0)
+    assert found.motion.drives["block"].value[-1] == pytest.approx(2000.0, rel=1e-12)
+    assert len(made) < 15

@@ -164,6 +164,11 @@ class BodyChart:
         self._gather()
         self.farthest = self.state(0.0, self.first, np.zeros_like(self.first)).least
 
+    @property
+    def longest_moves(self) -> Number:
+        """The longest move of each coordinate in a step: a radian, the size."""
+        return self.scales
+
     def _bodies(self, masses: Sequence[MovingMass]) -> _Bodies:
         at = np.array([3 * self.index[own.link] for own in masses], dtype=int)
         mass, centre = np.array([own.mass for own in masses]), np.array([own.centre for own in masses])

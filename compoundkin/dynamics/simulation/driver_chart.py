@@ -87,6 +87,11 @@ class DriverChart:
         """The length scale of each free driver: a radian, or the mechanism's size."""
         return np.array([self.order.unit(name) for name in self.free])
 
+    @property
+    def longest_moves(self) -> Number:
+        """The longest move of each free driver in a step, so that configurations and turns are tracked."""
+        return self.scales
+
     def prescribed(self, time: float) -> tuple[Number, Number, Number]:
         """Return values, speeds and accelerations of the prescribed drivers."""
         rows = np.array([prescribed_rates(law, time) for law in self.laws.values()])

@@ -53,8 +53,6 @@ from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.latch import Latch, Release
 from compoundkin.model.loads.stop import Stop
 
-# The longest step of a driver (radians, parts of the size), so that configurations and turns are tracked.
-LONGEST_MOVE = 1.0
 # Where friction has no motion within a step, one that is so many times shorter is tried.
 SHORTER = 8.0
 # The integration stalls where a step is below this part of the longest.
@@ -413,6 +411,10 @@ def _by_another(
             text = f"next to a limit position of {one.driver}, {one.pair.name} takes its place as the coordinate"
             course.events.append(SimulationEvent(course.last, COORDINATE, text, False))
             return found[0], np.append(found[1], solver.y[-1])
+    time, y = float(solver.t), solver.y
+    if stalls:
+        time, y = _before_collapse(chart, time, y, course)
+        here = chart.state(time, y[:1], y[1:2]) if len(y) == 3 else here
     if not np.isfinite(here.terms.matrix).all():
         here = _retraced(chart, course)
     driver = fast[0].driver if fast else chart.free[0]
@@ -421,7 +423,30 @@ def _by_another(
     # what was stiff by one coordinate need not be so from there on
     course.implicit, course.short = False, 0
     links, state = by_links(chart, here)
-    return links, links.settled(solver.t, np.append(state, solver.y[-1]))
+    return links, links.settled(time, np.append(state, y[-1]))
+
+
+# Steps below this part of the longest one of the last few have collapsed.
+COLLAPSED, LAST_FEW = 0.1, 20
+
+
+def _before_collapse(chart: DriverChart, time: float, y: Number, course: SimulatedCourse) -> tuple[float, Number]:
+    """Go back to where steps were long, for other coordinates that go over what these come near to; return the state.
+
+    Steps before an event stay.
+    """
+    since = max((event.time for event in course.events), default=0.0)
+    own = [step for step in course.steps[-LAST_FEW:] if step.chart is chart and step.first > since]
+    if len(own) < len(course.steps[-LAST_FEW:]):
+        own = own[1:]
+    longest = max((step.last - step.first for step in own), default=0.0)
+    back = None
+    while own and (step := own.pop()).last - step.first < COLLAPSED * longest:
+        back = course.steps.pop()
+    if back is None:
+        return time, y
+    chart.recall(back.memory)
+    return back.first, back.between(np.array(back.first))
 
 
 # A step of a table is retraced in so many parts.
@@ -760,15 +785,16 @@ def _driver_paces(chart: Chart, speeds: Number, accelerations: Number, duration:
 
 
 def longest_step(chart: Chart, speeds: Number, accelerations: Number) -> float:
-    """Return the longest time step in which no driver exceeds LONGEST_MOVE."""
+    """Return the longest time step in which no driver moves farther than it may."""
+    longest = chart.longest_moves
     if len(speeds) == 1:
-        scale = float(chart.scales[0])
+        scale = float(longest[0])
         rate, growth = abs(float(speeds[0])) / scale, abs(float(accelerations[0])) / scale
     else:
-        rate = float(np.max(np.abs(speeds) / chart.scales))
-        growth = float(np.max(np.abs(accelerations) / chart.scales))
+        rate = float(np.max(np.abs(speeds) / longest))
+        growth = float(np.max(np.abs(accelerations) / longest))
     # s = v t + a t^2 / 2, solved for the time without cancellation
-    return 2.0 * LONGEST_MOVE / (rate + sqrt(rate * rate + 2.0 * growth * LONGEST_MOVE) + TINY)
+    return 2.0 / (rate + sqrt(rate * rate + 2.0 * growth) + TINY)
 
 
 # The nodes of a quadrature over a step: exact to the order 16, above that of the method.

@@ -28,12 +28,14 @@ from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.simulation.dormand_prince import PlainRates
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import (
+    TURNS_OF_SENSES,
     KnownCoordinate,
     LoadedState,
     Rates,
     SeenState,
     loaded_state,
     needs_time,
+    rotor_forces,
     rotors_that_lose,
 )
 from compoundkin.dynamics.simulation.load_breaks import LoadBreak, LoadPlace, joined, load_places
@@ -44,6 +46,7 @@ from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.attachments import PairLoad, PlainEffort
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.motor import Motor, PlainRotor
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 
@@ -85,13 +88,17 @@ class TabulatedChart(DriverChart):
         """Return the rates of a state."""
         value, speed = float(values[0]), float(speeds[0])
         piece, value = self._piece(value)
-        if piece is None or self.rotors_lose:
+        if piece is None:
             return super().rates(time, values, speeds)
         basis = piece.basis(value)
-        inertia, bias, stored, other = (piece.terms @ basis).tolist()
+        inertia, bias, stored, other = (piece.terms[:4] @ basis).tolist()
         if self.has_others:
-            more = self._exact(piece, basis, time, values, speed)
+            at = self.loaded_at(piece, basis, time, values, speed)
+            more = [float(at.along(loads)[0]) if loads else 0.0 for loads in self.others]
             stored, other = stored + more[0], other + more[1]
+            if motors := self.rotors_that_lose:
+                dry = np.array([(stored + other - bias * speed * speed) / inertia])
+                other += float(rotor_forces(at, motors, dry, lambda along: along / inertia)[0])
         return Rates(np.array([(stored + other - bias * speed * speed) / inertia]), other * speed)
 
     def plain_rates(self) -> PlainRates:
@@ -101,14 +108,14 @@ class TabulatedChart(DriverChart):
             found = self.followed_rates(time, np.array([value]), np.array([speed]))
             return float(found.accelerations[0]), float(found.power)
 
-        if type(self) is not TabulatedChart or self.held is not None or self._added or self.rotors_lose:
+        if type(self) is not TabulatedChart or self.held is not None or self._added:
             return asked
-        efforts = self.plain_efforts
-        if efforts is None:
+        efforts, rotors = self.plain_efforts, self.plain_rotors
+        if efforts is None or rotors is None:
             return asked
 
         table, piece = self.table, None
-        idle = not efforts and not self.timeless[1]
+        idle = not efforts and not rotors and not self.timeless[1]
 
         def known(time: float, value: float, speed: float) -> tuple[float, float]:
             nonlocal table, piece
@@ -131,9 +138,17 @@ class TabulatedChart(DriverChart):
             for push, sign in efforts:
                 more = sign * push(sign * value, sign * speed, time)
                 pushed, other = pushed + more * mobility, other + more
+            if rotors:
+                given = [(rotor, sign, rotor.torque(sign * value, sign * speed, time)) for rotor, sign in rotors]
+                return _with_rotors(given, pushed - bias * speed * speed, mobility, other, speed)
             return pushed - bias * speed * speed, other * speed
 
         return known
+
+    @property
+    def longest_moves(self) -> Number:
+        """The longest move of the driver in a step."""
+        return self.scales if self.is_angle else np.array([max(float(self.scales[0]), self.reach)])
 
     @cached_property
     def plain_efforts(self) -> tuple[tuple[PlainEffort, float], ...] | None:
@@ -141,29 +156,45 @@ class TabulatedChart(DriverChart):
         stored, others = self.others
         if stored:
             return None
-        own, found = self.start.structure.driven[self.free[0]], []
+        found = []
         for load in others:
+            if load in self.rotors_that_lose:
+                continue
             plain = load.plain_effort() if isinstance(load, PairLoad) else None
-            meant = self.order.pair_meant(load.pair) if isinstance(load, PairLoad) else None
-            if plain is None or meant is None or meant[0].name != own.pair.name:
+            sense = self._own_sense(load)
+            if plain is None or sense is None:
                 return None
-            found.append((plain, meant[1] * own.pair.driven_by(own.drive.link)))
+            found.append((plain, sense))
         return tuple(found)
 
     @cached_property
-    def rotors_lose(self) -> bool:
-        """Whether efforts of some motors depend on the acceleration, which the table does not have."""
-        return bool(rotors_that_lose(self.loads[1]))
+    def plain_rotors(self) -> tuple[tuple[PlainRotor, float], ...] | None:
+        """The motors whose effort depends on the acceleration, in plain numbers; None where one is not known so."""
+        found = []
+        for motor in self.rotors_that_lose:
+            plain, sense = motor.plain_rotor(self.mechanism.stated_units.inertia), self._own_sense(motor)
+            if plain is None or sense is None:
+                return None
+            found.append((plain, sense))
+        return tuple(found)
+
+    def _own_sense(self, load: Load) -> float | None:
+        """Return the sense of a load's coordinate by the driver's, None where it is another one."""
+        own = self.start.structure.driven[self.free[0]]
+        meant = self.order.pair_meant(load.pair) if isinstance(load, PairLoad) else None
+        return (
+            None if meant is None or meant[0].name != own.pair.name else meant[1] * own.pair.driven_by(own.drive.link)
+        )
+
+    @cached_property
+    def rotors_that_lose(self) -> tuple[Motor, ...]:
+        """The motors whose effort depends on the acceleration, which the table does not have."""
+        return rotors_that_lose(self.loads[1])
 
     @cached_property
     def has_others(self) -> bool:
         """Whether some loads depend on time or speed."""
         return any(self.others)
-
-    def _exact(self, piece: TablePiece, basis: Number, time: float, values: Number, speed: float) -> list[float]:
-        """Return the forces of loads that depend on time or speed."""
-        at = self.loaded_at(piece, basis, time, values, speed)
-        return [float(at.along(loads)[0]) if loads else 0.0 for loads in self.others]
 
     def loaded_at(self, piece: TablePiece, basis: Number, time: float, values: Number, speed: float) -> LoadedState:
         """Return a state of a piece as loads see it. Rates of its columns are those at unit rate, and the true ones."""
@@ -222,6 +253,9 @@ class TabulatedChart(DriverChart):
         if self.turned or table is None or self._piece(value)[0] is None:
             super().accept(time, values, speeds)
         if table is not None and not self.wraps and not table.low < value < table.high:
+            if not self.is_angle and len(table.pieces) == PIECES:
+                # the mechanism is small against the way that it goes, as one of a letter for each link
+                self.reach *= 2.0
             self._tabulate(value, self.state(time, values, speeds).block.world)
 
     def sign(self, k: int, values: Number) -> float:
@@ -305,6 +339,29 @@ class TabulatedChart(DriverChart):
                 if not abs(row[-1] - row[0]) < SAME * scale:
                     return False
         return True
+
+
+def _with_rotors(
+    motors: Sequence[tuple[PlainRotor, float, float]], dry: float, mobility: float, other: float, speed: float
+) -> tuple[float, float]:
+    """Return the acceleration and the power with motors, each with its sense and its torque, from those without them.
+
+    What a rotor leaves of its torque goes through its gear, with a loss either way. The sense in which power goes
+    through each is that of the acceleration that follows, which is the only one: the sum falls as that grows.
+    """
+    through = [rotor.efficiency for rotor, _, _ in motors]
+    a = dry
+    for _ in range(TURNS_OF_SENSES):
+        push = mass = 0.0
+        for (rotor, sign, torque), part in zip(motors, through, strict=True):
+            push += sign * rotor.gear * part * torque
+            mass += rotor.gear * rotor.inertia * (1.0 - part)
+        a = (dry + mobility * push) / (1.0 - mobility * mass)
+        now = [rotor.part(torque - rotor.inertia * sign * a, sign * speed) for rotor, sign, torque in motors]
+        if now == through:
+            break
+        through = now
+    return a, (other + push + mass * a) * speed
 
 
 # A period is a part of a turn but for rounding of the degrees it was written in.

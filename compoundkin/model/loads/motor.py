@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -31,6 +31,22 @@ TURNED = "give one above 0; a negative gear turns the motor round"
 
 def _key(doc: str) -> dict[str, Any]:
     return value_key("length", doc)
+
+
+class PlainRotor(NamedTuple):
+    """A motor in plain numbers: its torque by coordinate, rate and time, its gear, and what its rotor takes.
+
+    That is `inertia` for a unit of the coordinate's acceleration, before the gear.
+    """
+
+    torque: PlainEffort
+    gear: float
+    efficiency: float
+    inertia: float
+
+    def part(self, passed: float, rate: float) -> float:
+        """Return the part of a torque that goes through the gear, at a rate of the coordinate."""
+        return self.efficiency if passed * rate * self.gear >= 0.0 else 1.0 / self.efficiency
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -207,10 +223,23 @@ class Motor(PairLoad):
 
     def plain_effort(self) -> PlainEffort | None:
         """Return what a motor of numbers gives behind the gear, as a function of plain numbers."""
-        torque = self._plain_torque()
-        if torque is None or self.loses_at_rotor or any(np.size(one) != 1 for one in (self.gear, self.efficiency)):
+        rotor = None if self.loses_at_rotor else self.plain_rotor(1.0)
+        if rotor is None:
             return None
-        gear, efficiency = (float(np.ravel(one)[0]) for one in (self.gear, self.efficiency))
+        gear, torque = rotor.gear, rotor.torque
+
+        def given(q: float, w: float, t: float) -> float:
+            found = torque(q, w, t)
+            return gear * found * rotor.part(found, w)
+
+        return given
+
+    def plain_rotor(self, factor: float) -> PlainRotor | None:
+        """Return a motor of numbers before its gear, its inertia times a factor; None for one that is no such motor."""
+        torque = self._plain_torque()
+        if torque is None or any(np.size(one) != 1 for one in (self.gear, self.efficiency, self.inertia)):
+            return None
+        gear, efficiency, inertia = (float(np.ravel(one)[0]) for one in (self.gear, self.efficiency, self.inertia))
         limit, power = (None if one is None else float(np.ravel(one)[0]) for one in (self.limit, self.power))
 
         def given(q: float, w: float, t: float) -> float:
@@ -220,9 +249,9 @@ class Motor(PairLoad):
                 found = power / abs(speed) * (1.0 if found > 0.0 else -1.0)
             if limit is not None and abs(found) > limit:
                 found = limit if found > 0.0 else -limit
-            return gear * found * (efficiency if found * speed >= 0.0 else 1.0 / efficiency)
+            return found
 
-        return given
+        return PlainRotor(given, gear, efficiency, factor * inertia * gear)
 
     def _plain_torque(self) -> Callable[[float, float, float], float] | None:
         """Return the torque at a speed of the shaft, a coordinate and a time, in plain numbers and without limits."""
