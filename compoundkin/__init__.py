@@ -222,7 +222,18 @@ def __getattr__(name: str) -> Any:
         return import_module(f"compoundkin.{name}")
     if name in _MOVED:
         raise AttributeError(f"compoundkin.{name} is now {_MOVED[name]}")
-    raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")
+    what = f"module 'compoundkin' has no attribute {name!r}"
+    raise AttributeError(what if name.startswith("_") else f"{what}{_meant(name)}")
+
+
+def _meant(name: str) -> str:
+    """Return what an unknown name means of the words of the modules, spelled otherwise or called so by others."""
+    from compoundkin.base.errors import OTHER_WORDS, plain_word
+
+    others = OTHER_WORDS.get(plain_word(name), ())
+    words = [(module, word) for module in _MODULES for word in import_module(f"compoundkin.{module}").__all__]
+    meant = [f"compoundkin.{m}.{word}" for m, word in words if plain_word(word) == plain_word(name) or word in others]
+    return f"; did you mean {' or '.join(meant[:2])}?" if meant else ""
 
 
 def __dir__() -> list[str]:

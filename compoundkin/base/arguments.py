@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compoundkin.base.display import hidden_character_problem, short_repr
-from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, suggestion
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -59,12 +59,13 @@ class _ArgumentTypes:
         self.named: dict[str, ArgumentType | None] = {}
         self.more: ArgumentType | None = None
         self.others: ArgumentType | None = None
+        self.name, self.is_open = function.__name__, False
         for name, parameter in inspect.signature(function).parameters.items():
             form = Annotation(inspect.unwrap(function).__globals__).form(parameter.annotation)
             if parameter.kind is parameter.VAR_POSITIONAL:
                 self.more_called, self.more = name, form
             elif parameter.kind is parameter.VAR_KEYWORD:
-                self.others = form
+                self.others, self.is_open = form, True
             else:
                 self.named[name] = form
                 if parameter.kind is not parameter.KEYWORD_ONLY:
@@ -80,6 +81,9 @@ class _ArgumentTypes:
                 if not self.more.fits(value):
                     raise refused(self.more_called, value, self.more)
         for name, value in kwargs.items():
+            if name not in self.named and not self.is_open:
+                what = f"{self.name}() got an unexpected keyword argument {name!r}"
+                raise TypeError(f"{what}; {suggestion(name, list(self.named))}")
             form = self.named.get(name, self.others)
             if form is not None and not form.fits(value):
                 raise refused(name, value, form)
@@ -332,7 +336,9 @@ def real_numbers(where: str, value: Any, error: type[CompoundkinError] = Invalid
         return np.asarray(_array(where, value, float, error), dtype=float)
     given = _array(where, value, None, error)
     if given.dtype.kind in _NOT_REAL:
-        raise error(Problem(where, *_NOT_REAL[given.dtype.kind]))
+        what, remedy = _NOT_REAL[given.dtype.kind]
+        turns = re.fullmatch(r"\s*([\d.]+)\s*rpm\s*", str(value))
+        raise error(Problem(where, what, f"write {turns[1]} * 2 * math.pi / 60, in rad/s" if turns else remedy))
     return np.asarray(_array(where, _convertible(value, given), float, error), dtype=float)
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.display import escaped_text
 
@@ -137,20 +138,141 @@ def warn(text: str, category: type[Warning]) -> None:
     warnings.warn(text, category, stacklevel=depth)
 
 
+# What other books, programs and countries call what is known here, with our words for it.
+_OTHERS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    # verbs
+    ("film movie video gif mp4 animation clip", ("animate",)),
+    ("handout worksheet homework exam assignment", ("exercise",)),
+    ("torque motortorque inputtorque moment", ("effort", "forces", "torques", "torque")),
+    ("thrust", ("effort", "forces")),
+    ("motor actuator servo", ("size", "motors")),
+    ("dynamics", ("forces", "simulate", "force_analysis")),
+    ("statics kinetostatics reactions loads force", ("forces", "force", "load", "efforts")),
+    ("kinematics position positions velocities motion", ("solve",)),
+    ("analyse analyze analysis run info describe summary", ("report",)),
+    ("view show gui browser play", ("open",)),
+    ("sweep variants parametric designs doe batch", ("study",)),
+    ("montecarlo percentile percentiles tolerancing worstcase", ("tolerance", "percentile", "percentiles")),
+    ("validate verify test", ("check", "verify")),
+    ("convert translate", ("import", "export")),
+    ("list examples library search find mechanisms", ("catalog", "list", "load")),
+    ("picture image sketch drawing polygon diagram", ("draw",)),
+    ("graph chart curve", ("plot",)),
+    ("create init make template", ("new",)),
+    ("edit change modify replace swap", ("set", "replace")),
+    ("synthesis synthesize", ("synthesise",)),
+    ("optimize optimization optimisation", ("optimise",)),
+    ("mobility dof grubler gruebler assur groups", ("structure", "decompose")),
+    ("centers poles instantcenters", ("centres", "instant_centres")),
+    ("stroke deadpoint deadpoints timeratio", ("characteristics",)),
+    # quantities
+    ("transmission pressureangle mu \u03bc gamma", ("transmission_angle", "characteristics")),
+    ("transmissionangle", ("transmission_angle", "characteristics", "groups")),
+    ("omega \u03c9 w angularspeed", ("angular_velocity", "rate", "speed")),
+    ("alpha \u03b1", ("angular_acceleration", "second", "acceleration")),
+    ("theta \u03b8 phi \u03c6 rotation orientation", ("angle", "value")),
+    ("velocity v", ("velocity", "angular_velocity", "rate", "speed")),
+    ("speed", ("angular_velocity", "rate")),
+    ("acceleration a", ("acceleration", "angular_acceleration", "second")),
+    ("displacement s travel", ("displacement", "value")),
+    ("todataframe dataframe pandas df", ("to_pandas",)),
+    ("tocsv toexcel tojson write export savecsv", ("save",)),
+    # words of files and of calls
+    ("direction", ("angle",)),
+    ("drive driver drivers input inputs", ("drives", "values", "drive")),
+    ("points coordinates sketch joints", ("drawn",)),
+    ("bar bars body bodies members", ("links", "link")),
+    ("rpm", ("speed",)),
+    ("path pathpoints trajectory", ("points",)),
+    ("motion rigidbody guidance motiongeneration", ("poses",)),
+    ("couplerpoint tracer", ("point",)),
+    ("output follower", ("rocker",)),
+    ("base fixed", ("ground", "frame")),
+    # linkages and mechanisms
+    ("4bar fourbarlinkage crankrocker", ("four-bar", "four_bar")),
+    ("crankslider piston slidercrankmechanism", ("slider-crank", "slider_crank")),
+    ("hoist jib lift", ("hydraulic-crane", "scissor-lift-loaded")),
+    ("cylinder", ("hydraulic-crane", "oscillating-cylinder")),
+    # other programs
+    ("solidworks autocad cad step inventor catia", ("dxf",)),
+    ("simulink octave", ("matlab",)),
+    ("adams mujoco", ("mjcf",)),
+    ("latex", ("tikz",)),
+    ("ggb", ("geogebra",)),
+)  # fmt: skip
+
+
+def _other_words() -> Mapping[str, tuple[str, ...]]:
+    """Return our words by those of others, in small letters and without separators."""
+    found: dict[str, tuple[str, ...]] = {}
+    for others, ours in _OTHERS:
+        for other in others.split():
+            found[other] = (*found.get(other, ()), *ours)
+    return found
+
+
+OTHER_WORDS = _other_words()
+
+
+def plain_word(name: object) -> str:
+    """Return a name in small letters, without separators.
+
+    >>> plain_word("Four-bar"), plain_word("four_bar")
+    ('fourbar', 'fourbar')
+    """
+    return "".join(letter for letter in str(name).lower() if letter not in " -_")
+
+
+def nearest(name: object, known: Sequence[str]) -> list[str]:
+    """Return what an unknown name means: a known one spelled otherwise, what others call so, or the closest one.
+
+    >>> nearest("film", ["animate", "plot"]), nearest("Four Bar", ["four-bar"]), nearest("x", ["rod"])
+    (['animate'], ['four-bar'], [])
+    """
+    import difflib
+
+    plain = plain_word(name)
+    same = [one for one in known if plain and plain_word(one) == plain]
+    words = (*OTHER_WORDS.get(plain, ()), *OTHER_WORDS.get(plain.removesuffix("s"), ()))
+    others = [one for one in dict.fromkeys(words) if one in known]
+    return same[:1] or others[:2] or difflib.get_close_matches(str(name), known, n=1)
+
+
 def suggestion(name: object, known: Sequence[str]) -> str:
-    """Return the remedy for an unknown name: the closest known one, or the list of known ones.
+    """Return the remedy for an unknown name: the known one that is meant, or the list of known ones.
 
     >>> suggestion("crnk", ["crank", "rod"])
     "did you mean 'crank'?"
     >>> suggestion("x", ["crank", "rod"])
     'known: crank, rod'
     """
-    import difflib
-
-    close = difflib.get_close_matches(str(name), known, n=1)
-    if close:
-        return f"did you mean {close[0]!r}?"
+    if found := nearest(name, known):
+        return f"did you mean {' or '.join(map(repr, found))}?"
     return f"known: {', '.join(known[:12])}{' ...' if len(known) > 12 else ''}" if known else "there is none"
+
+
+class ExplainsAttributes:
+    """What says of an attribute that it has not what to write instead; `_instead` knows more than the class does."""
+
+    def _instead(self, name: str) -> str:
+        return ""
+
+    if not TYPE_CHECKING:  # a type checker knows the attributes
+
+        def __getattr__(self, name: str) -> Any:
+            if hasattr(type(self), name):
+                return object.__getattribute__(self, name)  # a property that failed: its own error
+            what = f"{type(self).__name__!r} object has no attribute {name!r}"
+            if name.startswith("_"):
+                raise AttributeError(what)
+            package = sys.modules[__name__.partition(".")[0]]
+            own = [one for one in dir(self) if not one.startswith("_")]
+            remedy = self._instead(name)
+            functions = [one for one in (name, *OTHER_WORDS.get(plain_word(name), ())) if one in package.__all__]
+            if not remedy and (name in functions or not nearest(name, own)):
+                words = f"{package.__name__}.{functions[0]}({plain_word(type(self).__name__)})" if functions else ""
+                remedy = f"write {words}" if words else ""
+            raise AttributeError(f"{what}; {remedy or suggestion(name, own)}")
 
 
 _lock = Lock()

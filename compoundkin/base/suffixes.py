@@ -43,6 +43,21 @@ READ_ALONE: tuple[Kind, ...] = ("task",)
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 
 
+_PRINTED = "; an .html page is printed as PDF by any browser, a sheet on A4"
+_PLAYED = "; .mp4 and .gif are what slides and players take"
+_OPENED = "; an .html page opens there too"
+# What helps where a suffix is wanted that is not written.
+_INSTEAD: Mapping[tuple[Kind, str], str] = MappingProxyType(
+    {
+        ("report", ".pdf"): _PRINTED,
+        ("page", ".pdf"): _PRINTED,
+        ("report", ".tex"): "; compoundkin exercise writes sheets and solutions in LaTeX",
+        **{("report", suffix): _OPENED for suffix in (".doc", ".docx", ".odt", ".pptx")},
+        **{("animation", suffix): _PLAYED for suffix in (".avi", ".mov", ".mkv", ".webm", ".wmv", ".ppt", ".pptx")},
+    }
+)
+
+
 def file_format(kind: Kind, path: str | os.PathLike[str]) -> str:
     """Return the format that a file's suffix means. Raises InvalidInput for a suffix of another kind.
 
@@ -61,7 +76,8 @@ an animation is; plots end in .png, .svg, .pdf
             if suffix
             else "the file has no suffix"
         )
-        raise InvalidInput(Problem(str(path), what, _suffix_phrase(kind)))
+        helps = _INSTEAD.get((kind, suffix), "")
+        raise InvalidInput(Problem(str(path), what, f"{_suffix_phrase(kind)}{helps}"))
     return form
 
 

@@ -7,6 +7,7 @@ Results go to stdout, everything else to stderr. A verb imports NumPy and the ro
 from __future__ import annotations
 
 import gc
+import re
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -67,6 +68,26 @@ _COMMANDS = {
     "singularities": ("circuits", "singularities_command"),
 }
 
+# American spelling.
+_SPELLED = {"synthesize": "synthesise", "optimize": "optimise", "centers": "centres"}
+
+# Options by what others call them; where a verb has none of the name, what is closest in meaning.
+_OPTIONS_MEANT = {
+    **dict.fromkeys(("angle", "pose", "theta", "position"), ("--at",)),
+    **dict.fromkeys(("rpm", "omega", "velocity"), ("--speed",)),
+    **dict.fromkeys(("force", "payload"), ("--load",)),
+    **dict.fromkeys(("trace", "curve", "point", "coupler"), ("--path",)),
+    **dict.fromkeys(("width", "height", "resolution", "pixels"), ("--size",)),
+    **dict.fromkeys(("duration", "length"), ("--seconds",)),
+    **dict.fromkeys(("vary", "range", "dimension"), ("--free", "--tolerance")),
+    **dict.fromkeys(("samples", "number", "n"), ("--count",)),
+    **dict.fromkeys(("percentiles", "quantile", "confidence"), ("--percentile",)),
+    **dict.fromkeys(("steps", "working", "formulas", "derivation", "show-working"), ("--equations", "--sheet")),
+    **dict.fromkeys(("out", "output-file", "save", "file", "export"), ("--to-file", "--to-folder")),
+    **dict.fromkeys(("unit",), ("--units",)),
+    **dict.fromkeys(("transmission", "quantity", "plot"), ("--output",)),
+}
+
 EPILOG = """\b
 Examples:
   compoundkin report six-bar
@@ -94,6 +115,7 @@ class Verbs(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return the command of a verb."""
+        cmd_name = _SPELLED.get(cmd_name, cmd_name)
         if cmd_name not in VERBS:
             return None
         file, name = _COMMANDS.get(cmd_name, (cmd_name, "command"))
@@ -104,7 +126,7 @@ class Verbs(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the command that the arguments name. Raises UsageError with the nearest one for an unknown name."""
-        if args and args[0] not in VERBS and not args[0].startswith("-"):
+        if args and _SPELLED.get(args[0], args[0]) not in VERBS and not args[0].startswith("-"):
             from compoundkin.base.errors import suggestion
 
             raise click.UsageError(f"there is no command {args[0]!r}; {suggestion(args[0], list(VERBS))}", ctx)
@@ -120,7 +142,43 @@ class Verbs(click.Group):
         if extra.get("standalone_mode") is False:
             return super().main(*args, **extra)
         given = _with_units(args[0] if args else extra.pop("args", None) or sys.argv[1:])
-        return guarded(lambda: super(Verbs, self).main(given, *args[1:], **{**extra, "standalone_mode": False}))
+        return guarded(lambda: self._run(given, *args[1:], **{**extra, "standalone_mode": False}))
+
+    def _run(self, *args: Any, **extra: Any) -> Any:
+        """Run, and add to an error of the words of a command what is meant."""
+        try:
+            return super().main(*args, **extra)
+        except click.NoSuchOption as error:
+            raise click.UsageError(_unknown_option(self, error), error.ctx) from None
+        except click.UsageError as error:
+            if said := _file_meant(error):
+                raise click.UsageError(f"{error.format_message().rstrip('.')}. {said}", error.ctx) from None
+            raise
+
+
+def _unknown_option(verbs: Verbs, error: click.NoSuchOption) -> str:
+    """Return what to say of an option that a command has not: the one that is meant, or the verbs that have it."""
+    has = {option for one in error.ctx.command.params for option in one.opts} if error.ctx is not None else set()
+    meant = [one for one in _OPTIONS_MEANT.get(error.option_name.lstrip("-"), ()) if one in has]
+    if meant:
+        return f"No such option {error.option_name!r}. Did you mean {meant[0]!r}?"
+    if error.ctx is None or error.ctx.parent is None:
+        return error.format_message()
+    others = [name for name in VERBS if _has_option(verbs.get_command(error.ctx.parent, name), error.option_name)]
+    where = ", ".join(others[:4])
+    return f"{error.format_message()}{f' It is an option of {where}.' if others else ''}"
+
+
+def _has_option(command: click.Command | None, name: str) -> bool:
+    return command is not None and any(name in one.opts for one in command.params)
+
+
+def _file_meant(error: click.UsageError) -> str:
+    """Return which option a file to write needs, where one is written as it stands."""
+    words = re.findall(r"\(([^()]*)\)$", error.message.rstrip("."))
+    last = words[0].split()[-1] if words and words[0].split() else ""
+    names_file = "." in last and error.ctx is not None and _has_option(error.ctx.command, "-o")
+    return f"A file to write is named by -o {last}" if names_file else ""
 
 
 def _with_units(args: Sequence[str]) -> list[str]:

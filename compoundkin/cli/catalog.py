@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import click
 
+from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.cli.file_options import complete_name, put_report, report_options
 from compoundkin.cli.shell import put, say, working
 
 
+class Actions(click.Group):
+    """What can be done with the catalog; another word is looked for in it."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that the arguments name: `find` and `search` are `list`, as is a word of the catalog."""
+        if args and args[0] not in self.commands and not args[0].startswith("-"):
+            args = ["list", *args[1:]] if nearest(args[0], ["list"]) else ["list", *args]
+        return super().resolve_command(ctx, args)
+
+
 @click.group(
+    cls=Actions,
     invoke_without_command=True,
     epilog="""\b
 Examples:
   compoundkin catalog
+  compoundkin catalog list crane
   compoundkin catalog show six-bar
   compoundkin catalog copy six-bar mine.toml
 """,
@@ -27,9 +41,10 @@ def command(ctx: click.Context) -> int:
 
 
 @command.command("list")
-def list_() -> int:
-    """List the names and titles (as `catalog` alone does)."""
-    return print_catalog()
+@click.argument("word", required=False, default="")
+def list_(word: str) -> int:
+    """List the names and titles (as `catalog` alone does), or those that have a WORD in name, title or description."""
+    return print_catalog(word)
 
 
 @command.command()
@@ -66,13 +81,15 @@ def copy(name: str, destination: str | None, force: bool) -> int:
     return 0
 
 
-def print_catalog() -> int:
-    """Print the names and titles."""
-    from compoundkin.files.shipped_mechanisms import path, shipped
+def print_catalog(word: str = "") -> int:
+    """Print the names and titles, of all or of those with a word."""
+    from compoundkin.files.shipped_mechanisms import titles
 
-    titles = {name: tomllib.loads(path(name).read_text(encoding="utf-8"))["title"] for name in shipped()}
-    wide = max(map(len, titles), default=0)
-    put("".join(f"{name:{wide}}  {title}\n" for name, title in titles.items()))
+    found = titles(word)
+    if not found:
+        raise UnknownName(Problem(word, "no mechanism of the catalog has this word", "compoundkin catalog lists all"))
+    wide = max(map(len, found), default=0)
+    put("".join(f"{name:{wide}}  {title}\n" for name, title in found.items()))
     return 0
 
 

@@ -294,5 +294,8 @@ def find_forces(what: Motion | Structure, statics: bool, holding: str = "") -> F
     from compoundkin.kinematics import Motion, solve
 
     motion = what if isinstance(what, Motion) else solve(what)
+    if motion.mechanism.units is None:
+        what_lacks = "forces need units of length, mass and force, and the file has none"
+        raise InvalidInput(Problem("--units", what_lacks, "give --units mm,kg,N, or write them in the file"))
     with working("finding forces"):
         return force_analysis(motion, inertia=not statics, holding=holding)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest, suggestion
 from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_for, suffix_of
 from compoundkin.cli.drive_options import MODE, names_option, read_assembly_modes
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file, write_new
@@ -18,7 +18,10 @@ from compoundkin.files.exchange.content import is_itself
 from compoundkin.model.attributes import OF_POINTS
 
 if TYPE_CHECKING:
+    Choice = click.Choice[str]
     from compoundkin.structure import Structure
+else:  # before click 8.2 it takes no type
+    Choice = click.Choice
 
 
 PROGRAMS = tuple(dict.fromkeys(SUFFIXES["program"].values()))
@@ -27,6 +30,15 @@ TARGETS = (*PROGRAMS, *(name for name in MODULES if name not in READ_ONLY), TIKZ
 # Options of programs in other languages alone, and of poses alone, by the names of their values.
 OF_PROGRAMS = {"outputs": "--output", "free": "--free", "modes": "--mode", "name": "--name"}
 OF_POSES = {"at": "--at", "options": "--option"}
+
+
+class Target(Choice):
+    """A format, also by what others call it."""
+
+    def get_invalid_choice_message(self, value: Any, ctx: click.Context | None) -> str:
+        """Return the message with the formats, and that which is meant."""
+        said = super().get_invalid_choice_message(value, ctx)
+        return f"{said} {suggestion(value, TARGETS)}" if nearest(value, TARGETS) else said
 
 
 class WithTargets(click.Command):
@@ -59,7 +71,7 @@ Examples:
 """,
 )
 @mechanism_argument
-@click.option("--to", "form", type=click.Choice(tuple(TARGETS)), metavar="FORM",
+@click.option("--to", "form", type=Target(tuple(TARGETS), case_sensitive=False), metavar="FORM",
               help="As what: c, python, javascript, matlab, or a format of another program (see below); the suffix "
               "of PATH tells too.")  # fmt: skip
 @click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
@@ -124,8 +136,10 @@ def _format_of(path: str, suffix: str) -> str:
     if not found:
         what = f"nothing is exported as {suffix!r}" if suffix else "the file has no suffix"
         formats = (one.suffix for one in known.values() if one.suffix)
-        ends = ", ".join((*SUFFIXES["program"], *formats, suffix_for("picture", TIKZ)))
-        raise InvalidInput(Problem(path, what, f"give --to, or end it in {ends}"))
+        ends = ", ".join(dict.fromkeys((*SUFFIXES["program"], *formats, suffix_for("picture", TIKZ))))
+        named = nearest(suffix.removeprefix("."), TARGETS)
+        to = f"--to {' or '.join(named)}" if named else "--to"
+        raise InvalidInput(Problem(path, what, f"give {to}, or end it in {ends}"))
     return found[0]
 
 

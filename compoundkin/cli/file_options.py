@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotDetermined, Problem
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotDetermined, Problem, UnknownName
 from compoundkin.base.suffixes import SUFFIXES, alternatives, file_format, suffix_for, suffix_of
 from compoundkin.cli.shell import NOT_ASSEMBLED, has_colour, put, report_width, say, working
 
@@ -90,6 +90,8 @@ def load_mechanism(file: str) -> Mechanism:
         raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
     if ":" in file and not exists(file) and (made := _linkage(file)) is not None:
         return made
+    if not exists(file) and (lacking := _needs_lengths(file)) is not None:
+        raise lacking
     if is_foreign_file(file):
         return import_with_notes(file).mechanism
     # `load` judges what is no regular file, such as a pipe
@@ -104,6 +106,18 @@ def _linkage(text: str) -> Mechanism | None:
     from compoundkin.synthesis.linkages import linkage_of
 
     return linkage_of(text)
+
+
+def _needs_lengths(text: str) -> UnknownName | None:
+    """Return the error of a linkage without its lengths; None for any other name."""
+    from compoundkin.files.shipped_mechanisms import shipped
+    from compoundkin.synthesis.linkages import is_linkage, kind_named
+
+    if text in shipped() or not is_linkage(f"{text}:"):
+        return None
+    kind = kind_named(text)
+    such = f'"{kind.name}:{kind.example}", what they are lists compoundkin new --list'
+    return UnknownName(Problem(text, "a linkage takes its lengths", f"such as {such}"))
 
 
 def write_new(path: Path, content: bytes, force: bool) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.cli.shell import put, say
 
 TEMPLATE = """\
@@ -69,6 +69,37 @@ C = [78, 46]
 """
 
 
+STUDY = """\
+# A study: many designs of a mechanism. Compute it with:  compoundkin study @FILE@
+format = 1
+mechanism = "crank-rocker"      # a shipped one, or the path of a file, seen from this one
+outputs = ["rocker.angle.stroke", "rocker.transmission_angle.least"]      # what is found of each design
+count = 1024                    # how many designs; 1_000_000 take some seconds
+seed = 1
+
+[dimensions]                    # what varies: names in quotes, lengths and degrees
+"crank.B.x" = { low = 1.8, high = 2.2 }
+"rocker.C.x" = { distribution = "norm", loc = 4, scale = 0.05 }
+"""
+TASK = """\
+# A task of synthesis. Find the mechanisms that do it with:  compoundkin synthesise @FILE@ --save found
+format = 1
+task = "poses"                  # or points, mixed, function, swing, stroke, dwell
+link = "plate"                  # what the body is called that is guided through them
+poses = [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]]      # x, y, degrees; three to five, more approximately
+
+# A coupler point goes through points instead, two to nine:
+#
+#   task = "points"
+#   points = [[10, 20], [15, 30], [25, 35], [35, 33], [45, 25], [50, 15]]
+
+[conditions]                    # may be left out
+transmission = 10               # degrees, at least
+"""
+# What `compoundkin new WORD` writes beside linkages: the text, and the verb that takes the file.
+DOCUMENTS = {"study": (STUDY, "study"), "task": (TASK, "synthesise")}
+
+
 class WithNumbers(click.Command):
     """A command whose words may be negative numbers, where others have options: slider-crank 20 60 -5."""
 
@@ -86,6 +117,9 @@ Examples:
   compoundkin new four-bar ground=60 crank=20 coupler=50 rocker=40
   compoundkin new slider-crank 20 60 offset=5 -o mine.toml
   compoundkin new --list
+  compoundkin new study -o variants.toml
+  compoundkin new task -o points.toml
+  compoundkin catalog copy hydraulic-crane mine.toml
 """,
 )
 @click.argument("words", nargs=-1, metavar="[PATH | LINKAGE NAME=VALUE ...]")
@@ -96,7 +130,8 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool)
     """Write a commented mechanism file, to be changed into your own.
 
     Without a linkage it has a four-bar to start from. With one it is that linkage by its lengths, angles in degrees.
-    The same words do wherever a FILE is expected: compoundkin report four-bar:60,20,50,40
+    The same words do wherever a FILE is expected: compoundkin report four-bar:60,20,50,40. `study` and `task` are files
+    of many designs, and of what a mechanism shall do; to start from a shipped mechanism, copy it from the catalog.
     """
     from compoundkin.base.suffixes import suffix_for, suffix_of
     from compoundkin.cli.file_options import write_new
@@ -108,13 +143,17 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool)
     is_linkage = bool(given) or (name != "" and suffix_of(Path(name)) == "" and not Path(name).is_dir())
     if not is_linkage and path is not None and name:
         raise InvalidInput(Problem(name, "the file is named twice", f"compoundkin new {name}"))
-    target = Path(path or ("mechanism.toml" if is_linkage else name or "mechanism.toml"))
-    target = target / "mechanism.toml" if target.is_dir() else target
+    document, verb = DOCUMENTS.get(name, ("", "report")) if not given else ("", "report")
+    own = f"{name}.toml" if document else "mechanism.toml"
+    target = Path(path or (own if is_linkage else name or own))
+    target = target / own if target.is_dir() else target
     if suffix_of(target) != suffix_for("mechanism", "toml"):
         raise InvalidInput(Problem(str(target), "only TOML files have comments", "choose a name that ends in .toml"))
-    text = linkage_file(name, given, target) if is_linkage else starting_file(target)
+    text = linkage_file(name, given, target) if is_linkage and not document else starting_file(target)
+    text = document.replace("@FILE@", target.name) or text
     write_new(target, text.encode("utf-8"), force)
-    say(f"Wrote {target}; see it with: compoundkin report {shlex.quote(str(target))}")
+    how = "compute" if document else "see"
+    say(f"Wrote {target}; {how} it with: compoundkin {verb} {shlex.quote(str(target))}")
     return 0
 
 
@@ -137,8 +176,11 @@ def linkage_list() -> str:
 def linkage_file(name: str, given: tuple[str, ...], target: Path) -> str:
     """Return the text of the file of a linkage, with what its numbers mean. Raises InvalidInput, UnknownName."""
     from compoundkin.files import dumps
-    from compoundkin.synthesis.linkages import kind_named
+    from compoundkin.files.shipped_mechanisms import shipped
+    from compoundkin.synthesis.linkages import is_linkage, kind_named
 
+    if name in shipped() and not is_linkage(f"{name}:"):
+        raise UnknownName(Problem(name, "it is in the catalog", f"compoundkin catalog copy {name} mine.toml"))
     kind = kind_named(name)
     mechanism = kind.written(given)
     typed = " ".join(" ".join(given).split())

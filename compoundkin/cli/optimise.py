@@ -94,14 +94,14 @@ def search(structure: Structure, options: dict[str, Any]) -> Optimum:
     rates: dict[str, Any] = {rate: read_rates(structure, f"--{rate}", options[f"{rate}s"]) for rate in RATES[:2]}
     with counting("searching", "designs") as progress:
         return optimise(
-            structure.mechanism, dict(_ranges(structure, options["free"])), sum(aims[1:], aims[0]), constraints,
+            structure.mechanism, dict(read_ranges(structure, options["free"])), sum(aims[1:], aims[0]), constraints,
             values=read_driver_values(structure, options) or None, time=read_times(options["time"]),
             modes=read_assembly_modes(structure, options["modes"]) or None,
             starts=options["starts"], seed=options["seed"], progress=progress, **rates,
         )  # fmt: skip
 
 
-def _ranges(structure: Structure, given: Sequence[str]) -> Iterator[tuple[str, tuple[float, float]]]:
+def read_ranges(structure: Structure, given: Sequence[str]) -> Iterator[tuple[str, tuple[float, float]]]:
     """Yield dimensions with the bounds between which they may be, radians or lengths. Raises InvalidInput."""
     from compoundkin.cli.typed_values import read_number
     from compoundkin.studies.study_document import is_angle_dimension

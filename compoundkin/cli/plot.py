@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import alternatives, file_format
-from compoundkin.cli.drive_options import drive_options, explain_gaps, solve_motion
+from compoundkin.cli.drive_options import drive_options, explain_gaps, load_options, solve_motion
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, put_picture, to_file
 from compoundkin.cli.shell import working
 
@@ -47,6 +47,8 @@ UNSOLVED = {
     epilog="""\b
 Examples:
   compoundkin plot six-bar G.velocity bar.angle -o six-bar.png
+  compoundkin plot crank-rocker rocker.transmission_angle -o transmission.png
+  compoundkin plot toggle-press crank.effort --load D=-500,0 -o torque.png
   compoundkin plot six-bar G.x --against bar.angle --step 1 -o six-bar.svg
   compoundkin plot six-bar G.speed --log y --x-limits 90 270 -o part.png
   compoundkin plot crank-rocker rocker.angle --with triple-rocker -o both.png
@@ -60,6 +62,7 @@ Examples:
 @mechanism_argument
 @click.argument("quantities", nargs=-1, metavar="[QUANTITY]...")
 @drive_options
+@load_options
 @click.option("--against", metavar="QUANTITY", help="What to draw over: driver, time, pose, or a quantity.")
 @click.option("--together", is_flag=True, help="Quantities of one unit in one panel.")
 @click.option("--with", "others", multiple=True, metavar="FILE", help="Another mechanism in the same plot.")
@@ -107,7 +110,9 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **options:
     if "timing_chart" in options["kinds"]:
         put_picture(_timing_plot(load_mechanism(file), (*quantities, *options["outputs"]), options), path)
         return 0
-    structures = [decompose(load_mechanism(one)) for one in (file, *options["others"])]
+    from compoundkin.cli.typed_values import with_loads
+
+    structures = [decompose(with_loads(load_mechanism(one), options)) for one in (file, *options["others"])]
     names = (*quantities, *options["outputs"])
     if "circuits" in options["kinds"]:
         put_picture(_circuits_plot(structures[0], names, options), path)

@@ -22,6 +22,7 @@ from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say, working
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
     from compoundkin.view.report import Report
+    from compoundkin.view.report.report_data import Section
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -31,7 +32,10 @@ def reporting_options(command: F) -> F:
     centres = click.option(
         "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
     )
-    return drive_options(DESIGN(centres(command)))
+    equations = click.option(
+        "--equations", is_flag=True, help="Add the equations of motion with their numbers at the first pose."
+    )
+    return drive_options(DESIGN(centres(equations(command))))
 
 
 @click.command(
@@ -41,6 +45,7 @@ Examples:
   compoundkin report six-bar --output G.speed --output rocker.angle
   compoundkin report six-bar --from 0 --to 90 --step 5 -o six-bar.md
   compoundkin report six-bar -o six-bar.html
+  compoundkin report six-bar --at 35 --equations --centres 35 -o worked.html
   compoundkin report linkage.toml --format json
 """
 )
@@ -100,10 +105,25 @@ def mechanism_report(file: str, options: Mapping[str, Any]) -> tuple[Report, boo
     motion = solve_motion(structure, options)
     with working("checking and reporting"):
         parts = [report(motion, options["outputs"], design)]
+        if options["equations"]:
+            parts.append(replace(parts[0], sections=tuple(_equations(structure, options))))
         if options["centres"] is not None:
             parts.append(_of_centres(structure, options["centres"].split(","), design, options))
     assembled = all(part.outcome.assembled == part.outcome.poses for part in parts)
     return replace(parts[0], sections=tuple(section for part in parts for section in part.sections)), assembled
+
+
+def _equations(structure: Structure, options: Mapping[str, Any]) -> list[Section]:
+    """Return the sections of the loop equations, with their numbers at the first pose."""
+    import numpy as np
+
+    from compoundkin.cli.structure import equation_sections
+    from compoundkin.cli.typed_values import read_driver_values
+
+    values = read_driver_values(structure, {**options, "time": None})
+    shown = {name: np.rad2deg(v) if structure.driven_angles[name] else v for name, v in values.items()}
+    first = tuple(f"{name}={float(np.ravel(value)[0])!r}" for name, value in shown.items())
+    return equation_sections(structure, {**options, "order": 2, "at": first, "newton": False, "estimates": ()})[0]
 
 
 def report_exit_code(report: Report, assembled: bool) -> int:

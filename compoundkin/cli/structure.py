@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -75,7 +76,7 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
         result = report(structure)
     code = 0
     if equations:
-        sections, code = _equations(structure, options)
+        sections, code = equation_sections(structure, options)
         result = replace(result, sections=(*result.sections, *sections))
     if alternatives:
         from compoundkin.view.report.atlas_sections import alternatives_section
@@ -98,7 +99,7 @@ def _check_options(equations: bool, options: dict[str, Any]) -> None:
         raise InvalidInput(Problem("--estimate", "estimates are for Newton's iterations", "add --newton"))
 
 
-def _equations(structure: Structure, options: dict[str, Any]) -> tuple[list[Section], int]:
+def equation_sections(structure: Structure, options: Mapping[str, Any]) -> tuple[list[Section], int]:
     """Return the sections of the equations, and the exit code."""
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.view.report.equations_sections import constants_section, equations_section, rates_section
@@ -117,7 +118,7 @@ def _equations(structure: Structure, options: dict[str, Any]) -> tuple[list[Sect
     return [section for section in sections if section is not None], code
 
 
-def _solved(structure: Structure, options: dict[str, Any]) -> tuple[dict[str, float], Motion]:
+def _solved(structure: Structure, options: Mapping[str, Any]) -> tuple[dict[str, float], Motion]:
     """Return the drivers' values at the pose, and the motion there."""
     from compoundkin.cli import typed_values
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.cli.drive_options import names_option
 from compoundkin.cli.file_options import FORMATS, put_report
 from compoundkin.cli.shell import NOT_ASSEMBLED, counting, say
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from compoundkin.studies.study_result import StudyResult
 
 
+# How many designs there are where nobody says it.
+DESIGNS = 1024
+
+
 @click.command(
     epilog="""\b
 Examples:
@@ -24,9 +28,26 @@ Examples:
   compoundkin study press.toml -o press-study --workers 2
   compoundkin study press.toml --greatest ram.stroke --best 5
   compoundkin study press.toml -o press-study --format json > press.json
+  compoundkin study four-bar:60,20,50,40 --free crank.B.x=18:22 \
+      --output rocker.angle.stroke --count 1000000
 """
 )
 @click.argument("file", metavar="FILE", type=click.Path())
+@names_option(
+    "--free",
+    "free",
+    "NAME=LOW:HIGH",
+    "Of a mechanism instead of a study file: a dimension and its range, "
+    "lengths or degrees. Repeat it, or write commas.",
+)
+@names_option(
+    "--output",
+    "outputs",
+    "FIGURE",
+    "With --free: what is found of each design, such as rocker.angle.stroke; the outputs of the file if left out.",
+)
+@click.option("--count", type=click.IntRange(1), metavar="DESIGNS", help="With --free: how many; 1024 if left out.")
+@click.option("--seed", type=int, metavar="NUMBER", help="With --free: makes them repeatable; 0 if left out.")
 @click.option("-o", "--to-folder", "folder", metavar="FOLDER", help="Keep all rows here, as Parquet files. Where some "
               "are there already, the others are computed.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), metavar="NUMBER", help="Processes instead of threads of one.")
@@ -37,6 +58,10 @@ Examples:
 @click.option("--format", "form", type=click.Choice(FORMATS), help="Of the summary.")
 def command(
     file: str,
+    free: tuple[str, ...],
+    outputs: tuple[str, ...],
+    count: int | None,
+    seed: int | None,
     folder: str | None,
     least: tuple[str, ...],
     greatest: tuple[str, ...],
@@ -44,7 +69,7 @@ def command(
     form: str | None,
     **how: int | None,
 ) -> int:
-    """Compute the designs of a study file, and sum up their figures.
+    """Compute the designs of a study file, or of a mechanism with --free, and sum up their figures.
 
     Ctrl-C stops it: with -o the rows computed remain, and the same command goes on from there.
     Exit code 3: no design assembles.
@@ -52,13 +77,42 @@ def command(
     from compoundkin.studies.study import load_study
     from compoundkin.view.report.study_reports import study_report
 
-    studied = load_study(file)
+    studied = _of_mechanism(file, free, outputs, count, seed) if free else load_study(_study_file(file, outputs))
     check_figures(studied, (*least, *greatest))
     found = run_with_progress(studied, folder, **how)
     put_report(study_report(found, least, greatest, best), form, None)
     if folder is not None:
         say(f"{len(found):,} rows are in {folder}.")
     return 0 if found.assembled.any() else NOT_ASSEMBLED
+
+
+def _study_file(file: str, outputs: tuple[str, ...]) -> str:
+    """Return the path of a study file. Raises InvalidInput for a mechanism, of which --free says what may vary."""
+    from compoundkin.base.suffixes import SUFFIXES, suffix_of
+
+    how = (
+        "study files end in .toml or .json, compoundkin new study writes one; of a mechanism say what varies: "
+        "--free crank.B.x=18:22 --output rocker.angle.stroke"
+    )
+    if outputs:
+        raise InvalidInput(Problem("--output", "a study file says it itself", how))
+    if suffix_of(file) not in SUFFIXES["study"]:
+        raise InvalidInput(Problem(file, "this is no study file", how))
+    return file
+
+
+def _of_mechanism(
+    file: str, free: tuple[str, ...], outputs: tuple[str, ...], count: int | None, seed: int | None
+) -> Study:
+    """Return the study of a mechanism, its dimensions in ranges."""
+    from compoundkin.cli.file_options import load_mechanism
+    from compoundkin.cli.optimise import read_ranges
+    from compoundkin.structure import decompose
+    from compoundkin.studies.study import study
+
+    mechanism = load_mechanism(file)
+    ranges = dict(read_ranges(decompose(mechanism), free))
+    return study(mechanism, ranges, outputs or mechanism.outputs, count=count or DESIGNS, seed=seed or 0)
 
 
 def check_figures(studied: Study, names: tuple[str, ...]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,7 @@ Examples:
   compoundkin tolerance six-bar --tolerance crank.D=0.05 --output G.x
   compoundkin tolerance six-bar --tolerance crank.D=0.05 --clearance C=0.01
   compoundkin tolerance six-bar --tolerance slot.angle=-0.1:0.2 --at 35
+  compoundkin tolerance six-bar --tolerance plate.C=0.02 --percentile 5,50,95
   compoundkin tolerance six-bar --tolerance plate.C=0.02 --bands -o bands.csv
 """
 )
@@ -45,6 +47,8 @@ Examples:
               help="How many standard deviations the limits are away.")  # fmt: skip
 @click.option("--count", type=int, default=4096, show_default=True, help="How many random designs.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Makes them repeatable.")
+@click.option("--percentile", "percentiles", multiple=True, metavar="PERCENT", help="Which percentiles of the random "
+              "designs, such as 5,50,95; repeat it, or write commas.  [default: 0.135, 50, 99.865]")  # fmt: skip
 @click.option("--bands", is_flag=True, help="A table with the bands of the outputs at every pose.")
 @motion_options
 @report_or_table_options
@@ -93,8 +97,17 @@ def analyse(structure: Structure, options: dict[str, Any]) -> ToleranceAnalysis:
             structure.mechanism, given, outputs,
             clearance=dict(read_errors(structure, "--clearance", options["clearances"])),
             values=values, time=time, modes=read_assembly_modes(structure, options["modes"]) or None, **rates,
-            **{word: options[word] for word in ("count", "seed", "sigmas")},
+            **{word: options[word] for word in ("count", "seed", "sigmas")}, **_percentiles(options["percentiles"]),
         )  # fmt: skip
+
+
+def _percentiles(given: Sequence[str]) -> dict[str, Any]:
+    """Return the percentiles given, as an argument of `tolerance`."""
+    from compoundkin.cli.typed_values import read_number
+
+    how = "write percents: 5,50,95"
+    read = tuple(read_number(text.removesuffix("%"), "--percentile", how) for text in split_names(given))
+    return {"percentiles": read} if read else {}
 
 
 def read_errors(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, Any]]:
@@ -114,6 +127,6 @@ def read_errors(structure: Structure, option: str, given: Sequence[str]) -> Iter
             raise InvalidInput(Problem(where, f"{name} is given twice", "leave one of them out"))
         read.add(name)
         is_angle = is_angle_dimension(structure.mechanism, structure.driven_angles, name)
-        numbers = [read_number(part, where, HOW) for part in parts]
+        numbers = [read_number(re.sub(r"^(\u00b1|\+/?-)", "", part.strip()), where, HOW) for part in parts]
         numbers = [radians(one) if is_angle else one for one in numbers]
         yield name, numbers[0] if len(numbers) == 1 else tuple(numbers)

@@ -120,9 +120,9 @@ def read_numbers(text: str, where: str, how: str = HOW) -> Number:
 
 
 def read_number(text: str, where: str, how: str = HOW) -> float:
-    """Return one finite number."""
+    """Return one finite number; degrees may say so: 60deg, 60\u00b0."""
     try:
-        value = float(text)
+        value = float(text.strip().removesuffix("deg").removesuffix("\u00b0") if "deg" not in how else text)
     except ValueError:
         raise _invalid(where, f"{text!r} is not a number", how) from None
     if not isfinite(value):
@@ -210,9 +210,10 @@ def _force(mechanism: Mechanism, units: Units, text: str) -> Item:
     link, _, letter = place.rpartition(".")
     carriers = mechanism.carriers
     if letter not in carriers:
-        raise UnknownName(
-            Problem(f"--load {text}", f"there is no point {letter!r}", suggestion(letter, list(carriers)))
-        )
+        own = [one for one, links in carriers.items() if letter in links and FRAME not in links]
+        what = f"{letter!r} is a link; a force acts on a point" if own else f"there is no point {letter!r}"
+        remedy = f"its points are {', '.join(own)}" if own else suggestion(letter, list(carriers))
+        raise UnknownName(Problem(f"--load {text}", what, remedy))
     if link and link not in mechanism.links:
         raise UnknownName(
             Problem(f"--load {text}", f"there is no link {link!r}", suggestion(link, list(mechanism.links)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -114,9 +114,7 @@ def _with_value(text: str, name: str, value: str, syntax: Syntax, where: str) ->
     whole = parsed(text, syntax, where)
     places = _places(whole)
     if name not in places:
-        owner = name.partition(".")[0]
-        known = [one for one in places if one.partition(".")[0] == owner] or list(places)
-        raise UnknownName(Problem(name, "there is no such value in the file", suggestion(name, known)))
+        raise UnknownName(Problem(name, "there is no such value in the file", _meant(name, whole, places)))
     *way, last = places[name]
     wanted = parsed(text, syntax, where)
     holder: Any = wanted
@@ -137,6 +135,29 @@ def _with_value(text: str, name: str, value: str, syntax: Syntax, where: str) ->
         if is_it:
             return changed
     raise InvalidInput(Problem(name, f"{old!r} cannot be replaced in the text alone", "change it in an editor"))
+
+
+def _meant(name: str, whole: Mapping[str, Any], places: Mapping[str, tuple[Any, ...]]) -> str:
+    """Return the remedy for a name that is no value: the length of a link, the places of a letter, the nearest name."""
+
+    def value(way: Sequence[Any]) -> Any:
+        found: Any = whole
+        for key in way:
+            found = found[key]
+        return found
+
+    owner, _, word = name.partition(".")
+    parts = [one.split(".") for one in places]
+    lengths = [
+        one for one, way in places.items() if one.startswith(f"{owner}.") and way[0] == "links" and value(way) != 0
+    ]
+    letters = [".".join(one) for one in parts if len(one) == 3 and name in (one[1], ".".join(one[:2]))]
+    letters = [one for one in letters if value(places[one]) != 0] or letters
+    if word in ("", "length") and owner in whole.get("links", {}) and lengths:
+        return f"did you mean {' or '.join(map(repr, lengths))}?"
+    if letters:
+        return f"did you mean {' or '.join(map(repr, letters))}?"
+    return suggestion(name, [one for one in places if one.partition(".")[0] == owner] or list(places))
 
 
 def _number(name: str, value: str) -> float | int:

@@ -86,10 +86,30 @@ def parsed(text: str, syntax: Syntax, where: str, kind: Kind = "mechanism") -> d
         raise failed([Problem("", f"a value cannot be read: {error}")], where) from None
     if not isinstance(found, dict):
         raise failed([Problem("", f"a {kind} file is a table (a JSON object)")], where)
+    if (strange := _of_other_kind(found, kind, where)) is not None:
+        raise failed([strange], where)
     repeats = list(_repeats(found, ""))
     if repeats:
         raise failed(repeats, where)
     return found
+
+
+# What only documents of a kind have, and what is done with them.
+_KINDS: Mapping[Kind, tuple[tuple[str, ...], str]] = {
+    "mechanism": (("links",), "it is solved and reported as it is; a study file names it: mechanism = {!r}"),
+    "study": (("mechanism", "dimensions"), "compoundkin study {}"),
+    "task": (("task",), "compoundkin synthesise {}"),
+}
+
+
+def _of_other_kind(found: Mapping[str, Any], kind: Kind, where: str) -> Problem | None:
+    """Return the problem of a document of another kind; None where it is of this one, or of none."""
+    if all(key in found for key in _KINDS[kind][0]):
+        return None
+    for other, (keys, use) in _KINDS.items():
+        if all(key in found for key in keys):
+            return Problem("", f"this is a {other} file, no {kind} file", use.format(where or f"{other}.toml"))
+    return None
 
 
 def located(error: InvalidMechanism, text: str) -> InvalidMechanism:
@@ -176,10 +196,24 @@ class _Repeats(dict[str, Any]):
         self.twice = [] if len(self) == len(keys) else [key for key in self if keys.count(key) > 1]
 
 
+# What helps where a text is no TOML, by what its reader says.
+_OF_TOML = {
+    "Illegal character": 'a text begins and ends with a quotation mark in one line: title = "Press"',
+    "Unclosed array": "a list has commas between its values and ends with ]: [0, 20.5]",
+    "Unclosed inline table": "it has commas between its keys and ends with } in one line: { A = [0, 0], B = [20, 0] }",
+    "Expected '='": "each line is key = value, a [table], or a # comment",
+    "Invalid value": 'texts stand in quotation marks, decimals have a point: "mm", 20.5',
+    "Invalid initial character": "each line is key = value, a [table], or a # comment",
+    "Cannot declare": "it is there already: write all of it in one place; a list of tables has [[two]] brackets",
+    "Cannot overwrite": "it is there already: leave one of them out",
+}
+
+
 def _toml_problem(message: str, text: str) -> Problem:
     found = re.fullmatch(r"(.*) \(at line (\d+), column (\d+)\)", message, re.DOTALL)
+    remedy = next((remedy for word, remedy in _OF_TOML.items() if message.startswith(word)), "")
     if found:
-        return Problem(_place(int(found[2]), int(found[3])), f"this is not TOML: {found[1]}")
+        return Problem(_place(int(found[2]), int(found[3])), f"this is not TOML: {found[1]}", remedy)
     lines = text.split("\n")
     return Problem(_place(len(lines), len(lines[-1]) + 1), f"this is not TOML: {message}")
 

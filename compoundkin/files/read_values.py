@@ -125,7 +125,9 @@ def point(value: Any, where: str, angle: bool | None = None) -> Number:
     is_polar = isinstance(value, dict) and list(value) == ["polar"]
     entries = value["polar"] if is_polar else value
     if not isinstance(entries, list) or len(entries) != 2:
-        raise wrong(where, entries, "a point", "write [x, y] or {polar = [radius, degrees]}")
+        comma = isinstance(entries, list) and len(entries) > 2 and all(isinstance(one, int | float) for one in entries)
+        decimals = "; decimals have a point, no comma: [20.5, 0]" if comma else ""
+        raise wrong(where, entries, "a point", f"write [x, y] or {{polar = [radius, degrees]}}{decimals}")
     place, second = (f"{where}.polar", degrees) if is_polar else (where, numbers)
     parts = numbers(entries[0], place), second(entries[1], place)
     try:

@@ -75,6 +75,11 @@ Tagged: TypeAlias = "Callable[[Recovery, Any, str, bool | None], Any]"
 NO_OTHERS: Mapping[str, bool | None] = MappingProxyType({})
 
 
+# What a link has not by a word of its own.
+_LENGTH = "its points say it, in the link's own axes: points = { A = [0, 0], B = [20, 0] } is a bar of length 20"
+_OF_LINKS = {"length": _LENGTH, "lengths": _LENGTH, "l": _LENGTH}
+
+
 class Recovery:
     """The problems found while a document is read, and stand-ins for broken values.
 
@@ -112,7 +117,8 @@ class Recovery:
         for key, value in raw.items():
             if key in known:
                 continue
-            remedy = suggestion(key, known)
+            remedy = _OF_LINKS.get(key, "") if where.startswith("links.") else ""
+            remedy = remedy or suggestion(key, known)
             self.report(bad(inside(where, key), "there is no such key here", remedy))
             meant = next((name for name in known if remedy == f"did you mean {name!r}?"), None)
             if meant is not None and meant not in given:
@@ -132,7 +138,9 @@ class Recovery:
         `angle` tells whether its coordinates are angles, `others` the same of keys over other coordinates.
         """
         if not isinstance(raw, dict):
-            self.report(wrong(where, raw, "a table"))
+            of_link = where.startswith("links.") and isinstance(raw, list)
+            remedy = f"write {where.removeprefix('links.')}.points = [...]" if of_link else ""
+            self.report(wrong(where, raw, "a table", remedy))
             return {key.name: self.stand_in(key.kind) for key in keys if key.required}
         given = self.recognized(raw, [key.name for key in keys], where)
         found: dict[str, Any] = {}

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import tomllib
+from difflib import get_close_matches
 from functools import cache
 from os import PathLike, fspath
 from os.path import isfile
 from pathlib import Path
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.errors import OTHER_WORDS, InvalidInput, Problem, UnknownName, plain_word, suggestion
 from compoundkin.base.suffixes import SUFFIXES, suffix_for
 
 SUFFIX = suffix_for("mechanism", "toml")
 # A wheel carries the files inside the package; a checkout or an editable install has them beside it.
+# How alike a name must be to one of the catalog to be that with a slip in it (difflib, 1 is the same).
+SURELY = 0.8
 FOLDERS = (Path(__file__).parents[1] / "_catalog", Path(__file__).parents[2] / "catalog")
 
 
@@ -43,7 +47,7 @@ def path(name: str) -> Path:
     compoundkin.base.errors.UnknownName: sixbar: the catalog has no such mechanism; did you mean 'six-bar'?
     """
     if name not in shipped():
-        raise UnknownName(Problem(name, "the catalog has no such mechanism", suggestion(name, shipped())))
+        raise UnknownName(Problem(name, "the catalog has no such mechanism", _meant(name)))
     return folder() / (name + SUFFIX)
 
 
@@ -69,7 +73,36 @@ def resolve(name_or_path: str | PathLike[str]) -> Path:
         return path(text)
     if Path(text).suffix in SUFFIXES["mechanism"] or "/" in text or "\\" in text:
         raise InvalidInput(Problem(text, "there is no such file", _remedy(text)))
-    raise UnknownName(Problem(text, "neither a file nor in the catalog", suggestion(text, shipped())))
+    raise UnknownName(Problem(text, "neither a file nor in the catalog", _meant(text)))
+
+
+def titles(word: str = "") -> dict[str, str]:
+    """Return the titles of shipped mechanisms by name: of all, or of those that have a word.
+
+    A word is looked for in names and titles, and where it is in none of them, in descriptions.
+
+    >>> list(titles("scotch"))
+    ['scotch-yoke']
+    """
+    words = {plain_word(word), *map(plain_word, OTHER_WORDS.get(plain_word(word), ()))}
+    whole = {name: tomllib.loads(path(name).read_text(encoding="utf-8")) for name in shipped()}
+    for keys in (("title",), ("title", "description")):
+        texts = {name: plain_word(" ".join([name, *(own.get(key, "") for key in keys)])) for name, own in whole.items()}
+        if found := [name for name, text in texts.items() if any(one in text for one in words)]:
+            return {name: whole[name]["title"] for name in found}
+    return {}
+
+
+def _meant(text: str) -> str:
+    """Return the remedy for a name that the catalog does not have: those with the word, or the closest."""
+    if ":" in text:
+        name, _, lengths = text.partition(":")
+        made = f"compoundkin.linkages.{name.strip().replace('-', '_')}({lengths.strip()})"
+        return f"in Python a linkage is made from its lengths by {made}"
+    found = {} if get_close_matches(text, shipped(), 1, SURELY) else titles(text)
+    if not found:
+        return suggestion(text, shipped())
+    return f"in the catalog: {', '.join([*found][:8])}{' ...' if len(found) > 8 else ''}"
 
 
 def _remedy(text: str) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from compoundkin.base.arrays import Number, Vectors, unwrapped
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.display import DisplaysPicture, display_function
-from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.base.errors import ExplainsAttributes, Problem, UnknownName, nearest, suggestion
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import BLOCK, Block, blocks, places, repeated, size_in, with_poses
@@ -23,15 +23,16 @@ from compoundkin.kinematics.curve.modes import GroupMode, modes_of
 from compoundkin.kinematics.derived.figures_of_forces import AsksForces
 from compoundkin.kinematics.driver_values import Inputs, PoseGrid, fit
 from compoundkin.kinematics.jacobian import Jacobian, jacobian_of
-from compoundkin.kinematics.quantities import Table, table_of
+from compoundkin.kinematics.quantities import Table, names_meant, table_of
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.attributes import CATALOGUE, DERIVED
 from compoundkin.model.geometry import vector
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True)
-class Motion(CopiesFields, DisplaysPicture, AsksForces):
+class Motion(CopiesFields, DisplaysPicture, AsksForces, ExplainsAttributes):
     """A mechanism solved: every link's pose with all derivatives, over designs and poses.
 
     `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that cannot be
@@ -52,6 +53,13 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
     def mechanism(self) -> Mechanism:
         """The mechanism that was solved."""
         return self.structure.mechanism
+
+    def _instead(self, name: str) -> str:
+        kinds = [kind for kind in ("links", "points", "pairs", "drives") if name in getattr(self, kind)]
+        if kinds:
+            return f"write motion.{kinds[0]}[{name!r}]"
+        asked = names_meant(self, name)
+        return f"write compoundkin.quantity(motion, {' or '.join(map(repr, asked))})" if asked else ""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -225,7 +233,7 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces):
         return PairMotion(self.grid, self.inputs.series(self.order)[name], is_angle, prescribed=True)
 
 
-class PointMotion:
+class PointMotion(ExplainsAttributes):
     """The motion of a point: complex arrays of the motion's shape. `.xy` of each gives (..., 2)."""
 
     def __init__(self, grid: PoseGrid, derivative: Any, name: str = "") -> None:
@@ -277,12 +285,17 @@ class PointMotion:
         return described(self, self._grid, self._name)
 
 
-class LinkMotion:
+class LinkMotion(ExplainsAttributes):
     """The motion of a link. Its angle from the frame's x axis, and that of any of its points."""
 
     def __init__(self, grid: PoseGrid, pose: Pose, name: str = "") -> None:
         self._grid, self._name = grid, name
         self._pose = pose
+
+    def _instead(self, name: str) -> str:
+        own = name if name in DERIVED["links"] else next(iter(nearest(name, list(DERIVED["links"]))), "")
+        has_own = bool(nearest(name, list(CATALOGUE["links"])))
+        return f"write compoundkin.quantity(motion, '{self._name}.{own}')" if own and not has_own else ""
 
     @cached_property
     def _turning(self) -> Series:
@@ -331,7 +344,7 @@ class LinkMotion:
         return described(self, self._grid, self._name)
 
 
-class PairMotion:
+class PairMotion(ExplainsAttributes):
     """The free relative coordinate of a pair.
 
     It is an angle (radians, unwrapped) or a displacement, and has its rates.
@@ -377,7 +390,7 @@ class PairMotion:
         return described(self, self._grid, "angle" if self.is_angle else "displacement")
 
 
-class Named(Mapping[str, Any]):
+class Named(Mapping[str, Any], ExplainsAttributes):
     """Entries made when they are asked for. An unknown name raises UnknownName with the nearest known."""
 
     def __init__(self, kind: str, names: tuple[str, ...], make: Any) -> None:
@@ -396,6 +409,9 @@ class Named(Mapping[str, Any]):
                 )
             self._made[name] = self._make(name)
         return self._made[name]
+
+    def _instead(self, name: str) -> str:
+        return f"write [{name!r}]" if name in self._names else ""
 
     def __contains__(self, name: object) -> bool:
         return name in self._names

@@ -13,7 +13,15 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import PLAIN, Number, degrees
 from compoundkin.base.display import display_function
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, missing_extra, suggestion
+from compoundkin.base.errors import (
+    OTHER_WORDS,
+    InvalidInput,
+    Problem,
+    UnknownName,
+    missing_extra,
+    plain_word,
+    suggestion,
+)
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack, OfMotion, motion_of
 from compoundkin.model.attributes import (
@@ -167,11 +175,64 @@ def owner_and_part(motion: HasQuantities, name: str) -> tuple[Owner, str, str]:
     """
     try:
         return (*_requested(motion, name), "")
-    except UnknownName:
+    except UnknownName as error:
         vector, _, part = name.rpartition(".")
         if not vector_and_part(name)[1] and not _is_known(motion, vector):
+            if meant := _meant(motion, name):
+                raise UnknownName(replace(error.problems[0], remedy=meant)) from None
             raise
     return (*_requested(motion, vector), part)
+
+
+def _meant(motion: HasQuantities, name: str) -> str:
+    """Return the remedy for a name of which the attribute is known, but not of this owner."""
+    found = names_meant(motion, name)
+    return f"did you mean {' or '.join(map(repr, found))}?" if found else ""
+
+
+def names_meant(motion: HasQuantities, name: str) -> list[str]:
+    """Return the names of quantities that one means of which the attribute is known, but not of this owner.
+
+    "transmission_angle" alone is asked of all that has one, "block.velocity" of the block's points.
+
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.kinematics import solve
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
+    >>> names_meant(solve(crank), "B.angular_velocity")
+    ['crank.angular_velocity']
+    """
+    owner, dot, word = name.rpartition(".")
+    known_owner = owner in known_owners(motion)
+    if dot and not known_owner:
+        return []
+    owners = _beside(motion, owner) if known_owner else known_owners(motion)
+    known = list(dict.fromkeys(word for kind in CATALOGUE for word in (*CATALOGUE[kind], *DERIVED[kind])))
+    words = [one for one in (*known, *ALIASED) if plain_word(one) == plain_word(word)]
+    words += [one for one in OTHER_WORDS.get(plain_word(word), ()) if one in known]
+    if dot and any(_has(motion, owner, one) for one in words):
+        return []
+    still = [letter for letter, own in motion.mechanism.carriers.items() if FRAME in own] + [FRAME]
+    found = dict.fromkeys(f"{one}.{word}" for word in words for one in owners if _has(motion, one, word))
+    asked = [one for one in found if dot or one.partition(".")[0] not in still]
+    return sorted(asked, key=lambda one: bool(dot) and one.partition(".")[0] not in motion.mechanism.links)[:4]
+
+
+def _has(motion: HasQuantities, owner: str, word: str) -> bool:
+    return any(owner in getattr(motion, kind) and owner_of(motion, kind, owner).has(word) for kind in CATALOGUE)
+
+
+def _beside(motion: HasQuantities, owner: str) -> list[str]:
+    """Return what belongs to an owner: the moving points of a link, the links of a point, pairs and drivers of both."""
+    mechanism = motion.mechanism
+    links = {owner} if owner in mechanism.links else set(mechanism.carriers.get(owner, ()))
+    joined = {pair.name: set(pair.members) for pair in mechanism.written_pairs} | {
+        drive.name: {drive.link, drive.on} - {FRAME} for drive in mechanism.drives
+    }
+    links |= joined.get(owner, set())
+    moving = [letter for letter, own in mechanism.carriers.items() if links & set(own) and FRAME not in own]
+    near = {*links, *moving, *(name for name, own in joined.items() if own & links)} - {owner, FRAME}
+    return [one for one in known_owners(motion) if one in near]
 
 
 def check_part(name: str, part: str, is_vector: bool) -> None:
@@ -242,6 +303,9 @@ def _nearest(owner: str, word: str, known: list[str]) -> str:
     remedy = suggestion(word, known)
     return f"did you mean '{owner}.{remedy.split(chr(39))[1]}'?" if remedy.startswith("did") else remedy
 
+
+# Other names of values of pairs.
+ALIASED = tuple(dict.fromkeys(word for own in ALIASES.values() for word in own))
 
 ASSEMBLED, DESIGN, PHASE = "assembled", "design", "phase"
 

@@ -17,7 +17,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import nested_equal
 from compoundkin.base.display import DisplaysPicture, count_phrase
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
+from compoundkin.base.errors import ExplainsAttributes, InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import constant
 from compoundkin.model.attributes import CATALOGUE, DERIVED
@@ -42,7 +42,7 @@ from compoundkin.model.validation import (
 _ABOUT = ("title", "source", "description", "outputs", "time", "unit", "units")
 
 
-class Mechanism(MechanismDefinition, DisplaysPicture):
+class Mechanism(MechanismDefinition, DisplaysPicture, ExplainsAttributes):
     """Links, pairs and drivers, validated as a whole on construction.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.

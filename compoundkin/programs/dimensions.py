@@ -265,7 +265,14 @@ def _unknown_dimension(stated: StatedDimensions, name: str) -> Problem:
     owner = name.partition(".")[0]
     own = [known for known in stated.known if known.partition(".")[0] == owner]
     what = "it has no such dimension, or it is not stated" if own else "there is no such dimension"
-    return Problem(f"free.{name}", what, suggestion(name, own or list(stated.known)))
+    links = stated.mechanism.links
+    side = [link for link, one in links.items() if {*name} <= {*one.points} and len(name) == 2]
+    bar = side[0] if side else owner if name in (owner, f"{owner}.length") and owner in links else ""
+    ends = [one for one in stated.known if bar and one.startswith(f"{bar}.") and one.endswith(".x")]
+    numbers = {one: stated.own(stated.known[one]) for one in ends}
+    moved = [one for one, number in numbers.items() if np.any(number)]
+    remedy = f"did you mean {moved[0]!r}?" if len(moved) == 1 else suggestion(name, own or list(stated.known))
+    return Problem(f"free.{name}", what, remedy)
 
 
 def check_single_values(stated: StatedDimensions, free: Sequence[FreeDimension]) -> None:

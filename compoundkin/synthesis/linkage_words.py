@@ -110,13 +110,17 @@ class LinkageKind:
         """
         given: dict[str, Any] = {}
         known = {one.name: one for one in self.parameters}
-        for text in texts:
+        typed = [*reversed(texts)]
+        while typed:
+            text = typed.pop()
             name, equals, value = text.partition("=")
             if not equals:
                 free = next((one.name for one in self.parameters if one.name not in given), None)
                 if free is None:
                     raise wrong(self.name, f"{text!r} is one value too many", f"known: {self.usage}")
                 name, value = free, text
+                if known[name].kind == "Place" and "," not in text and typed and "=" not in typed[-1]:
+                    value += f",{typed.pop()}"  # the second number of a place
             name = name.strip().replace("-", "_")
             if name not in known:
                 raise wrong(name, f"a {self.name} has no such parameter", suggestion(name, list(known)))
@@ -150,6 +154,13 @@ def linkage(example: str, **meanings: str) -> Callable[[Callable[..., Mechanism]
 
         @wraps(function)
         def checking(*args: Any, **kwargs: Any) -> Mechanism:
+            names = [one.name for one in parameters]
+            for unknown in kwargs.keys() - set(names):
+                raise wrong(unknown, f"a {name} has no such parameter", suggestion(unknown, names))
+            given = {*names[: len(args)], *kwargs}
+            if missing := [one.name for one in parameters if one.is_required and one.name not in given]:
+                such = f"such as {function.__name__}({', '.join(example.split())})"
+                raise wrong(name, f"{', '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing", such)
             bound = inspect.signature(function).bind(*args, **kwargs)
             for one in parameters:
                 if one.name in bound.arguments:
@@ -176,7 +187,10 @@ def _check(one: LinkageParameter, value: Any) -> None:
     elif one.kind == "str":
         if not isinstance(value, str):
             raise wrong(one.name, f"{short_repr(value)} is no word", one.meaning)
-    elif not is_real(value) or np.ndim(value) or not np.isfinite(value):
+    elif np.ndim(value):
+        many = 'many lengths are for a linkage of one: with_dimensions(linkage, {"crank.B.x": lengths}), or study(...)'
+        raise wrong(one.name, f"{short_repr(value)} is not one number", many)
+    elif not is_real(value) or not np.isfinite(value):
         raise wrong(one.name, f"{short_repr(value)} is not one number", one.meaning)
     elif one.kind in ("Length", "Count") and value <= 0:
         raise wrong(one.name, f"{value:g} is not above zero", one.meaning)

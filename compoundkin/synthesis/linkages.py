@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.base.arrays import TURN
-from compoundkin.base.errors import Problem, UnknownName, suggestion
+from compoundkin.base.errors import OTHER_WORDS, Problem, UnknownName, plain_word, suggestion
 from compoundkin.model.attributes import POSITION
 from compoundkin.model.cam_mechanism import cam_mechanism
 from compoundkin.model.elements import Drive, Item, drawn, drive, link
@@ -759,4 +759,7 @@ def kind_named(name: str) -> LinkageKind:
 
 
 def _spelled(name: str) -> str:
-    return name.strip().lower().replace("_", "-")
+    """Return the name of the linkage that a name means, spelled otherwise or by others: "fourbar", "crank-slider"."""
+    plain = plain_word(name)
+    meant = [one for one in LINKAGES if plain_word(one) == plain or one in OTHER_WORDS.get(plain, ())]
+    return meant[0] if meant else name.strip().lower().replace("_", "-")

@@ -440,7 +440,7 @@ def test_new_writes_toml_only(run: Run) -> None:
         (("solve", "excavator-arm", "--drive", "boom-cylinder=2.6:2.7:0.05"), "boom-cylinder has 3, stick"),
         (("solve", "hydraulic-crane", "--speed", "5rpm"), "is not a valid speed"),
         (("catalog", "show", "nothing-like-it"), "the catalog has no such mechanism"),
-        (("catalog", "nothing"), "No such command"),
+        (("catalog", "nothing-like-it"), "no mechanism of the catalog has this word"),
         (("completion", "tcsh"), "'tcsh' is not one of"),
     ],
 )  # fmt: skip

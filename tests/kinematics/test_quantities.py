@@ -63,7 +63,7 @@ def test_angles_are_shown_in_degrees_and_rates_are_not(six_bar: ck.results.Motio
         ("GG.velocity", "did you mean 'G'"),
         ("G.velocty", "did you mean 'G.velocity'"),
         ("bar.speeed", "known: angle, angular_velocity"),
-        ("slot.angle", "did you mean 'slot.value'"),
+        ("slot.angle", "did you mean 'bar.angle'"),
         ("A.displacement", "'A' has no 'displacement'"),
         ("", "known: "),
         (".x", "known: "),

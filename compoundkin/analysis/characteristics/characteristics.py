@@ -26,7 +26,7 @@ from compoundkin.analysis.characteristics.transmission import (
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.arrays import ascending
 from compoundkin.base.display import count_phrase, short_repr
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.errors import ExplainsAttributes, InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, between, closed_cycles, driver_dead_points
 from compoundkin.kinematics.gaps import gaps
@@ -42,7 +42,7 @@ NOTHING = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Characteristics:
+class Characteristics(ExplainsAttributes):
     """The figures of one design of a motion; an output by its name, as in `figures["ram.displacement"].stroke`.
 
     `groups` have transmission angles or indices, `pressure_angles` and `coriolis` are ranges by the names of pairs'

@@ -68,7 +68,9 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
             "The point of the sliding link that runs along the guide; may be left out if the link has one point.",
         ),
     )
-    through: str = field(metadata=point_key("on", "A point of the guiding link on the guide."))
+    through: str = field(
+        metadata=point_key("on", "A point of the guiding link on the guide, perhaps one for it alone.")
+    )
     angle: Number = field(
         default=0.0, metadata=value_key("angle", "Direction of the guide from the x axis of the guiding link.")
     )

@@ -13,12 +13,13 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import ExplainsAttributes
 from compoundkin.model.attributes import Dimension
 from compoundkin.studies.tolerances.error_sources import ErrorSource
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class OutputTolerance(ShortRepr):
+class OutputTolerance(ShortRepr, ExplainsAttributes):
     """The tolerance of an output: numbers for figures, arrays over the poses for courses; angles are radians.
 
     `nominal` is its value at the mechanism's

@@ -46,6 +46,7 @@ from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column,
 from compoundkin.view.report.report_forms import Report, latex_document
 from compoundkin.view.report.structure_sections import loops_section, mobility_section
 from compoundkin.view.report.wording import listed, number_text
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup
 
 if TYPE_CHECKING:
     from compoundkin.dynamics.forces import Forces
@@ -65,7 +66,7 @@ GIVEN_POINTS = (
     "first to the second."
 )
 # Colours and rings of groups in a sketch: the figure of a sheet has none, as it would give them away.
-OF_GROUPS = re.compile(r"\bck-([a-z-]+)\d+\b(?!\{|/\.style)")
+OF_GROUPS = re.compile(r"\b([a-z-]+)\d+\b")
 # Links that turn slower than this part of the driver are near a dead point.
 SLOWEST = 0.02
 # Two digits are printed; after a leading 1 half steps, so that 1.25 lies between 1.2 and 1.3.
@@ -144,8 +145,9 @@ class Exercise:
         """Return the sketch at the given pose as "svg" or "tikz", with the colours of groups or without."""
         from compoundkin.view.sketch import draw
 
-        drawn = draw(self.motion, pose=0).content(form).decode()
-        return drawn if with_groups else OF_GROUPS.sub(r"ck-\g<1>0", drawn)
+        drawn = draw(self.motion, pose=0)
+        shapes = drawn.shapes if with_groups else tuple(map(_of_one_group, drawn.shapes))
+        return replace(drawn, shapes=shapes).content(form).decode()
 
     def _given_blocks(self) -> Iterator[Block]:
         unit = self.mechanism.unit
@@ -459,6 +461,14 @@ def _exercise(number: int, mechanism: Mechanism, motion: Motion, template: _Temp
     return Exercise(number, mechanism, motion, tuple(given), tuple(drives), asked)
 
 
+def _of_one_group(shape: Shape) -> Shape:
+    """Return a shape in the colour of the frame and the driven links."""
+    style = OF_GROUPS.sub(r"\g<1>0", shape.style)
+    if isinstance(shape, ShapeGroup):
+        return replace(shape, style=style, shapes=tuple(map(_of_one_group, shape.shapes)))
+    return replace(shape, style=style)
+
+
 def _mobility(structure: Structure, motion: Motion) -> Question:
     count = structure.mobility
     answers = (
@@ -495,7 +505,7 @@ def _driven(motion: Motion) -> set[str]:
 
 
 def _asked_points(motion: Motion) -> list[str]:
-    """The points that are traced; where none is, the pins that move."""
+    """The points that are traced; where none is, the pins that move, and where all rest at this pose, all that may."""
     driven = {letter for link in _driven(motion) for letter in motion.mechanism.geometry.points[link]}
     moving = [
         name
@@ -503,7 +513,8 @@ def _asked_points(motion: Motion) -> list[str]:
         if abs(complex(np.ravel(point.velocity)[0])) > STILL * motion.mechanism.geometry.size and name not in driven
     ]
     carriers = motion.mechanism.carriers
-    return [name for name in moving if len(carriers.get(name, ())) == 1] or moving
+    free = [name for name in motion.points if name not in driven and FRAME not in carriers.get(name, ())]
+    return [name for name in moving if len(carriers.get(name, ())) == 1] or moving or free
 
 
 def _answers(motion: Motion, words: Sequence[str]) -> tuple[ExerciseAnswer, ...]:

@@ -206,6 +206,7 @@ PREAMBLE = r"""\documentclass[a4paper,11pt]{article}
 \setlength{\parindent}{0pt}\setlength{\parskip}{6pt}
 \setcounter{MaxMatrixCols}{30}
 \allowdisplaybreaks
+\newcommand{\fitted}[1]{\sbox0{#1}\ifdim\wd0>\linewidth\resizebox{\linewidth}{!}{\usebox0}\else\usebox0\fi}
 """
 # Signs that LaTeX reads as commands.
 _COMMANDS = {
@@ -246,7 +247,7 @@ def latex_document(title: str, sections: Sequence[Section], figure: str = "") ->
     parts = [rf"\section*{{{plain_latex(title)}}}"]
     if picture:
         inside = rf"\resizebox{{!}}{{70mm}}{{{picture.group()}}}"
-        parts.append(rf"\begin{{center}}{inside}\end{{center}}")
+        parts.append(rf"\begin{{center}}\fitted{{{inside}}}\end{{center}}")
     parts += [part for section in sections for part in _section(section)]
     body = "\n\n".join(parts)
     return f"{PREAMBLE}{needs}\\begin{{document}}\n{body}\n\\end{{document}}\n"
@@ -266,10 +267,9 @@ def _block(block: object) -> str:
         case FormulaBlock():
             if block.latex:
                 inside = rf"$\displaystyle {block.latex}$"
-                fitted = r"\ifdim\wd0>\linewidth\resizebox{\linewidth}{!}{\usebox0}\else\usebox0\fi"
-                return rf"\begin{{center}}\sbox0{{{inside}}}{fitted}\end{{center}}"
+                return rf"\begin{{center}}\fitted{{{inside}}}\end{{center}}"
             return "\\\\\n".join(
-                rf"\texttt{{{plain_latex(line).replace('  ', '~~')}}}" for line in block.text.split("\n")
+                rf"\fitted{{\texttt{{{plain_latex(line).replace('  ', '~~')}}}}}" for line in block.text.split("\n")
             )
         case Alert():
             remedy = rf" \emph{{Remedy:}} {plain_latex(block.remedy)}." if block.remedy else ""
@@ -297,5 +297,4 @@ def _table(table: TableBlock) -> str:
     if len(rows) > _TALL and len(table.columns) <= _WIDE:
         return f"\\begin{{longtable}}{{{sides}}}\n{heads} \\\\ \\hline\\endhead\n{body}\n\\end{{longtable}}"
     inside = f"\\begin{{tabular}}{{{sides}}}\n{heads} \\\\ \\hline\n{body}\n\\end{{tabular}}"
-    fitted = r"\ifdim\wd0>\linewidth\resizebox{\linewidth}{!}{\usebox0}\else\usebox0\fi"
-    return f"\\begin{{center}}\\small\\sbox0{{{inside}}}{fitted}\\end{{center}}"
+    return f"\\begin{{center}}\\small\\fitted{{{inside}}}\\end{{center}}"
