@@ -139,75 +139,76 @@ def warn(text: str, category: type[Warning]) -> None:
 
 
 # What other books, programs and countries call what is known here, with our words for it.
-_OTHERS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    # verbs
-    ("film movie video gif mp4 animation clip", ("animate",)),
-    ("handout worksheet homework exam assignment", ("exercise",)),
-    ("torque motortorque inputtorque moment", ("effort", "forces", "torques", "torque")),
-    ("thrust", ("effort", "forces")),
-    ("motor actuator servo", ("size", "motors")),
-    ("dynamics", ("forces", "simulate", "force_analysis")),
-    ("statics kinetostatics reactions loads force", ("forces", "force", "load", "efforts")),
-    ("kinematics position positions velocities motion", ("solve",)),
-    ("analyse analyze analysis run info describe summary", ("report",)),
-    ("view show gui browser play", ("open",)),
-    ("sweep variants parametric designs doe batch", ("study",)),
-    ("montecarlo percentile percentiles tolerancing worstcase", ("tolerance", "percentile", "percentiles")),
-    ("validate verify test", ("check", "verify")),
-    ("convert translate", ("import", "export")),
-    ("list examples library search find mechanisms", ("catalog", "list", "load")),
-    ("picture image sketch drawing polygon diagram", ("draw",)),
-    ("graph chart curve", ("plot",)),
-    ("create init make template", ("new",)),
-    ("edit change modify replace swap", ("set", "replace")),
-    ("synthesis synthesize", ("synthesise",)),
-    ("optimize optimization optimisation", ("optimise",)),
-    ("mobility dof grubler gruebler assur groups", ("structure", "decompose")),
-    ("centers poles instantcenters", ("centres", "instant_centres")),
-    ("stroke deadpoint deadpoints timeratio", ("characteristics",)),
-    # quantities
-    ("transmission pressureangle mu \u03bc gamma", ("transmission_angle", "characteristics")),
-    ("transmissionangle", ("transmission_angle", "characteristics", "groups")),
-    ("omega \u03c9 w angularspeed", ("angular_velocity", "rate", "speed")),
-    ("alpha \u03b1", ("angular_acceleration", "second", "acceleration")),
-    ("theta \u03b8 phi \u03c6 rotation orientation", ("angle", "value")),
-    ("velocity v", ("velocity", "angular_velocity", "rate", "speed")),
-    ("speed", ("angular_velocity", "rate")),
-    ("acceleration a", ("acceleration", "angular_acceleration", "second")),
-    ("displacement s travel", ("displacement", "value")),
-    ("todataframe dataframe pandas df", ("to_pandas",)),
-    ("tocsv toexcel tojson write export savecsv", ("save",)),
-    # words of files and of calls
-    ("direction", ("angle",)),
-    ("drive driver drivers input inputs", ("drives", "values", "drive")),
-    ("points coordinates sketch joints", ("drawn",)),
-    ("bar bars body bodies members", ("links", "link")),
-    ("rpm", ("speed",)),
-    ("path pathpoints trajectory", ("points",)),
-    ("motion rigidbody guidance motiongeneration", ("poses",)),
-    ("couplerpoint tracer", ("point",)),
-    ("output follower", ("rocker",)),
-    ("base fixed", ("ground", "frame")),
-    # linkages and mechanisms
-    ("4bar fourbarlinkage crankrocker", ("four-bar", "four_bar")),
-    ("crankslider piston slidercrankmechanism", ("slider-crank", "slider_crank")),
-    ("hoist jib lift", ("hydraulic-crane", "scissor-lift-loaded")),
-    ("cylinder", ("hydraulic-crane", "oscillating-cylinder")),
-    # other programs
-    ("solidworks autocad cad step inventor catia", ("dxf",)),
-    ("simulink octave", ("matlab",)),
-    ("adams mujoco", ("mjcf",)),
-    ("latex", ("tikz",)),
-    ("ggb", ("geogebra",)),
-)  # fmt: skip
+_OTHERS = """
+# verbs
+film movie video gif mp4 animation clip: animate
+handout worksheet homework exam assignment: exercise
+torque motortorque inputtorque moment: effort forces torques torque
+thrust: effort forces
+motor actuator servo: size motors
+dynamics: forces simulate force_analysis
+statics kinetostatics reactions loads force: forces force load efforts
+kinematics position positions velocities motion: solve
+analyse analyze analysis run info describe summary: report
+view show gui browser play: open
+sweep variants parametric designs doe batch: study
+montecarlo percentile percentiles tolerancing worstcase: tolerance percentile percentiles
+validate verify test: check verify
+convert translate: import export
+list examples library search find mechanisms: catalog list load
+picture image sketch drawing polygon diagram: draw
+graph chart curve: plot
+create init make template: new
+edit change modify replace swap: set replace
+synthesis synthesize: synthesise
+optimize optimization optimisation: optimise
+mobility dof grubler gruebler assur groups: structure decompose
+centers poles instantcenters: centres instant_centres
+stroke deadpoint deadpoints timeratio: characteristics
+# quantities
+transmission pressureangle mu μ gamma: transmission_angle characteristics
+transmissionangle: transmission_angle characteristics groups
+omega ω w angularspeed: angular_velocity rate speed
+alpha α: angular_acceleration second acceleration
+theta θ phi φ rotation orientation: angle value
+velocity v: velocity angular_velocity rate speed
+speed: angular_velocity rate
+acceleration a: acceleration angular_acceleration second
+displacement s travel: displacement value
+todataframe dataframe pandas df: to_pandas
+tocsv toexcel tojson write export savecsv: save
+# words of files and of calls
+direction: angle
+drive driver drivers input inputs: drives values drive
+points coordinates sketch joints: drawn
+bar bars body bodies members: links link
+rpm: speed
+path pathpoints trajectory: points
+motion rigidbody guidance motiongeneration: poses
+couplerpoint tracer: point
+output follower: rocker
+base fixed: ground frame
+# linkages and mechanisms
+4bar fourbarlinkage crankrocker: four-bar four_bar
+crankslider piston slidercrankmechanism: slider-crank slider_crank
+hoist jib lift: hydraulic-crane scissor-lift-loaded
+cylinder: hydraulic-crane oscillating-cylinder
+# other programs
+solidworks autocad cad step inventor catia: dxf
+simulink octave: matlab
+adams mujoco: mjcf
+latex: tikz
+ggb: geogebra
+"""
 
 
 def _other_words() -> Mapping[str, tuple[str, ...]]:
     """Return our words by those of others, in small letters and without separators."""
     found: dict[str, tuple[str, ...]] = {}
-    for others, ours in _OTHERS:
-        for other in others.split():
-            found[other] = (*found.get(other, ()), *ours)
+    for line in _OTHERS.splitlines():
+        others, _, ours = line.partition(": ")
+        for other in others.split() if ours else ():
+            found[other] = (*found.get(other, ()), *ours.split())
     return found
 
 

@@ -71,22 +71,22 @@ _COMMANDS = {
 # American spelling.
 _SPELLED = {"synthesize": "synthesise", "optimize": "optimise", "centers": "centres"}
 
-# Options by what others call them; where a verb has none of the name, what is closest in meaning.
-_OPTIONS_MEANT = {
-    **dict.fromkeys(("angle", "pose", "theta", "position"), ("--at",)),
-    **dict.fromkeys(("rpm", "omega", "velocity"), ("--speed",)),
-    **dict.fromkeys(("force", "payload"), ("--load",)),
-    **dict.fromkeys(("trace", "curve", "point", "coupler"), ("--path",)),
-    **dict.fromkeys(("width", "height", "resolution", "pixels"), ("--size",)),
-    **dict.fromkeys(("duration", "length"), ("--seconds",)),
-    **dict.fromkeys(("vary", "range", "dimension"), ("--free", "--tolerance")),
-    **dict.fromkeys(("samples", "number", "n"), ("--count",)),
-    **dict.fromkeys(("percentiles", "quantile", "confidence"), ("--percentile",)),
-    **dict.fromkeys(("steps", "working", "formulas", "derivation", "show-working"), ("--equations", "--sheet")),
-    **dict.fromkeys(("out", "output-file", "save", "file", "export"), ("--to-file", "--to-folder")),
-    **dict.fromkeys(("unit",), ("--units",)),
-    **dict.fromkeys(("transmission", "quantity", "plot"), ("--output",)),
-}
+# Options by what others call them, each with ours; where a verb has none of the name, what is closest in meaning.
+_OPTIONS = """
+angle pose theta position: --at
+rpm omega velocity: --speed
+force payload: --load
+trace curve point coupler: --path
+width height resolution pixels: --size
+duration length: --seconds
+vary range dimension: --free --tolerance
+samples number n: --count
+percentiles quantile confidence: --percentile
+steps working formulas derivation: --equations --sheet
+out output-file save file export: --to-file --to-folder
+unit: --units
+transmission quantity plot: --output
+"""
 
 EPILOG = """\b
 Examples:
@@ -159,7 +159,9 @@ class Verbs(click.Group):
 def _unknown_option(verbs: Verbs, error: click.NoSuchOption) -> str:
     """Return what to say of an option that a command has not: the one that is meant, or the verbs that have it."""
     has = {option for one in error.ctx.command.params for option in one.opts} if error.ctx is not None else set()
-    meant = [one for one in _OPTIONS_MEANT.get(error.option_name.lstrip("-"), ()) if one in has]
+    rows = (line.partition(": ") for line in _OPTIONS.splitlines())
+    ours = [one for others, _, own in rows if error.option_name.lstrip("-") in others.split() for one in own.split()]
+    meant = [one for one in ours if one in has]
     if meant:
         return f"No such option {error.option_name!r}. Did you mean {meant[0]!r}?"
     if error.ctx is None or error.ctx.parent is None:

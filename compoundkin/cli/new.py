@@ -144,7 +144,7 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool)
     if not is_linkage and path is not None and name:
         raise InvalidInput(Problem(name, "the file is named twice", f"compoundkin new {name}"))
     document, verb = DOCUMENTS.get(name, ("", "report")) if not given else ("", "report")
-    own = f"{name}.toml" if document else "mechanism.toml"
+    own = f"{name}{suffix_for('study', 'toml')}" if document else "mechanism.toml"
     target = Path(path or (own if is_linkage else name or own))
     target = target / own if target.is_dir() else target
     if suffix_of(target) != suffix_for("mechanism", "toml"):

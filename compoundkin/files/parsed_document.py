@@ -108,7 +108,7 @@ def _of_other_kind(found: Mapping[str, Any], kind: Kind, where: str) -> Problem 
         return None
     for other, (keys, use) in _KINDS.items():
         if all(key in found for key in keys):
-            return Problem("", f"this is a {other} file, no {kind} file", use.format(where or f"{other}.toml"))
+            return Problem("", f"this is a {other} file, no {kind} file", use.format(where or "FILE"))
     return None
 
 

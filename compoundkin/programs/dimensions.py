@@ -268,7 +268,7 @@ def _unknown_dimension(stated: StatedDimensions, name: str) -> Problem:
     links = stated.mechanism.links
     side = [link for link, one in links.items() if {*name} <= {*one.points} and len(name) == 2]
     bar = side[0] if side else owner if name in (owner, f"{owner}.length") and owner in links else ""
-    ends = [one for one in stated.known if bar and one.startswith(f"{bar}.") and one.endswith(".x")]
+    ends = [one for one in stated.known if bar and one.startswith(f"{bar}.") and one.rpartition(".")[2] == "x"]
     numbers = {one: stated.own(stated.known[one]) for one in ends}
     moved = [one for one, number in numbers.items() if np.any(number)]
     remedy = f"did you mean {moved[0]!r}?" if len(moved) == 1 else suggestion(name, own or list(stated.known))
