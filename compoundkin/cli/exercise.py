@@ -32,9 +32,11 @@ def command(file: str, vary: str, seed: int, count: int, questions: tuple[str, .
     file 07.toml; answers.csv has all answers. Given values are rounded as textbooks print them, and the rounded
     values are what is solved.
     """
+    from compoundkin.files.atomic import check_folder_is_new
     from compoundkin.view.report.exercises import exercise
 
     part = _fraction(vary)
+    check_folder_is_new(folder)
     mechanism = load_mechanism(file)
     with working("making exercises"):
         made = exercise(mechanism, vary=part, seed=seed, count=count, questions=questions)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from os.path import exists, isdir, isfile
+from os.path import dirname, exists, isdir, isfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -50,8 +50,17 @@ class Destination(Parameter):
     name = "path"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | None:
-        """Return the path, or None."""
-        return None if value in STDOUT else str(value)
+        """Return the path, or None. Raises InvalidInput where its folder does not exist, before anything is solved."""
+        if value in STDOUT:
+            return None
+        check_place(value)
+        return str(value)
+
+
+def check_place(path: str) -> None:
+    """Raise InvalidInput for a file in a folder that does not exist."""
+    if not isdir(dirname(path) or "."):
+        raise InvalidInput(Problem(str(path), f"it cannot be written: there is no folder {dirname(path)}", "make it"))
 
 
 def to_file(text: str) -> Callable[[F], F]:

@@ -304,6 +304,8 @@ async def call(known: Mapping[str, Tool], name: str, given: Arguments) -> tuple[
     if wrong := best_match(Draft202012Validator(known[name].schema).iter_errors(given)):
         what = wrong.message if len(wrong.message) < MOST_WORDS else f"it does not fit {wrong.validator}"
         return [f"{wrong.json_path.replace('$', 'arguments', 1)}: {what}"], True
+    if not _is_plain(given):
+        return ["arguments: a text has a character that cannot be passed on"], True
     if "mechanism" not in given:
         return [await _introduction()], False
     with tempfile.TemporaryDirectory(prefix="compoundkin-") as folder:
@@ -313,6 +315,16 @@ async def call(known: Mapping[str, Tool], name: str, given: Arguments) -> tuple[
         parts += [one.read_bytes() for one in [Path(folder, PICTURE)] if one.exists()]
         parts += [one.read_text(encoding="utf-8") for one in [Path(folder, BETTER)] if one.exists()]
     return parts or ["It is silent."], code not in (0, 3, 4)
+
+
+def _is_plain(given: Arguments) -> bool:
+    """Return whether all texts can be written to a file and given to a process."""
+    text = json.dumps(given, ensure_ascii=False).replace("\\\\", "")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return "\\u0000" not in text
 
 
 def _file(mechanism: str | Mapping[str, Any], folder: Path) -> str:

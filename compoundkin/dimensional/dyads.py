@@ -75,6 +75,10 @@ class Dyad:
             return (np.conj(self.direction) * (z + u * self.moving - self.fixed)).imag
         return (np.conj(u * self.direction) * (self.fixed - z - u * self.moving)).imag
 
+    def scaled(self, by: float) -> Dyad:
+        """Return the dyad with all lengths and places so many times as far."""
+        return Dyad(self.kind, by * self.fixed, by * self.moving, self.direction, by * self.length)
+
     def __repr__(self) -> str:
         line = "" if self.direction is None else f", line at {np.rad2deg(np.angle(self.direction)):.4g} degrees"
         length = f", length {self.length:.6g}" if self.length else ""

@@ -45,7 +45,7 @@ from compoundkin.model.pairs import slide
 SINGULAR = 1e-10
 # Dyads of coupler and frame nearer to each other than this are the frame itself.
 FRAME_ITSELF = 1e-6
-# What does not assemble misses by so much; so many of the best fits are shown.
+# What does not assemble misses by so much, radians or travels of the slide; so many of the best fits are shown.
 FAR, FITTED = 10.0, 3
 # Fits so many times worse than the best are none.
 POORER = 30.0
@@ -88,6 +88,11 @@ def _as_seen_by_input(task: FunctionTask) -> PoseTask:
     return PoseTask(OUTPUT, back, back * np.exp(1j * task.outputs))
 
 
+def _unit(linkage: str, outputs: Number) -> float:
+    """Return the length by which a generator is measured: the travel of its slide, else its frame."""
+    return float(np.ptp(outputs)) if linkage == "slider-crank" else 1.0
+
+
 def _is_frame(task: FunctionTask, dyad: Dyad) -> bool:
     """Return whether a dyad joins both pivots, which are always at one distance."""
     return task.linkage != "slider-crank" and abs(dyad.fixed) + abs(dyad.moving) < FRAME_ITSELF
@@ -96,7 +101,7 @@ def _is_frame(task: FunctionTask, dyad: Dyad) -> bool:
 def _of_curve(task: FunctionTask, found: Dyads) -> list[Dyad]:
     """Return some dyads of the curve of four pairs."""
     curve = found.curve
-    size = max(1.0, float(np.ptp(task.outputs))) if task.linkage == "slider-crank" else 1.0
+    size = _unit(task.linkage, task.outputs)
     with np.errstate(invalid="ignore"):
         near = np.maximum.reduce([np.abs(curve.centres), np.abs(curve.points), curve.lengths]) < 8.0 * size
         good = np.flatnonzero(near & (np.abs(curve.centres) > 0.05 * size))
@@ -109,7 +114,7 @@ def _of_zeros(task: FunctionTask, found: Dyads) -> list[Dyad]:
     """Return some dyads of three pairs: joints of the input on a grid of directions and lengths, or guides' angles."""
     if task.linkage == "inverted":
         return _guides(found)
-    size = float(np.ptp(task.outputs)) if task.linkage == "slider-crank" else 1.0
+    size = _unit(task.linkage, task.outputs)
     arms = [size * r * np.exp(1j * t) for r in (0.3, 0.6, 1.0) for t in np.arange(12) * TURN / 12]
     made = []
     for arm in arms:
@@ -199,19 +204,18 @@ def _absolute(task: FunctionTask) -> Candidates:
         raise InvalidInput(Problem("pairs", what, "give three of a four-bar or slider-crank, or leave absolute out"))
     if task.linkage == "slider-crank":
         # s^2 = 2 a s cos(phi) + 2 a e sin(phi) + b^2 - a^2 - e^2
-        rows = np.stack([psi * np.cos(phi), np.sin(phi), np.ones(3)], axis=-1)
-        k = _solved(rows, psi**2)
-        a = float(k[0] / 2.0)
-        e = float(k[1] / k[0])
-        square = k[2] + a**2 + e**2
-        if square <= 0.0:
+        unit = _unit(task.linkage, psi)
+        s = psi / unit
+        k = _solved(np.stack([s * np.cos(phi), np.sin(phi), np.ones(3)], axis=-1), s**2, 1)
+        a, e = unit * float(k[0] / 2.0), unit * float(k[1] / k[0])
+        if k[2] * unit**2 + a**2 + e**2 <= 0.0:
             return Candidates((), "no linkage of 1", nearest="the rod's length would be imaginary")
         end = psi + 1j * e
         joint = a * np.exp(1j * phi)
         made = _coupled(joint, end, Dyad(RR, 0j, 0j, None, abs(a)), Dyad(PR, complex(end[0]), 0j, 1 + 0j),
                         "Slider-crank function generator", 0.0 if a > 0 else np.pi, 0.0)  # fmt: skip
         return Candidates((made,), "1 linkage of 1")
-    k = _solved(_freudenstein_rows(phi, psi), np.cos(phi - psi))
+    k = _solved(_freudenstein_rows(phi, psi), np.cos(phi - psi), 2)
     a, c = (float(1.0 / value) for value in k[:2])
     square = a**2 + c**2 + 1.0 - 2.0 * a * c * k[2]
     if square <= 0.0:
@@ -226,11 +230,11 @@ def _freudenstein_rows(phi: Number, psi: Number) -> Number:
     return np.stack([np.cos(psi), -np.cos(phi), np.ones(len(phi))], axis=-1)
 
 
-def _solved(rows: Number, right: Number) -> Number:
-    """Return the solution of three equations whose first two numbers are not zero. Raises InvalidInput for others."""
+def _solved(rows: Number, right: Number, count: int) -> Number:
+    """Return the solution of three equations whose first numbers, so many, are not zero. Raises InvalidInput."""
     sizes = np.linalg.svd(rows, compute_uv=False)
     found: Number = np.linalg.lstsq(rows, right, rcond=None)[0]
-    if sizes[-1] < SINGULAR * sizes[0] or np.min(np.abs(found[:2])) < SINGULAR:
+    if sizes[-1] < SINGULAR * sizes[0] or np.min(np.abs(found[:count])) < SINGULAR:
         what = "the three pairs do not determine a linkage: a link would be endless or nothing"
         raise InvalidInput(Problem("pairs", what, "move one of them a little"))
     return found
@@ -273,6 +277,12 @@ class _Generator(NamedTuple):
         off = self.outputs(phi) - wanted
         return off if self.linkage == "slider-crank" else wrapped(off)
 
+    def in_unit(self, unit: float) -> _Generator:
+        """Return the generator with the lengths of a slider-crank, and its zero of the slide, so many times as long."""
+        if self.linkage != "slider-crank":
+            return self
+        return self._replace(x=self.x * [unit, unit, unit, 1.0, unit])
+
 
 def _as_generator(task: FunctionTask, dyad: Dyad) -> _Generator:
     """Return the generator of a coupler, assembled as it is at most of the positions."""
@@ -304,7 +314,9 @@ def approached_function(task: FunctionTask) -> Candidates:
     from scipy.optimize import least_squares
 
     wanted = np.stack([task.inputs, task.outputs], axis=-1) if task.whole is None else task.whole
-    phi, psi = wanted.T
+    phi, given = wanted.T
+    unit = _unit(task.linkage, given)
+    psi = given / unit
     starts = list(_starts(task, phi, psi))
     free = slice(None, -2) if task.absolute else slice(None)
     ends = []
@@ -321,7 +333,8 @@ def approached_function(task: FunctionTask) -> Candidates:
     made = []
     for _, one in [end for end in best if end[0] < POORER * best[0][0]][:FITTED]:
         least = _minimax(one, phi, psi, free)
-        made += [_fitted(task, one, phi, psi, "least squares"), _fitted(task, least, phi, psi, "minimax")]
+        for fit, how in ((one, "least squares"), (least, "minimax")):
+            made.append(_fitted(task, fit.in_unit(unit), phi, given, how))
     complete = f"the best {len(made) // 2} of {count_phrase(len(starts), 'start')}, each by least squares and minimax"
     return Candidates(made, complete, "" if made else "no start assembles over the whole range", is_family=True)
 

@@ -87,20 +87,22 @@ def nearest_linkages(task: PoseTask) -> Iterator[Linkage]:
     """
     from scipy.optimize import least_squares
 
-    z, u, size = task.z, task.u, extent(task.z)
+    # everything is in parts of that extent
+    size = extent(task.z)
+    z, u = task.z / size, task.u
     found = []
-    for pair in _starts(task):
+    for pair in _starts(PoseTask(task.link, z, u)):
         start = np.concatenate([_numbers(dyad) for dyad in pair])
 
         def distances(x: Number, pair: tuple[Dyad, Dyad] = pair) -> Number:
-            return _distances(z, u, _with_numbers(pair, x), size)
+            return _distances(z, u, _with_numbers(pair, x))
 
         best = least_squares(distances, start, x_scale="jac", max_nfev=120)
         dyads = _with_numbers(pair, best.x)
-        there = _allowed(z, u, dyads, size)
+        there = _allowed(z, u, dyads)
         if there is not None:
             w, v = there
-            error = float(np.max(np.hypot(np.abs(w - z), size * np.abs(np.angle(v / u)))))
+            error = float(np.max(np.hypot(np.abs(w - z), np.abs(np.angle(v / u)))))
             found.append((error, dyads, w, v))
     found.sort(key=lambda one: one[0])
     taken = list[Number]()
@@ -108,14 +110,18 @@ def nearest_linkages(task: PoseTask) -> Iterator[Linkage]:
         ordered = sorted(dyads, key=lambda dyad: (dyad.kind, dyad.fixed.real))
         ends = np.array([place for dyad in ordered for place in (dyad.fixed, dyad.moving)])
         spread = max(extent(ends), *(dyad.length for dyad in dyads))
-        if spread < LONGEST * size and all(np.max(np.abs(ends - other)) > ALIKE * spread for other in taken):
+        if spread < LONGEST and all(np.max(np.abs(ends - other)) > ALIKE * spread for other in taken):
             taken.append(ends)
-            yield from of_dyads(w, v, [dyads], task.link, error=error)
+            whole = dyads[0].scaled(size), dyads[1].scaled(size)
+            yield from of_dyads(size * w, v, [whole], task.link, error=size * error)
 
 
 def _starts(task: PoseTask) -> list[tuple[Dyad, Dyad]]:
-    """Return pairs of dyads through some of the poses, those with the least distances from all."""
-    count, size = len(task.z), extent(task.z)
+    """Return pairs of dyads through some of the poses, those with the least distances from all.
+
+    Lengths are in parts of the poses' extent, here and below.
+    """
+    count = len(task.z)
     indices = np.arange(count)
     chosen = [np.unique(np.linspace(0, count - 1, 4).round().astype(int))]
     chosen += [np.delete(indices, k) for k in indices] if count == 5 else []
@@ -125,10 +131,10 @@ def _starts(task: PoseTask) -> list[tuple[Dyad, Dyad]]:
         found = dyads_of(part)
         if found.freedom == 1 and found.basis.shape[0] != found.basis.shape[1]:
             dyads += [*found, *spread_over_curve(part, found)]
-    good = [dyad for dyad in dyads if dyad.kind != "RP" and np.max(np.abs(dyad.residual(task.z, task.u))) < size]
+    good = [dyad for dyad in dyads if dyad.kind != "RP" and np.max(np.abs(dyad.residual(task.z, task.u))) < 1.0]
     good.sort(key=lambda dyad: float(np.sum(dyad.residual(task.z, task.u) ** 2)))
     pairs = [pair for pair in pairs_of(good[: 2 * STARTS]) if {dyad.kind for dyad in pair} != {PR}]
-    pairs.sort(key=lambda pair: float(np.sum(_distances(task.z, task.u, pair, size) ** 2)))
+    pairs.sort(key=lambda pair: float(np.sum(_distances(task.z, task.u, pair) ** 2)))
     return pairs[:STARTS]
 
 
@@ -149,7 +155,7 @@ def _with_numbers(pair: tuple[Dyad, Dyad], x: Number) -> tuple[Dyad, Dyad]:
     return made[0], made[1]
 
 
-def _closure(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> tuple[Number, Number]:
+def _closure(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> tuple[Number, Number]:
     """Return by how much both dyads are open at poses (n, 2), and the slopes by x, y and the angle (n, 2, 3)."""
     values, slopes = [], []
     for dyad in pair:
@@ -161,37 +167,37 @@ def _closure(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> tupl
         else:
             way = np.full(len(z), 1j * dyad.direction)
             values.append((np.conj(dyad.direction) * off).imag)
-        slopes.append(np.stack([way.real, way.imag, (np.conj(way) * 1j * arm).real / size], axis=-1))
+        slopes.append(np.stack([way.real, way.imag, (np.conj(way) * 1j * arm).real], axis=-1))
     return np.stack(values, axis=-1), np.stack(slopes, axis=-2)
 
 
-def _distances(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> Number:
+def _distances(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> Number:
     """Return the distances of poses from those that two dyads allow, to first order: two for each pose."""
-    values, slopes = _closure(z, u, pair, size)
+    values, slopes = _closure(z, u, pair)
     gram = slopes @ np.swapaxes(slopes, -1, -2) + 1e-12 * np.eye(2)
     found: Number = np.linalg.solve(np.linalg.cholesky(gram), values[..., None]).ravel()
     return found
 
 
-def _allowed(z: Number, u: Number, pair: tuple[Dyad, Dyad], size: float) -> tuple[Number, Number] | None:
+def _allowed(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> tuple[Number, Number] | None:
     """Return the nearest poses that two dyads allow, exactly; None where there is none near."""
     start = z, u
     for _ in range(60):
-        values, slopes = _closure(z, u, pair, size)
+        values, slopes = _closure(z, u, pair)
         # what remains along the allowed motion is taken back, so that the nearest is found
-        back = np.stack([(start[0] - z).real, (start[0] - z).imag, size * np.angle(start[1] / u)], axis=-1)
+        back = np.stack([(start[0] - z).real, (start[0] - z).imag, np.angle(start[1] / u)], axis=-1)
         turned = np.linalg.pinv(slopes)
         step = np.einsum("nij,nj->ni", turned, -values - np.einsum("nij,nj->ni", slopes, back)) + back
         z = z + step[:, 0] + 1j * step[:, 1]
-        u = u * np.exp(1j * step[:, 2] / size)
-        if np.max(np.abs(step)) < 1e-14 * size:
+        u = u * np.exp(1j * step[:, 2])
+        if np.max(np.abs(step)) < 1e-14:
             break
     for _ in range(4):
-        values, slopes = _closure(z, u, pair, size)
+        values, slopes = _closure(z, u, pair)
         step = np.einsum("nij,nj->ni", np.linalg.pinv(slopes), -values)
-        z, u = z + step[:, 0] + 1j * step[:, 1], u * np.exp(1j * step[:, 2] / size)
-    values, _ = _closure(z, u, pair, size)
-    return (z, u) if np.isfinite(z).all() and np.max(np.abs(values)) < 1e-12 * size else None
+        z, u = z + step[:, 0] + 1j * step[:, 1], u * np.exp(1j * step[:, 2])
+    values, _ = _closure(z, u, pair)
+    return (z, u) if np.isfinite(z).all() and np.max(np.abs(values)) < 1e-12 else None
 
 
 def three_poses(task: PoseTask) -> Candidates:

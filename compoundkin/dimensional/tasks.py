@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -20,13 +20,12 @@ from compoundkin.model.validation import PRINTABLE, is_name
 
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
-# Preferences among answers, by what they are ranked.
 # A function's error is seen at so many places of its range.
 WHOLE = 181
-TRANSMISSION, COMPACTNESS, ACCURACY = "transmission", "compactness", "accuracy"
+# Preferences among answers, by what they are ranked.
+PREFERENCES = TRANSMISSION, COMPACTNESS, ACCURACY = "transmission", "compactness", "accuracy"
 # Links on the frame, beside the body of a task.
 INPUT, OUTPUT = "input", "output"
-PREFERENCES = (TRANSMISSION, COMPACTNESS, ACCURACY)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -586,24 +585,25 @@ def _time_ratio(ratio: float) -> float:
 
 
 FORMAT = 1
-# What each kind of task takes from a file; numbers that are angles are degrees there.
-_OF_KIND = {
-    "poses": ("link", "poses", "velocities", "accelerations", "tolerance"),
-    "points": ("points", "at", "tolerance"),
-    "mixed": ("link", "poses", "points", "tolerance"),
-    "function": ("pairs", "linkage", "absolute", "tolerance"),
-    "swing": ("angle", "time_ratio"),
-    "stroke": ("length", "time_ratio", "linkage", "offset"),
-    "dwell": ("swing", "dwells", "tolerance"),
-}
-_MAKERS: Mapping[str, Callable[..., Task]] = {
-    "poses": poses,
-    "points": points,
-    "mixed": mixed,
-    "function": function,
-    "swing": swing,
-    "stroke": stroke,
-    "dwell": dwell,
+
+
+class _TaskOfFile(NamedTuple):
+    """A kind of task in files: its function, the keys that must be there, and those that may be left out."""
+
+    make: Callable[..., Task]
+    needed: tuple[str, ...]
+    optional: tuple[str, ...]
+
+
+# Numbers that are angles are degrees in files.
+_KINDS: Mapping[str, _TaskOfFile] = {
+    "poses": _TaskOfFile(poses, ("link", "poses"), ("velocities", "accelerations", "tolerance")),
+    "points": _TaskOfFile(points, ("points",), ("at", "tolerance")),
+    "mixed": _TaskOfFile(mixed, ("poses", "points"), ("link", "tolerance")),
+    "function": _TaskOfFile(function, ("pairs",), ("linkage", "absolute", "tolerance")),
+    "swing": _TaskOfFile(swing, ("angle",), ("time_ratio",)),
+    "stroke": _TaskOfFile(stroke, ("length",), ("time_ratio", "linkage", "offset")),
+    "dwell": _TaskOfFile(dwell, ("swing", "dwells"), ("tolerance",)),
 }
 _CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer")
 
@@ -616,29 +616,25 @@ def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:
     >>> read_task({"format": 1, "task": "swing", "angle": 45, "conditions": {"transmission": 30}})[0].in_words
     'a swing of 45 degrees in the time ratio 1'
     """
-    kind = document.get("task")
+    kind: Any = document.get("task")
     if document.get("format") != FORMAT:
         raise InvalidInput(Problem("format", "it is no known version of the format", f"write format = {FORMAT}"))
-    if kind not in _OF_KIND:
-        raise InvalidInput(Problem("task", f"{short_repr(kind)} is no task", f"one of {', '.join(_OF_KIND)}"))
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise InvalidInput(Problem("task", f"{short_repr(kind)} is no task", f"one of {', '.join(_KINDS)}"))
+    make, needed, optional = _KINDS[kind]
     given = {key: value for key, value in document.items() if key not in ("format", "task", "conditions")}
-    _known("", given, _OF_KIND[kind])
+    _known("", given, (*needed, *optional))
     said = document.get("conditions", {})
     if not isinstance(said, Mapping):
         raise InvalidInput(Problem("conditions", "it is no table", "write [conditions], then a line for each"))
     _known("conditions.", said, _CONDITIONS)
     conditions = dict(said)
     if "transmission" in conditions:
-        conditions["transmission"] = float(_radians("conditions.transmission", conditions["transmission"]))
-    missing = [key for key in _required(kind) if key not in given]
-    if missing:
-        raise InvalidInput(Problem(missing[0], "it is missing", f"a task of {kind} needs {', '.join(_required(kind))}"))
-    return _MAKERS[kind](**_in_radians(kind, given)), conditions
-
-
-def _required(kind: str) -> tuple[str, ...]:
-    return {"poses": ("link", "poses"), "points": ("points",), "mixed": ("poses", "points"), "function": ("pairs",),
-            "swing": ("angle",), "stroke": ("length",), "dwell": ("swing", "dwells")}[kind]  # fmt: skip
+        conditions["transmission"] = _radians("conditions.transmission", conditions["transmission"])
+    missing = next((key for key in needed if key not in given), None)
+    if missing is not None:
+        raise InvalidInput(Problem(missing, "it is missing", f"a task of {kind} needs {', '.join(needed)}"))
+    return make(**_in_radians(kind, given)), conditions
 
 
 def _known(where: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
@@ -657,8 +653,7 @@ def _in_radians(kind: str, given: Mapping[str, Any]) -> dict[str, Any]:
             found[key] = {_index(key, name): _last_in_radians(key, [twist])[0] for name, twist in found[key].items()}
     for key in ("at", "angle", "swing", "dwells"):
         if key in found:
-            value = _radians(key, found[key])
-            found[key] = float(value) if value.ndim == 0 else value
+            found[key] = _radians(key, found[key])
     if kind == "function":
         pairs = real_numbers("pairs", found["pairs"])
         angular = found.get("linkage", "four-bar") != "slider-crank"
@@ -666,8 +661,9 @@ def _in_radians(kind: str, given: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _radians(where: str, value: Any) -> Number:
-    return np.deg2rad(real_numbers(where, value))
+def _radians(where: str, value: Any) -> Number | float:
+    found = np.deg2rad(real_numbers(where, value))
+    return found if found.ndim else float(found)
 
 
 def _last_in_radians(where: str, given: Any) -> Number:

@@ -1,11 +1,11 @@
-"""Writing a file whole or not at all."""
+"""Writing a file, or a folder of files, whole or not at all."""
 
 from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -37,6 +37,45 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], A
     except (OSError, ValueError) as error:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(path), f"it cannot be written: {what}")) from None
+
+
+def check_folder_is_new(path: str | os.PathLike[str]) -> None:
+    """Raise InvalidInput for the path of a file, or of a folder that holds files already."""
+    target = Path(path)
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        raise InvalidInput(Problem(str(path), "it is there already and not empty", "name a new folder"))
+
+
+@contextmanager
+def new_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a folder to fill, which is at `path` afterwards: whole, or not at all where something failed.
+
+    Raises InvalidInput where `path` is a file or holds files already, and where it cannot be made.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     with new_folder(f"{place}/new") as folder:
+    ...         _ = (folder / "a.txt").write_text("all")
+    ...     sorted(one.name for one in Path(place, "new").iterdir())
+    ['a.txt']
+    """
+    check_folder_is_new(path)
+    target = Path(os.path.realpath(path))
+    beside = target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")
+    try:
+        beside.mkdir(parents=True)
+        yield beside
+        if target.exists():
+            # somebody may work in it: it stays, and its files come
+            for file in beside.iterdir():
+                file.replace(target / file.name)
+        else:
+            beside.replace(target)
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise InvalidInput(Problem(str(path), f"it cannot be made: {what}", "name another")) from None
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
 
 
 def _replace(target: Path, write: Callable[[BinaryIO], Any]) -> None:

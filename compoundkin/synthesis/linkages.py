@@ -46,6 +46,8 @@ from compoundkin.synthesis.linkage_words import (
 DRAWN = np.pi / 3.0
 # A pose is looked for at so many angles of a crank; a driver that does not turn fully has so many poses.
 TRIED, POSES = 720, 73
+# A scissor lift of more stages takes minutes to solve.
+MOST_STAGES = 100
 
 # --- geometry ---------------------------------------------------------------------------------------------------
 
@@ -585,6 +587,8 @@ def scissor(stages: Count, arm: Length, low: Length, high: Length, *, unit: str 
     >>> len(scissor(2, 2.0, 0.7, 1.9).links)
     8
     """
+    if stages > MOST_STAGES:
+        raise wrong("stages", f"{stages} stages are more than anybody builds", f"{MOST_STAGES} at most")
     if not low < high < arm:
         raise wrong("high", f"feet from {low:g} to {high:g} apart do not fit arms of {arm:g}", "low < high < arm")
     x = 0.5 * (low + high)

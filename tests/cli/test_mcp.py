@@ -130,6 +130,7 @@ def test_a_picture_is_an_image() -> None:
         ("solve", {"mechanism": "six-bar", "outputs": ["--help"]}, "--help"),
         ("solve", {"mechanism": "x" * 300_000}, "it does not fit"),
         ("optimise", {"mechanism": "six-bar", "free": {"crank.D.x": [1]}}, "arguments.free"),
+        ("solve", {"mechanism": "six-bar", "outputs": ["bar\0"]}, "cannot be passed on"),
         ("solved", {}, "did you mean 'solve'?"),
     ],
 )

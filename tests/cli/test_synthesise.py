@@ -73,6 +73,8 @@ def test_angles_of_files_are_degrees() -> None:
         ('format = 1\ntask = "swing"\nangle = 40\n[conditions]\nregon = 3', "did you mean 'region'"),
         ('format = 1\ntask = "swing"\nangle = "wide"', "angle"),
         ("format = 1\ntask = [", "TOML"),
+        ('format = 1\ntask = ["swing"]', "one of poses, points, mixed"),
+        ('format = 1\ntask = "swing"\nangle = 40\n[conditions]\ntransmission = [30, 40]', "transmission"),
     ],
 )
 def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
@@ -80,3 +82,20 @@ def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
     assert result.exit_code == 2
     assert message in " ".join(result.stderr.split())
     assert "Traceback" not in result.stderr
+
+
+def test_results_have_a_place_before_anything_is_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file where a folder is to be, a folder with the files of another run, a form that no picture has."""
+    monkeypatch.setattr("compoundkin.dimensional.synthesis.synthesise", None)
+    file = written(tmp_path, SWING)
+    for options, message in (
+        (("--save", file), "not empty"),
+        (("--save", str(tmp_path)), "not empty"),
+        (("--picture", str(tmp_path / "found.xyz")), "pictures end in"),
+        (("--picture", str(tmp_path / "no" / "found.svg")), "there is no folder"),
+        (("-o", str(tmp_path / "no" / "found.md")), "there is no folder"),
+    ):
+        result = run("synthesise", file, *options)
+        assert result.exit_code == 2
+        assert message in " ".join(result.stderr.split())
+    assert [one.name for one in tmp_path.iterdir()] == ["task.toml"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dimensional.function_generation import approached_function
 from compoundkin.dimensional.tasks import chebyshev_spacing
 
 # Swing and time ratio; crank, coupler, rocker with the frame 1; the family's best least transmission angle, degrees:
@@ -153,3 +154,26 @@ def test_wrong_functions_swings_and_strokes():
         ck.synthesise(ck.tasks.stroke(100, time_ratio=1.25, offset=400))
     with pytest.raises(ck.errors.InvalidInput, match="leave absolute out"):
         ck.synthesise(ck.tasks.function([(0, 0), (1, 1), (2, 1.5), (2.5, 2)], absolute=True))
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
+@pytest.mark.parametrize("offset", [0.0, 5.0])
+def test_absolute_slider_cranks_of_any_unit_in_line_too(offset, scale):
+    phi = np.array([0.3, 0.9, 1.6])
+    travel = 20 * np.cos(phi) + np.sqrt(60**2 - (offset - 20 * np.sin(phi)) ** 2)
+    task = ck.tasks.function(np.column_stack([phi, scale * travel]), linkage="slider-crank", absolute=True)
+    (one,) = ck.synthesise(task)
+    assert np.allclose(one.candidate.lengths, [20 * scale, 60 * scale], rtol=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_approached_displacements_do_not_depend_on_the_unit(scale):
+    """Differences of SciPy's are over an absolute step: lengths are in parts of the slide's travel."""
+    phi = np.linspace(0.2, 1.8, 8)
+    travel = 20 * np.cos(phi) + np.sqrt(60**2 - (5 - 20 * np.sin(phi)) ** 2) + 0.1 * np.cos(7 * phi)
+    one, other = (approached_function(ck.tasks.function(np.column_stack([phi, s * travel]), linkage="slider-crank",
+                                                        absolute=True)).linkages for s in (1, scale))  # fmt: skip
+    errors = [a.error for a in one]
+    assert 0.0 < errors[1] < errors[0] < 0.3
+    assert np.allclose(errors, [b.error / scale for b in other], rtol=1e-5)
+    assert np.allclose([a.span for a in one], [b.span / scale for b in other], rtol=1e-3)

@@ -11,6 +11,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.dimensional.dyads import circle_through
+from compoundkin.dimensional.motion_generation import nearest_linkages
 from compoundkin.dimensional.tasks import inside
 
 # Computed by a prototype that eliminated by other equations than the package does, in (x, y, degrees), with the fixed
@@ -411,6 +412,16 @@ def test_answers_do_not_depend_on_the_unit(scale):
     assert [a.candidate.title for a in one] == [b.candidate.title for b in other]
     assert np.allclose([a.size * scale for a in one], [b.size for b in other])
     assert one.reasons == other.reasons
+
+
+def test_nearest_linkages_do_not_depend_on_the_unit():
+    """Of a power of two nothing is rounded; steps of differences, which are absolute, must not tell the unit."""
+    course, scale = np.linspace(0.0, 3.0, 7), 2.0**-20
+    poses = np.stack([np.cos(course), 0.5 * np.sin(course + 0.1), 0.3 * np.sin(course)], axis=-1)
+    one, other = (list(nearest_linkages(ck.tasks.poses("plate", poses * [s, s, 1.0]))) for s in (1, scale))
+    assert len(one) > 0
+    assert np.allclose([a.error * scale for a in one], [b.error for b in other], rtol=1e-9, atol=0.0)
+    assert np.allclose([a.span * scale for a in one], [b.span for b in other], rtol=1e-9, atol=0.0)
 
 
 @pytest.mark.parametrize("count", [3, 4])

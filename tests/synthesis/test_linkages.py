@@ -145,6 +145,7 @@ def test_numbers_of_books() -> None:
         (lambda: make.six_bar("Watt II", 60, 20, 50, 40, 1, 1, rocker_point=(25, 0), pivot=(300, 10)), "any angle"),
         (lambda: make.geared_five_bar(50, 20, 50, 50, 20, ratio=0), "no ratio"),
         (lambda: make.scissor(2, 2.0, 1.9, 0.7), "low < high < arm"),
+        (lambda: make.scissor(10**9, 2.0, 0.7, 1.9), "100 at most"),
         (lambda: make.scissor(1.5, 2.0, 0.7, 1.9), "not a whole number"),
         (lambda: make.geneva(2, 100), "too few"),
         (lambda: make.cam_follower(40, 30, 4, 2, 2), "one turn"),

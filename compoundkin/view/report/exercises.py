@@ -20,7 +20,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.suffixes import suffix_for
-from compoundkin.files.atomic import write_atomically
+from compoundkin.files.atomic import new_folder
 from compoundkin.files.saved_files import save
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.quantities import quantity
@@ -201,28 +201,18 @@ class Exercises:
     def save(self, folder: str | os.PathLike[str], progress: Callable[[int, int], None] | None = None) -> Path:
         """Write sheets and solutions of all variants into a folder, as Markdown, HTML and LaTeX, and the answers.
 
-        Each variant has its mechanism file and its figure beside them. Raises InvalidInput where the folder cannot be
-        made, or holds files already.
+        Each variant has its mechanism file and its figure beside them. The folder is there with all of them, or not at
+        all. Raises InvalidInput where it cannot be made, or holds files already.
         """
-        target = Path(folder)
-        if target.exists() and (not target.is_dir() or any(target.iterdir())):
-            raise InvalidInput(Problem(str(folder), "it is there already and not empty", "name a new folder"))
-        try:
-            target.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InvalidInput(Problem(str(folder), f"it cannot be made: {error.strerror}", "name another")) from None
-        for k, one in enumerate(self.variants):
-            for name, content in _files(one):
-                _write(target / name, content)
-            save(one.mechanism, target / f"{one.number:02d}{suffix_for('mechanism', 'toml')}")
-            if progress is not None:
-                progress(k + 1, len(self.variants))
-        _write(target / f"answers{suffix_for('table', 'csv')}", self.answers_csv().encode())
-        return target
-
-
-def _write(path: Path, content: bytes) -> None:
-    write_atomically(path, lambda file: file.write(content))
+        with new_folder(folder) as target:
+            for k, one in enumerate(self.variants):
+                for name, content in _files(one):
+                    (target / name).write_bytes(content)
+                save(one.mechanism, target / f"{one.number:02d}{suffix_for('mechanism', 'toml')}")
+                if progress is not None:
+                    progress(k + 1, len(self.variants))
+            (target / f"answers{suffix_for('table', 'csv')}").write_bytes(self.answers_csv().encode())
+        return Path(folder)
 
 
 def _files(one: Exercise) -> Iterator[tuple[str, bytes]]:
@@ -407,6 +397,9 @@ def _special(motion: Motion, strict: bool) -> str:
     if not all(np.isfinite(rate) and abs(rate) <= FASTEST * driven for rate in rates.values()):
         return "a limit position is near"
     if strict:
+        # followers rest for a part of the turn
+        if not _asked_links(motion) and not _moving_points(motion)[0]:
+            return "nothing moves but what is driven"
         turning = {
             (round(float(degrees(np.ravel(one.angle)[0])), 6), round(rates[n], 9))
             for n, one in motion.links.items()
@@ -428,7 +421,7 @@ def _exercise(number: int, mechanism: Mechanism, motion: Motion, template: _Temp
     given: list[tuple[Cell, ...]] = []
     for link, points in mechanism.geometry.points.items():
         places = {letter: complex(np.ravel(point)[0]) for letter, point in points.items()}
-        (first, start), *rest = places.items()
+        (first, start), *rest = places.items() or (("", 0j),)
         if link != FRAME and len(rest) == 1 and start == 0 and rest[0][1].imag == 0 and rest[0][1].real > 0:
             given.append((link, f"length {first}{rest[0][0]}", number_text(rest[0][1].real), mechanism.unit))
             continue
@@ -504,17 +497,24 @@ def _driven(motion: Motion) -> set[str]:
     return {link for link in motion.structure.ground.links if link != FRAME}
 
 
+def _moving_points(motion: Motion) -> tuple[list[str], list[str]]:
+    """The points that move: those that are to be found, and those of driven links."""
+    slow, of_driven = STILL * motion.mechanism.geometry.size, _driven_points(motion)
+    moving = [name for name, point in motion.points.items() if abs(complex(np.ravel(point.velocity)[0])) > slow]
+    return [name for name in moving if name not in of_driven], [name for name in moving if name in of_driven]
+
+
+def _driven_points(motion: Motion) -> set[str]:
+    return {letter for link in _driven(motion) for letter in motion.mechanism.geometry.points[link]}
+
+
 def _asked_points(motion: Motion) -> list[str]:
-    """The points that are traced; where none is, the pins that move, and where all rest at this pose, all that may."""
-    driven = {letter for link in _driven(motion) for letter in motion.mechanism.geometry.points[link]}
-    moving = [
-        name
-        for name, point in motion.points.items()
-        if abs(complex(np.ravel(point.velocity)[0])) > STILL * motion.mechanism.geometry.size and name not in driven
-    ]
+    """The points that are traced; where none is, the pins that move, then all that may, then those of driven links."""
     carriers = motion.mechanism.carriers
-    free = [name for name in motion.points if name not in driven and FRAME not in carriers.get(name, ())]
-    return [name for name in moving if len(carriers.get(name, ())) == 1] or moving or free
+    moving, driven = _moving_points(motion)
+    of_driven = _driven_points(motion)
+    free = [name for name in motion.points if name not in of_driven and FRAME not in carriers.get(name, ())]
+    return [name for name in moving if len(carriers.get(name, ())) == 1] or moving or free or driven
 
 
 def _answers(motion: Motion, words: Sequence[str]) -> tuple[ExerciseAnswer, ...]:

@@ -113,6 +113,36 @@ def test_the_files_are_whole(tmp_path: Path) -> None:
         made.save(folder)
 
 
+def test_files_are_there_together_or_not_at_all(tmp_path: Path) -> None:
+    made = ck.exercise(ck.linkages.four_bar(60, 20, 50, 40), questions="mobility", count=2)
+
+    def interrupted(*_: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        made.save(tmp_path / "new", interrupted)
+    assert not list(tmp_path.iterdir())
+    # an empty folder, in which somebody may work, is filled and stays the same one
+    (tmp_path / "own").mkdir()
+    before = (tmp_path / "own").stat().st_ino
+    made.save(tmp_path / "own")
+    assert (tmp_path / "own").stat().st_ino == before
+    assert (tmp_path / "own" / "answers.csv").exists()
+    assert [one.name for one in tmp_path.iterdir()] == ["own"]
+
+
+@pytest.mark.parametrize("name", ["disc-cam-roller-program", "flat-faced-follower"])
+def test_something_moves_at_the_given_pose(name: str) -> None:
+    """Followers of cams rest for a part of the turn: then there is nothing to find."""
+    for seed in range(4):
+        one = ck.exercise(loaded(name), seed=seed, questions="velocities")[0]
+        assert any(abs(value) > 0.0 for value in answers(one).values())
+
+
+def test_a_link_may_have_no_point() -> None:
+    assert len(ck.exercise(loaded("five-bar-led"), questions="positions")[0].questions[0].answers) > 1
+
+
 def test_wrong_words_are_told() -> None:
     bar = ck.linkages.four_bar(60, 20, 50, 40)
     with pytest.raises(ck.errors.UnknownName, match="velocities"):
