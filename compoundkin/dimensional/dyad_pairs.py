@@ -182,7 +182,7 @@ def _dyad(numbers: Number, u: Number, at: DesignPositions, change: DesignPositio
 def _newton(family: Family, unknowns: Number, at: DesignPositions, change: DesignPositions) -> tuple[Number, Number]:
     """Return Newton's steps and slopes (unknowns, paths) at positions that change so."""
     m, (first, second) = family.poses, family.unknown
-    size, count = len(first) + len(second), unknowns.shape[1]
+    size = len(first) + len(second)
     numbers = _whole(family, unknowns[:size], at.ground)
     u = np.concatenate([at.u, unknowns[size:]])
     one, other = _dyad(numbers[:4], u, at, change), _dyad(numbers[4:], u, at, change)
@@ -190,30 +190,44 @@ def _newton(family: Family, unknowns: Number, at: DesignPositions, change: Desig
         dyad = (one, other)[k]
         dyad.by_t[:] += np.einsum("kcp,cp->kp", dyad.by_numbers[:, 2:], change.ground[2 * k : 2 * k + 2])
     left, right = one.by_numbers[:, first], other.by_numbers[:, second - 4]
-    # a point's equations, added so that its orientation drops out
-    v, w = other.by_u[m:], -one.by_u[m:]
-    matrix, sides = np.zeros((size, size, count), dtype=complex), np.empty((size, 2, count), dtype=complex)
-    # first so many equations as the one dyad has unknowns: no pivot is zero then
-    h = len(first) - m
-    poses, points = (slice(m), slice(len(first), len(first) + m)), (slice(m, len(first)), slice(len(first) + m, size))
-    matrix[poses[0], : len(first)], matrix[poses[1], len(first) :] = left[:m], right[:m]
-    for rows, some in zip(points, (slice(h), slice(h, None)), strict=True):
-        np.multiply(v[some, None], left[m:][some], out=matrix[rows, : len(first)])
-        np.multiply(w[some, None], right[m:][some], out=matrix[rows, len(first) :])
-    for c, (p, q) in enumerate(((one.value, other.value), (one.by_t, other.by_t))):
-        sides[poses[0], c], sides[poses[1], c] = p[:m], q[:m]
-        mixed = v * p[m:] + w * q[m:]
-        sides[points[0], c], sides[points[1], c] = mixed[:h], mixed[h:]
-    found = eliminated(matrix, sides)
+    sides = (one.value, other.value), (one.by_t, other.by_t)
+    found = _without_orientations(family, (left, right), (one.by_u[m:], other.by_u[m:]), sides)
     # of both dyads' equations for an orientation the one that depends on it more
-    vc, wc = v.conj(), w.conj()
-    scale = 1.0 / (vc * v + wc * w).real
+    vc, wc = one.by_u[m:].conj(), other.by_u[m:].conj()
+    scale = 1.0 / (vc * one.by_u[m:] + wc * other.by_u[m:]).real
     out = []
-    for c, (p, q) in enumerate(((one.value, other.value), (one.by_t, other.by_t))):
+    for c, (p, q) in enumerate(sides):
         of_one = p[m:] - np.einsum("kcp,cp->kp", left[m:], found[: len(first), c])
         of_other = q[m:] - np.einsum("kcp,cp->kp", right[m:], found[len(first) :, c])
-        out.append(-np.concatenate([found[:, c], (vc * of_other - wc * of_one) * scale]))
+        out.append(-np.concatenate([found[:, c], (vc * of_one + wc * of_other) * scale]))
     return out[0], out[1]
+
+
+def _without_orientations(
+    family: Family,
+    by_numbers: tuple[Number, Number],
+    by_u: tuple[Number, Number],
+    sides: tuple[tuple[Number, Number], tuple[Number, Number]],
+) -> Number:
+    """Solve the equations for the numbers alone: (numbers, right sides, paths).
+
+    A point's two equations are added so that its orientation drops out; those of poses have none.
+    """
+    m, (left, right), (w, v) = family.poses, by_numbers, (-by_u[0], by_u[1])
+    n, size, count = left.shape[1], left.shape[1] + right.shape[1], left.shape[2]
+    matrix, wanted = np.zeros((size, size, count), dtype=complex), np.empty((size, 2, count), dtype=complex)
+    # first so many equations as the one dyad has unknowns: no pivot is zero then
+    h = n - m
+    poses, points = (slice(m), slice(n, n + m)), (slice(m, n), slice(n + m, size))
+    matrix[poses[0], :n], matrix[poses[1], n:] = left[:m], right[:m]
+    for rows, some in zip(points, (slice(h), slice(h, None)), strict=True):
+        np.multiply(v[some, None], left[m:][some], out=matrix[rows, :n])
+        np.multiply(w[some, None], right[m:][some], out=matrix[rows, n:])
+    for c, (p, q) in enumerate(sides):
+        wanted[poses[0], c], wanted[poses[1], c] = p[:m], q[:m]
+        mixed = v * p[m:] + w * q[m:]
+        wanted[points[0], c], wanted[points[1], c] = mixed[:h], mixed[h:]
+    return eliminated(matrix, wanted)
 
 
 def _whole(family: Family, unknown: Number, ground: Number) -> Number:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -160,74 +161,81 @@ def _parted(pair: tuple[Dyad, Dyad]) -> bool:
     return min(abs(one.moving - other.moving), abs(one.fixed - other.fixed)) > COINCIDENT * size
 
 
-@dataclass
-class _Parts:
-    """The parts of a candidate while its dyads are added, one after another."""
+class _DyadParts(NamedTuple):
+    """What a dyad adds between the frame and a body: its link and pair, places of its points, and its poses.
 
-    z: dict[str, Number]
-    u: dict[str, Number]
-    frame: dict[str, complex] = field(default_factory=dict)
-    body: dict[str, complex] = field(default_factory=dict)
-    links: list[Link] = field(default_factory=list)
-    pairs: list[Item] = field(default_factory=list)
-    places: dict[str, complex] = field(default_factory=dict)
-    drivers: dict[str, Number] = field(default_factory=dict)
-    lengths: list[float] = field(default_factory=list)
+    `pivot` is the place on the frame and `joint` the one on the body, in their own coordinates; `joint_place` is where
+    the joint is at first. `z`, `u` are the link's origins and orientations, `driver` its values, arrays (n,).
+    """
+
+    link: Link
+    pairs: tuple[Item, ...]
+    pivot: complex
+    joint: complex
+    joint_place: complex
+    z: Number
+    u: Number
+    driver: Number
+    lengths: tuple[float, ...] = ()
+
+
+def _crank(z: Number, u: Number, dyad: Dyad, name: str, letter: str) -> _DyadParts:
+    joint = z + u * dyad.moving
+    turned = (joint - dyad.fixed) / np.abs(joint - dyad.fixed)
+    item = link(name, **_xy({f"{letter}0": 0j, letter: complex(dyad.length)}))
+    still = np.full(len(z), dyad.fixed)
+    return _DyadParts(item, (), dyad.fixed, dyad.moving, joint[0], still, turned, np.angle(turned), (dyad.length,))
+
+
+def _slider_on_frame(z: Number, u: Number, dyad: Dyad, name: str, letter: str) -> _DyadParts:
+    assert dyad.direction is not None
+    joint, way, pivot = z + u * dyad.moving, dyad.direction, f"{letter}0"
+    foot = complex(dyad.fixed + way * (np.conj(way) * (joint[0] - dyad.fixed)).real)
+    guide = slide(name, on=FRAME, at=letter, through=pivot, angle=float(np.angle(way)), name=f"{name} slide")
+    travel = (np.conj(way) * (joint - foot)).real
+    item = link(name, **_xy({letter: 0j}))
+    return _DyadParts(item, (guide,), foot, dyad.moving, joint[0], joint, np.full(len(z), way), travel)
+
+
+def _slider_on_body(z: Number, u: Number, dyad: Dyad, name: str, letter: str, body: str) -> _DyadParts:
+    assert dyad.direction is not None
+    pivot, turned, way = f"{letter}0", u * dyad.direction, float(np.angle(dyad.direction))
+    guide = slide(name, on=body, at=pivot, through=letter, angle=way, name=f"{name} slide")
+    item = link(name, **_xy({pivot: 0j}))
+    still, place = np.full(len(z), dyad.fixed), z[0] + u[0] * dyad.moving
+    return _DyadParts(item, (guide,), dyad.fixed, dyad.moving, place, still, turned, np.angle(turned))
+
+
+def _dyad_parts(z: Number, u: Number, dyad: Dyad, name: str, letter: str, body: str) -> _DyadParts:
+    if dyad.kind == RP:
+        return _slider_on_body(z, u, dyad, name, letter, body)
+    return (_crank if dyad.kind == RR else _slider_on_frame)(z, u, dyad, name, letter)
 
 
 def _of_pair(z: Number, u: Number, one: Dyad, other: Dyad, body: str, point: complex, **extra: object) -> Linkage:
-    still = np.zeros(len(z), complex)
-    parts = _Parts({FRAME: still, body: z}, {FRAME: still + 1.0, body: u})
-    for dyad, name, letter in ((one, INPUT, "A"), (other, OUTPUT, "B")):
-        add_dyad(parts, dyad, name, letter, body)
-    joints = [dyad.moving for dyad in (one, other)]
-    if one.kind != RP and other.kind != RP:
-        parts.lengths.append(abs(joints[0] - joints[1]))
-    known = next((letter for letter, place in parts.body.items() if abs(place - point) == 0.0), "")
+    parts = {name: _dyad_parts(z, u, dyad, name, letter, body)
+             for dyad, name, letter in ((one, INPUT, "A"), (other, OUTPUT, "B"))}  # fmt: skip
+    made = dict(zip("AB", parts.values(), strict=True))
+    points = {letter: part.joint for letter, part in made.items()}
+    pivots = {f"{letter}0": part.pivot for letter, part in made.items()}
+    places = {**pivots, **{letter: complex(part.joint_place) for letter, part in made.items()}}
+    lengths = [length for part in parts.values() for length in part.lengths]
+    if RP not in (one.kind, other.kind):
+        lengths.append(abs(one.moving - other.moving))
+    known = next((letter for letter, place in points.items() if abs(place - point) == 0.0), "")
     if not known:
-        parts.body[POINT] = point
-        parts.places[POINT] = complex(z[0] + u[0] * point)
-    links = (link(FRAME, **_xy(parts.frame)), *parts.links, link(body, **_xy(parts.body)))
+        points[POINT] = point
+        places[POINT] = complex(z[0] + u[0] * point)
+    links = (link(FRAME, **_xy(pivots)), *(part.link for part in parts.values()), link(body, **_xy(points)))
+    still = np.zeros(len(z), complex)
     return Linkage(
-        TITLES[one.kind, other.kind], links, tuple(parts.pairs), parts.places, parts.z, parts.u, parts.drivers,
-        tuple(parts.frame.values()), tuple(parts.lengths), outputs=(f"{known or POINT}.{POSITION}", f"{body}.{ANGLE}"),
-        dyads=(one, other), **extra,  # type: ignore[arg-type]
+        TITLES[one.kind, other.kind], links, tuple(pair for part in parts.values() for pair in part.pairs), places,
+        {FRAME: still, body: z, **{name: part.z for name, part in parts.items()}},
+        {FRAME: still + 1.0, body: u, **{name: part.u for name, part in parts.items()}},
+        {name: part.driver for name, part in parts.items()}, tuple(pivots.values()), tuple(lengths),
+        outputs=(f"{known or POINT}.{POSITION}", f"{body}.{ANGLE}"), dyads=(one, other),
+        **extra,  # type: ignore[arg-type]
     )  # fmt: skip
-
-
-def add_dyad(parts: _Parts, dyad: Dyad, name: str, letter: str, body: str) -> None:
-    """Add a dyad between the frame and a body: its link, pair, points and poses."""
-    z, u = parts.z[body], parts.u[body]
-    pivot = f"{letter}0"
-    if dyad.kind == RP:
-        assert dyad.direction is not None
-        parts.frame[pivot], parts.body[letter] = dyad.fixed, dyad.moving
-        parts.places |= {pivot: dyad.fixed, letter: complex(z[0] + u[0] * dyad.moving)}
-        parts.links.append(link(name, **_xy({pivot: 0j})))
-        parts.pairs.append(slide(name, on=body, at=pivot, through=letter, angle=float(np.angle(dyad.direction)),
-                                 name=f"{name} slide"))  # fmt: skip
-        parts.z[name], parts.u[name] = np.full(len(z), dyad.fixed), u * dyad.direction
-        parts.drivers[name] = np.angle(parts.u[name])
-        return
-    joint = z + u * dyad.moving
-    parts.body[letter] = dyad.moving
-    if dyad.direction is None:
-        parts.frame[pivot] = dyad.fixed
-        parts.places |= {pivot: dyad.fixed, letter: complex(joint[0])}
-        parts.links.append(link(name, **_xy({pivot: 0j, letter: complex(dyad.length)})))
-        parts.z[name] = np.full(len(z), dyad.fixed)
-        parts.u[name] = (joint - dyad.fixed) / np.abs(joint - dyad.fixed)
-        parts.drivers[name] = np.angle(parts.u[name])
-        parts.lengths.append(dyad.length)
-        return
-    foot = complex(dyad.fixed + dyad.direction * (np.conj(dyad.direction) * (joint[0] - dyad.fixed)).real)
-    parts.frame[pivot] = foot
-    parts.places |= {pivot: foot, letter: complex(joint[0])}
-    parts.links.append(link(name, **_xy({letter: 0j})))
-    parts.pairs.append(slide(name, on=FRAME, at=letter, through=pivot, angle=float(np.angle(dyad.direction)),
-                             name=f"{name} slide"))  # fmt: skip
-    parts.z[name], parts.u[name] = joint, np.full(len(z), dyad.direction)
-    parts.drivers[name] = (np.conj(dyad.direction) * (joint - foot)).real
 
 
 def _xy(points: Mapping[str, complex]) -> dict[str, tuple[float, float]]:

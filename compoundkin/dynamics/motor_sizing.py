@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from importlib import resources
@@ -311,25 +311,33 @@ def _needed(forces: Forces, driver: str, efficiency: float, design: int) -> Sizi
         )
 
     own, units = motion.drives[driver], motion.mechanism.stated_units
-    value, speed, second = row(own.value), row(own.rate), row(own.second)
-    given, rotor = _given(forces, driver)
-    # the rotor of a motor that is there goes with that motor: those of the list bring their own
-    parts = [row(np.asarray(forces.drives[driver].effort).reshape(shape)), row(given),
-             -units.inertia * row(rotor) * second]  # fmt: skip
-    effort = sum(parts, np.zeros(shape[1]))
-    if not np.isfinite(effort).all():
-        raise InvalidInput(
-            Problem("motion", "its efforts are not known at all poses", "size it over poses that are assembled")
-        )
-    times = row(motion.time) if motion.time is not None else _times(value, speed)
     newton, length = FORCES[units.force], LENGTHS[units.length]
     metre, factor = (1.0, newton * length) if own.is_angle else (length, newton)
-    inertia = (_felt(forces, driver, design) - float(np.mean(row(rotor)))) * units.inertia * factor / metre
-    # of its parts, and of twice the kinetic energy, which is the torque that turns it within a radian
-    sizes = [float(np.max(np.abs(part))) * factor for part in parts]
-    least = ROUNDING * max(*sizes, inertia * float(np.max(np.abs(speed * metre))) ** 2)
-    torques = np.where(np.abs(effort * factor) <= least, 0.0, effort * factor)
-    return Sizing(driver, own.is_angle, times, speed * metre, second * metre, torques, inertia, efficiency, ())
+    value, speeds, accelerations = row(own.value), metre * row(own.rate), metre * row(own.second)
+    given, rotor = _given(forces, driver)
+    rotor_inertia = units.inertia * factor / metre * row(rotor)
+    # the rotor of a motor that is there goes with that motor: those of the list bring their own
+    parts = (factor * row(np.asarray(forces.drives[driver].effort).reshape(shape)), factor * row(given),
+             -rotor_inertia * accelerations)  # fmt: skip
+    inertia = _felt(forces, driver, design) * units.inertia * factor / metre - float(np.mean(rotor_inertia))
+    times = row(motion.time) if motion.time is not None else _times(value, row(own.rate))
+    torques = _without_rounding(parts, inertia * float(np.max(np.abs(speeds))) ** 2)
+    return Sizing(driver, own.is_angle, times, speeds, accelerations, torques, inertia, efficiency, ())
+
+
+def _without_rounding(parts: Sequence[Number], most: float) -> Number:
+    """Return the sum of torques, zero where it is the rounding of its parts or of `most`.
+
+    That is twice the kinetic energy, the torque that turns the driver within a radian. Raises InvalidInput where some
+    are not known.
+    """
+    total = sum(parts, np.zeros(len(parts[0])))
+    if not np.isfinite(total).all():
+        what = "its efforts are not known at all poses"
+        raise InvalidInput(Problem("motion", what, "size it over poses that are assembled"))
+    least = ROUNDING * max(most, *(float(np.max(np.abs(part))) for part in parts))
+    found: Number = np.where(np.abs(total) <= least, 0.0, total)
+    return found
 
 
 def _felt(forces: Forces, driver: str, design: int) -> float:

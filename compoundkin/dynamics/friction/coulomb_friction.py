@@ -164,51 +164,71 @@ def _searched_there(influence: FrictionInfluence, signs: Number, grown: int) -> 
 
 
 def _grown(influence: FrictionInfluence, signs: Number) -> Number:
-    """Return the directions of normal forces (normal forces, solutions, poses) of all solutions of Coulomb's law.
+    """Return the directions of normal forces (normal forces, solutions, poses) of all solutions of Coulomb's law."""
+    acting, owners = _acting(influence, signs), _owners(influence)
+    scale = np.abs(influence.own).max(axis=0)
+    own = (influence.own / np.where(scale > 0.0, scale, 1.0)).T  # (poses, normal forces)
+    by = (-signs[:, None] * influence.by)[owners[acting]].transpose(2, 1, 0)  # (..., normal forces, acting)
+    sizes = _GrowingForces.of(own[:, acting], by[:, acting]).ends()
+    forces = own[:, None] + np.einsum("pjk,psk->psj", by, np.where(np.isfinite(sizes), sizes.real, 0.0))
+    return _directions(forces, np.abs(forces), 1.0).transpose(2, 1, 0)
 
-    The squared magnitudes m of normal forces are (a + C m)^2, quadratic equations that have two solutions each where C
-    is zero. From there C grows to its own value along a path through complex numbers, on which solutions never meet;
-    those that end at real m >= 0 are the mechanism's.
+
+class _GrowingForces(NamedTuple):
+    """The sizes m of the normal forces that act, as a path of polynomial systems that begins without friction.
+
+    Their squares are (a + C m)^2, quadratic equations that have two solutions each where C is zero. From there C grows
+    to its own value along a path through complex numbers, on which solutions never meet; those that end at real m >= 0
+    are the mechanism's. `own` is a (poses, acting), `by` is C (poses, acting, acting), `extra` what the squares have
+    more at the beginning.
     Source: A. P. Morgan and A. J. Sommese, Coefficient-parameter polynomial continuation, Applied Mathematics and
     Computation 29 (1989) 123.
     """
-    acting, owners = _acting(influence, signs), _owners(influence)
-    scale = np.abs(influence.own).max(axis=0)
-    every = (influence.own / np.where(scale > 0.0, scale, 1.0)).T  # (poses, normal forces)
-    by_every = (-signs[:, None] * influence.by)[owners[acting]].transpose(2, 1, 0)  # (..., normal forces, acting)
-    own, by = every[:, acting], by_every[:, acting]
-    poses, count = own.shape
-    rng = np.random.default_rng(3)
-    extra = rng.uniform(0.5, 1.0, count) * np.exp(1j * rng.uniform(0.0, TURN, count))
-    patterns = np.array(list(product((1.0, -1.0), repeat=count)))
-    start = np.sqrt(np.abs(own) ** 2 + extra)[:, None] * patterns
-    each = len(patterns)
 
-    def axes(i: Number, m: Number, t: Number) -> list[tuple[Number, Number]]:
-        """The components of normal forces, each with its slopes by the magnitudes at the end."""
-        pose, part = i // each, (t + BEND * t * (1.0 - t))[:, None]
-        sides = ((own.real[pose], by.real[pose]), (own.imag[pose], by.imag[pose]))
-        return [(a + part * np.einsum("pjk,pk->pj", c, m), c) for a, c in sides]
+    own: Number
+    by: Number
+    extra: Number
+    patterns: Number
 
-    def value(i: Number, m: Number, t: Number) -> Number:
-        squares = sum((x * x for x, _ in axes(i, m, t)), 0.0)
-        return m * m - squares - (1.0 - t)[:, None] * extra
+    @classmethod
+    def of(cls, own: Number, by: Number) -> _GrowingForces:
+        """Return the path with a generic beginning."""
+        count, rng = own.shape[1], np.random.default_rng(3)
+        extra = rng.uniform(0.5, 1.0, count) * np.exp(1j * rng.uniform(0.0, TURN, count))
+        return cls(own, by, extra, np.array(list(product((1.0, -1.0), repeat=count))))
 
-    def by_m(i: Number, m: Number, t: Number) -> Number:
-        part = (t + BEND * t * (1.0 - t))[:, None, None]
-        slopes = sum((x[..., None] * c for x, c in axes(i, m, t)), 0.0)
-        return 2.0 * (m[..., None] * np.eye(count) - part * slopes)
+    def ends(self) -> Number:
+        """Return all sizes at the end (poses, solutions, acting), complex ones too; NaN where a path was lost."""
+        start = np.sqrt(np.abs(self.own) ** 2 + self.extra)[:, None] * self.patterns
+        growing = homotopy_of(self._value, self._by_sizes, self._by_time)
+        ends = follow_paths(growing, start.reshape(-1, start.shape[-1]).T, GROWTH, CORRECTED)
+        return ends.T.reshape(start.shape)
 
-    def by_t(i: Number, m: Number, t: Number) -> Number:
+    def _axes(self, i: Number, m: Number, t: Number) -> list[tuple[Number, Number, Number]]:
+        """The components of normal forces, with what friction adds at the end and its slopes by the sizes."""
+        pose, part = i // len(self.patterns), _grown_part(t)[:, None]
+        sides = ((self.own.real[pose], self.by.real[pose]), (self.own.imag[pose], self.by.imag[pose]))
+        added = ((a, np.einsum("pjk,pk->pj", c, m), c) for a, c in sides)
+        return [(a + part * more, more, c) for a, more, c in added]
+
+    def _value(self, i: Number, m: Number, t: Number) -> Number:
+        squares = sum((x * x for x, _, _ in self._axes(i, m, t)), 0.0)
+        return m * m - squares - (1.0 - t)[:, None] * self.extra
+
+    def _by_sizes(self, i: Number, m: Number, t: Number) -> Number:
+        slopes = sum((x[..., None] * c for x, _, c in self._axes(i, m, t)), 0.0)
+        return 2.0 * (m[..., None] * np.eye(m.shape[-1]) - _grown_part(t)[:, None, None] * slopes)
+
+    def _by_time(self, i: Number, m: Number, t: Number) -> Number:
         rate = (1.0 + BEND * (1.0 - 2.0 * t))[:, None]
-        moved = sum((x * np.einsum("pjk,pk->pj", c, m) for x, c in axes(i, m, t)), 0.0)
-        return extra - 2.0 * rate * moved
+        moved = sum((x * more for x, more, _ in self._axes(i, m, t)), 0.0)
+        return self.extra - 2.0 * rate * moved
 
-    growing = homotopy_of(value, by_m, by_t)
-    ends = follow_paths(growing, start.reshape(-1, count).T, GROWTH, CORRECTED).T.reshape(poses, each, count)
-    real = np.where(np.isfinite(ends), ends.real, 0.0)
-    forces = every[:, None] + np.einsum("pjk,psk->psj", by_every, real)
-    return _directions(forces, np.abs(forces), 1.0).transpose(2, 1, 0)
+
+def _grown_part(t: Number) -> Number:
+    """Return the part of its own value to which C has grown: from 0 to 1 through complex numbers."""
+    found: Number = t + BEND * t * (1.0 - t)
+    return found
 
 
 def _owners(influence: FrictionInfluence) -> Number:
