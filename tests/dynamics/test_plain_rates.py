@@ -142,3 +142,23 @@ def test_a_way_of_many_sizes_takes_few_tables(monkeypatch: pytest.MonkeyPatch) -
     found = ck.simulate(block, start=0.0, until=2.0)
     assert found.motion.drives["block"].value[-1] == pytest.approx(2000.0, rel=1e-12)
     assert len(made) < 15
+
+
+def test_nothing_is_halved_where_nothing_is_assembled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beyond the limits of a rocker that drives, pieces were halved seven times in vain: 18,000 poses."""
+    solved, between = [0], tabulated_chart.between
+
+    def counted(motion: ck.Motion, design: int, places: Any) -> ck.Motion:
+        solved[0] += len(places)
+        return between(motion, design, places)
+
+    monkeypatch.setattr(tabulated_chart, "between", counted)
+    plain = four_bar()
+    items = [item for item in plain.items if item is not plain.drives[0]]
+    rocker = ck.Mechanism("By its rocker", *items, ck.drive("rocker"), units=SI)
+    chart = chart_of(ck.solve(rocker, {"rocker": [1.9]}), ("rocker",), {})
+    assert isinstance(chart, TabulatedChart)
+    assert chart.table is not None
+    assert chart.table.motion.failed.any()
+    assert chart.table.piece(1.9) is not None
+    assert 0 < solved[0] < 4000

@@ -411,8 +411,8 @@ class _Columns(dict[str, Pose]):
         return found
 
 
-# Pieces of a table to begin with, and how often they are halved.
-PIECES, HALVED = 16, 7
+# Pieces of a table to begin with, how often they are halved, and the points of each.
+PIECES, HALVED, POINTS = 16, 7, 24
 # Polynomials are accurate where their last coefficients are below this part of the largest: a hundred roundings.
 HOLDS, LAST = 3e-14, 3
 # Near a change point accelerations have some ten digits; a corner of a load is still far above this.
@@ -529,6 +529,7 @@ def accurate_pieces(
         held = [_is_accurate(piece, scales, least or {}) for piece in made]
         found += [piece for piece, holds in zip(made, held, strict=True) if holds]
         broken = [piece for piece, holds in zip(made, held, strict=True) if not holds]
+        broken = [one for one in broken if one.least < FASTER]
         todo = [part for one in broken for part in pairwise([one.low, (one.low + one.high) / 2, one.high])]
         if not todo:
             break
@@ -605,11 +606,16 @@ def _is_accurate(piece: TablePiece, scales: Sequence[int], least: Mapping[int, f
     # steep loads have the rounding of the driver's value, enlarged
     slopes = np.abs(piece.terms) @ np.square(_DEGREES) * 2.0 / (piece.high - piece.low)
     rounding = ROUNDINGS * np.finfo(float).eps * max(abs(piece.low), abs(piece.high)) * slopes
-    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= (part * largest[rows] + rounding)[:, None]))
+    middle, last = (np.max(np.abs(piece.terms[:, some]), axis=1) for some in (FLAT_FROM, LAST_ONES))
+    is_flat = (last >= FLAT * middle) & (last <= NOISE * largest[rows])
+    return bool(np.all((last <= part * largest[rows] + rounding) | is_flat))
 
 
 # So many roundings of the driver's value may be in a load.
 ROUNDINGS = 8.0
+# What no longer falls over the second half of the coefficients, within this part, and is below this part of the
+# largest, is rounding of reactions that cancel: no halving makes it less.
+FLAT_FROM, LAST_ONES, FLAT, NOISE = slice(POINTS // 2, -LAST), slice(-LAST, None), 0.2, 1e-11
 
 
 def _solved(
@@ -624,9 +630,13 @@ def _solved(
     # beyond a travel limit groups still close
     rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(at.structure.groups))] = np.nan
     ratios = _ratios(at, pairs)
+    slowest = np.where(np.isfinite(rows).all(axis=0), ratios, np.inf)
     cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
-    return [TablePiece(float(a), float(b), rows[:, cut] @ TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
-            for (a, b), cut in zip(parts, cuts, strict=True)]  # fmt: skip
+    return [
+        TablePiece(float(a), float(b), rows[:, cut] @ TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut,
+                   float(np.min(slowest[cut])))
+        for (a, b), cut in zip(parts, cuts, strict=True)
+    ]  # fmt: skip
 
 
 def _places(values: Number, ends: tuple[float, float]) -> Number:
@@ -661,8 +671,6 @@ def _ratios(motion: Motion, pairs: Sequence[Pair]) -> Number:
     return found
 
 
-# Points of a piece.
-POINTS = 24
 _ANGLES = (np.arange(POINTS) + 0.5) * np.pi / POINTS
 NODES = np.cos(_ANGLES)
 TO_COEFFICIENTS = np.cos(np.outer(np.arange(POINTS), _ANGLES)) * (2.0 / POINTS)
@@ -694,6 +702,7 @@ class TablePiece:
     ratio: float  # the greatest scaled speed of a pair
     nodes: Mapping[str, Pose]
     place: slice
+    least: float = 0.0  # the least of these at its points, infinite where nothing is assembled: no use to halve it
     known: dict[str, Number] = field(default_factory=dict)
     pairs: dict[str, Number] = field(default_factory=dict)
 
