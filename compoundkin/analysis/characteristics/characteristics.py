@@ -8,10 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.figures import Range, drivers_at, moving_drivers, ranges_of, scalar_quantity
 from compoundkin.analysis.characteristics.linkage_types import FourBar, SliderCrank, linkage_types
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
+from compoundkin.analysis.characteristics.placed_figures import (
+    Range,
+    drivers_at,
+    moving_drivers,
+    ranges_of,
+    scalar_quantity,
+)
 from compoundkin.analysis.characteristics.transmission import (
     AdvantageFigures,
     GroupFigures,

@@ -13,7 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.figures import (
+from compoundkin.analysis.characteristics.outputs import Output
+from compoundkin.analysis.characteristics.path_features import PathFeatures, path_features
+from compoundkin.analysis.characteristics.placed_figures import (
     PlacedFigure,
     Range,
     displayed_number,
@@ -22,8 +24,6 @@ from compoundkin.analysis.characteristics.figures import (
     quantity_number,
     scalar_quantity,
 )
-from compoundkin.analysis.characteristics.outputs import Output
-from compoundkin.analysis.characteristics.path_features import PathFeatures, path_features
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.bracketing import false_position
 from compoundkin.base.errors import CompoundkinError

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.figures import moving_drivers
+from compoundkin.analysis.characteristics.placed_figures import moving_drivers
 from compoundkin.base.arguments import check_design, checked
 from compoundkin.base.arrays import TURN, Number, cross, dot
 from compoundkin.base.curves.samples import Samples, crossings

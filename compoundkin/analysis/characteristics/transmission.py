@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.figures import PlacedFigure, Range, moving_drivers, scalar_quantity
 from compoundkin.analysis.characteristics.outputs import Output
+from compoundkin.analysis.characteristics.placed_figures import PlacedFigure, Range, moving_drivers, scalar_quantity
 from compoundkin.base.arrays import Number
 from compoundkin.base.extremes import ROUNDING
 from compoundkin.kinematics import Motion

@@ -146,35 +146,34 @@ def as_friction_pair(pair: Pair) -> FrictionPair | None:
     return pair if isinstance(pair, FrictionPair) else None
 
 
-class FrictionPin(FrictionPair):
-    """A pin. The friction moment is coefficient times radius times force."""
+class CoupleFriction(FrictionPair):
+    """A pair whose friction is a couple."""
 
     is_couple = True
 
     def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
         """Return a couple."""
         return Wrench(0j, radius)
+
+
+class FrictionPin(CoupleFriction):
+    """A pin. The friction moment is coefficient times radius times force."""
 
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
         """Return the force in the pin."""
         return (wrench.force,)
 
 
-class RollingFriction(RollingContact, FrictionPair):
+class RollingFriction(RollingContact, CoupleFriction):
     """A wheel that rolls. What resists is a moment, coefficient times the wheel's radius times the normal force."""
 
     takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
-    is_couple = True
     radius: Number
 
     @property
     def arm(self) -> Number:
         """The wheel's radius."""
         return self.radius
-
-    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
-        """Return a couple."""
-        return Wrench(0j, radius)
 
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
         """Return the normal force between wheel and line."""

@@ -15,7 +15,7 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import FrictionPair
+from compoundkin.model.pairs.contact import CoupleFriction
 from compoundkin.model.pairs.contract import (
     DimensionFit,
     DrawnPair,
@@ -248,28 +248,26 @@ def as_geared(pair: Pair) -> Geared | None:
     return pair if isinstance(pair, Geared) else None
 
 
-class FrictionMesh(Geared, FrictionPair):
-    """Teeth or a belt with losses: a part of the torque on the second wheel, of which the carrier takes the reaction.
-
-    It is lost by the wheel's speed against the carrier, so that a train has the efficiency of its carrier at rest.
-    Source: the basic efficiency of epicyclic trains, e.g. J. H. Glover, Machine Design 1965; F. L. Litvin et al.
-    """
-
-    is_couple: ClassVar[bool] = True
-
-    @property
-    def rubbing(self) -> tuple[str, str]:
-        """The carrier and the second wheel."""
-        return self.carrier, self.second
+class ToothFriction(CoupleFriction):
+    """Teeth or a belt, whose losses are a part of the torque that they transmit."""
 
     @property
     def arm(self) -> Number:
         """One: its normal force is a torque."""
         return 1.0
 
-    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
-        """Return a couple."""
-        return Wrench(0j, radius)
+
+class FrictionMesh(Geared, ToothFriction):
+    """Teeth or a belt with losses: a part of the torque on the second wheel, of which the carrier takes the reaction.
+
+    It is lost by the wheel's speed against the carrier, so that a train has the efficiency of its carrier at rest.
+    Source: the basic efficiency of epicyclic trains, e.g. J. H. Glover, Machine Design 1965; F. L. Litvin et al.
+    """
+
+    @property
+    def rubbing(self) -> tuple[str, str]:
+        """The carrier and the second wheel."""
+        return self.carrier, self.second
 
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
         """Return the torque on the second wheel about its axis."""

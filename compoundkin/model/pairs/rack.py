@@ -14,17 +14,16 @@ from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TANGENTIAL
 from compoundkin.model.fields import constructor, link_key, point_key, value_key
-from compoundkin.model.pairs.contact import FrictionPair
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, TransmittingPair, jacobian_of_rows
 from compoundkin.model.pairs.gear import STANDARD, UNCOUNTED
-from compoundkin.model.pairs.geared import FITS, pressure_problems, radius_problems
+from compoundkin.model.pairs.geared import FITS, ToothFriction, pressure_problems, radius_problems
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, end_angle
 from compoundkin.model.pairs.pitch_line import PitchLinePair
 from compoundkin.model.pairs.revolute import Revolute
 
 
 @dataclass(frozen=True, eq=False)
-class Rack(PitchLinePair, TransmittingPair, FrictionPair):
+class Rack(PitchLinePair, TransmittingPair, ToothFriction):
     """The link `pinion` rolls without slip along the pitch line of the link `rack`.
 
     The pitch line runs through the point `through` of the rack, in the direction `angle` (radians, from the rack's x
@@ -79,7 +78,6 @@ class Rack(PitchLinePair, TransmittingPair, FrictionPair):
     force_words: ClassVar[tuple[str, ...]] = (TANGENTIAL,)
     table: ClassVar[str] = "racks"
     takes: ClassVar[tuple[str, ...]] = ("friction", "efficiency")
-    is_couple: ClassVar[bool] = True
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -141,15 +139,6 @@ class Rack(PitchLinePair, TransmittingPair, FrictionPair):
         place, e = self.pitch_point(ends, poses)
         apart = np.sign(ends[1].measure) * np.tan(self.pressure_angle)
         return Wrench.at(place, 1j * e * (np.abs(transmitted) * apart))
-
-    @property
-    def arm(self) -> Number:
-        """One: its normal force is a moment."""
-        return 1.0
-
-    def friction_wrench(self, ends: Ends, poses: Poses, radius: Number) -> Wrench:
-        """Return a couple."""
-        return Wrench(0j, radius)
 
     def normal_forces(self, ends: Ends, poses: Poses, wrench: Wrench, length: Number | None) -> tuple[Number, ...]:
         """Return the moment of the teeth about the axis of the pinion."""

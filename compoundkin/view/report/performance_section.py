@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from compoundkin.analysis.characteristics.characteristics import DWELL, STRAIGHT, Characteristics, characteristics
-from compoundkin.analysis.characteristics.figures import PlacedFigure, Range
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.analysis.characteristics.path_features import PathFeatures, simple_shape
+from compoundkin.analysis.characteristics.placed_figures import PlacedFigure, Range
 from compoundkin.base.arguments import check_design
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design

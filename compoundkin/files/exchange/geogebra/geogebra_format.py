@@ -18,6 +18,14 @@ import numpy as np
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.files.exchange.contract import Exported, Writable
+from compoundkin.files.exchange.geogebra.constructed_sides import (
+    ChosenSides,
+    InsideBody,
+    PairSides,
+    PlacedBodies,
+    link_points,
+    steps_of,
+)
 from compoundkin.files.exchange.geogebra.dragged_construction import (
     Angle,
     Construction,
@@ -37,14 +45,6 @@ from compoundkin.files.exchange.geogebra.group_constructions import (
     is_constructed,
     is_driven_constructed,
     is_train,
-)
-from compoundkin.files.exchange.geogebra.pair_sides import (
-    ChosenSides,
-    InsideBody,
-    PairSides,
-    PlacedBodies,
-    link_points,
-    steps_of,
 )
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.kinematics import Motion

@@ -6,6 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from compoundkin.files.exchange.geogebra.constructed_sides import (
+    ConstructedBody,
+    InsideBody,
+    NamedEnd,
+    PairSides,
+    PlacedBodies,
+    length_of,
+    seen_from,
+)
 from compoundkin.files.exchange.geogebra.dragged_construction import (
     Angle,
     Construction,
@@ -15,19 +24,11 @@ from compoundkin.files.exchange.geogebra.dragged_construction import (
     in_degrees,
     named,
 )
-from compoundkin.files.exchange.geogebra.pair_sides import (
-    ConstructedBody,
-    InsideBody,
-    NamedEnd,
-    PairSides,
-    PlacedBodies,
-    length_of,
-    seen_from,
-)
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.dyad import DyadSolver
 from compoundkin.kinematics.groups.pair_sides import Side
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.geared import as_geared
 from compoundkin.structure.mobility_count import Body, DrivenPair
 
 # How far beyond its range rounding takes the cosine of an angle that is flat.
@@ -268,7 +269,7 @@ def is_constructed(solver: GroupSolver) -> bool:
     if len(solver.group.bodies) != 1 or len(pairs) != 2 or len(solver.group.links) != 1:
         return False
     lower, higher = sorted(pairs, key=lambda pair: -pair.held)
-    return lower.is_simple and (higher.table in ("gears", "belts") or _is_rack(lower, higher, solver.group.links[0]))
+    return lower.is_simple and (as_geared(higher) is not None or _is_rack(lower, higher, solver.group.links[0]))
 
 
 def _is_rack(lower: Pair, higher: Pair, link: str) -> bool:
@@ -386,7 +387,7 @@ def is_train(solver: GroupSolver) -> bool:
     """Return whether a group is wheels and carriers on as many pins and gears."""
     pins, gears = _pins_and_gears(solver)
     count = len(solver.group.bodies)
-    simple = all(pin.is_simple and pin.free_is_angle for pin in pins) and all(g.table in _GEARED for g in gears)
+    simple = all(pin.is_simple and pin.free_is_angle for pin in pins) and all(map(as_geared, gears))
     return simple and len(pins) == len(gears) == len(solver.group.links) == count
 
 
@@ -403,9 +404,6 @@ def add_train(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, count
         spot = placed.spot(other, sides.of(pin, 1 - own), pin.name)
         placed.hold(bodies[link], ConstructedBody(spot, sides.of(pin, own).way, named(angles[link])))
         waiting.remove(link)
-
-
-_GEARED = ("gears", "belts")
 
 
 def _pins_and_gears(solver: GroupSolver) -> tuple[list[Pair], list[Pair]]:

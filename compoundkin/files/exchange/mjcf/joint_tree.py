@@ -173,10 +173,6 @@ def _summed(terms: Iterable[tuple[str, float]]) -> dict[str, float]:
 _OPEN = 1e3
 
 
-# Pairs of wheels on a carrier: they join no links, but tie angles of some that are joined.
-GEARED = ("gears", "belts")
-
-
 # A rack holds nothing but its pinion's turn: alone it keeps two links together by three joints.
 RACK = "racks"
 

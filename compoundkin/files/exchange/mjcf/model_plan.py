@@ -10,7 +10,6 @@ from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.files.exchange.mjcf.joint_tree import (
-    GEARED,
     RACK,
     CarriedLink,
     ElementaryJoint,
@@ -28,6 +27,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import constraint_scales
+from compoundkin.model.pairs.geared import as_geared
 from compoundkin.model.units import FORCES, LENGTHS, MASSES
 
 # Bodies that stand on each other deeper are refused: they are written and read one in another.
@@ -135,10 +135,12 @@ def plan_of(shown: PosedMechanism) -> ModelPlan:
     """Return what is to be written of a mechanism. Raises InvalidInput listing all that no model can say."""
     chains, problems = [], [*_prescribed(shown)]
     for pair in shown.structure.pairs:
-        chain = None if pair.table in GEARED else chain_of(shown, pair)
+        if as_geared(pair):
+            continue  # it joins no links, but ties angles of some that are joined
+        chain = chain_of(shown, pair)
         if chain is not None:
             chains.append(chain)
-        elif pair.table not in GEARED:
+        else:
             what = f"a {pair.title} is neither a hinge nor a slide, nor made of such"
             problems.append(Problem(pair.name, what, "leave it out, or write equivalent() of the mechanism"))
     if problems:
@@ -196,9 +198,7 @@ def _plan(shown: PosedMechanism, tree: JointTree, driven: set[str]) -> ModelPlan
     if problems:
         raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
     ties = {chain.pair.name: chain.tie for chain in _carrying(tree) if chain.tie}
-    ties.update(
-        {pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if pair.table in GEARED}
-    )
+    ties.update({pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if as_geared(pair)})
     for free in shown.structure.passive:
         ties[f"{free.link} on {free.on}"] = still_tie(tree, free.link, free.on)
     connected, halves = [], {}
