@@ -84,3 +84,36 @@ def test_a_platform_on_three_legs_falls() -> None:
     assert fall.events == ()
     assert fall.energy.worst < 1e-8
     assert max(np.max(np.abs(fall.forces.drives[name].effort)) for name in fall.motion.drives) < 1e-5
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "antiparallelogram"])
+def test_a_start_at_a_change_point_says_how_to_mend_it(name: str) -> None:
+    """What the message says to write starts, on the branch that is drawn, and goes on through both change points."""
+    machine = heavy(name)
+    with pytest.raises(ck.errors.InvalidInput, match="branches meet") as refused:
+        ck.simulate(machine, until=1.0)
+    assert 'start={"crank": ck.deg(1)}' in str(refused.value)
+    assert "modes=" in str(refused.value)
+    fall = ck.simulate(machine, start={"crank": (ck.deg(1), -20.0)}, until=0.5)
+    crank, follower = (fall.motion.links[link].angle for link in ("crank", "follower"))
+    assert np.ptp(crank) > np.pi
+    if name == "parallelogram":
+        assert np.max(np.abs(np.exp(1j * follower) - np.exp(1j * crank))) < 1e-8
+    else:
+        # ellipses that roll on each other: tan(follower / 2) = -3 tan(crank / 2), by frame 60 and crank 30
+        a, b = crank / 2.0, follower / 2.0
+        assert np.max(np.abs(np.sin(b) * np.cos(a) + 3.0 * np.sin(a) * np.cos(b))) < 1e-8
+    assert fall.energy.worst < 1e-8
+
+
+def test_a_start_at_a_limit_position_says_where_to_start() -> None:
+    """A slider-crank driven by its piston, stretched out."""
+    items = (
+        *(ck.link("frame", O=0), ck.link("crank", O=0, A=1), ck.link("rod", A=0, B=3), ck.link("piston", B=0)),
+        ck.slide("piston", on="frame", at="B", through="O", name="guide"),
+        *(ck.drive("piston"), ck.drawn(O=0, A=1, B=4)),
+        *(ck.mass(link, 1.0, inertia=0.1) for link in ("crank", "rod", "piston")),
+    )
+    stretched = ck.Mechanism("Stretched", *items, units={"length": "m", "mass": "kg", "force": "N"})
+    with pytest.raises(ck.errors.InvalidInput, match="at a limit position there"):
+        ck.simulate(stretched, start=4.0, until=1.0)

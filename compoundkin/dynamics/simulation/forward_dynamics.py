@@ -180,13 +180,45 @@ def _check_inertia(chart: DriverChart, state: Number) -> None:
     n = len(chart.free)
     matrix = chart.state(0.0, state[:n], state[n : 2 * n]).terms.matrix[:n, :n]
     if not (np.isfinite(matrix).all() and chart.start.regular.all()):
-        what = "drivers are at a limit position or a change point there"
-        raise InvalidInput(Problem("start", what, "start at a distance from it, or drive another link"))
+        raise InvalidInput(_singular_start(chart, state))
     heaviest = max(own.mass * chart.order.size**2 + own.inertia for own in chart.masses)
     sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
     for name, one in zip(chart.free, sizes, strict=True):
         if not one > NO_MASS * heaviest:
             raise InvalidInput(_no_mass(chart, name, state))
+
+
+# Beside a singular start it is tried at so many radians, or at this part of the size.
+STEP_BESIDE = np.deg2rad(1.0)
+
+
+def _singular_start(chart: DriverChart, state: Number) -> Problem:
+    """Return the problem of a start at a limit position or a change point of the drivers."""
+    what = "drivers are at a limit position or a change point there"
+    if len(chart.names) != 1:
+        return Problem("start", what, "start at a distance from it, or drive another link")
+    (name,), step = chart.names, STEP_BESIDE * float(chart.scales[0])
+    beside = [float(state[0]) + side * step for side in (1.0, -1.0)]
+    met = [value for value in beside if _is_assembled(chart, name, value)]
+    if not met:
+        return Problem("start", what, "start at a distance from it, or drive another link")
+    shown = f"ck.deg({np.rad2deg(met[0]):.6g})" if chart.start.structure.driven_angles[name] else f"{met[0]:.6g}"
+    if len(met) < 2:
+        what = f"{name!r} is at a limit position there, where its speed moves nothing"
+        return Problem("start", what, f'start beside it, start={{"{name}": {shown}}}, or drive another link')
+    what = f"{name!r} is at a change point there: branches meet, and no start says on which it goes on"
+    remedy = (
+        f'start beside it, start={{"{name}": {shown}}}, on the branch that you mean, by its `drawn` points or by '
+        "modes=... of the call; it goes through the change point on that branch"
+    )
+    return Problem("start", what, remedy)
+
+
+def _is_assembled(chart: DriverChart, name: str, value: float) -> bool:
+    """Whether the mechanism can be assembled at a value of its only driver."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return not bool(solve(chart.mechanism, {name: [value]}, order=0).failed.any())
 
 
 def _no_mass(chart: DriverChart, driver: str, state: Number) -> Problem:
