@@ -231,8 +231,9 @@ def _meant(name: str) -> str:
     from compoundkin.base.errors import OTHER_WORDS, plain_word
 
     others = OTHER_WORDS.get(plain_word(name), ())
-    words = [(module, word) for module in _MODULES for word in import_module(f"compoundkin.{module}").__all__]
-    meant = [f"compoundkin.{m}.{word}" for m, word in words if plain_word(word) == plain_word(name) or word in others]
+    words = [(f"{one}.", word) for one in _MODULES for word in import_module(f"compoundkin.{one}").__all__]
+    words += [("", word) for word in __all__]
+    meant = [f"compoundkin.{m}{word}" for m, word in words if plain_word(word) == plain_word(name) or word in others]
     return f"; did you mean {' or '.join(meant[:2])}?" if meant else ""
 
 

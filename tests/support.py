@@ -20,6 +20,21 @@ from compoundkin.model.pairs import Pair
 
 REFERENCE = Path(__file__).parent / "reference"
 
+# A mechanism file, its driver last.
+DRIVE = '[[drives]]\nlink = "crank"\n'
+FOUR_BAR = f"""\
+format = 1
+title = "Four-bar"
+[links.frame]
+points = {{ A = [0, 0], D = [4, 0] }}
+[links.crank]
+points = {{ A = [0, 0], B = [1, 0] }}
+[links.coupler]
+points = {{ B = [0, 0], C = [3, 0] }}
+[links.rocker]
+points = {{ D = [0, 0], C = [3, 0] }}
+{DRIVE}"""
+
 
 def reference(name: str, subject: str = "kinematics") -> dict[str, Any]:
     """An entry of the published or independently computed numbers."""

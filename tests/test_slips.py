@@ -15,22 +15,9 @@ import pytest
 import compoundkin as ck
 from compoundkin.files import dumps, loads
 from tests.catalog import NAMES, each, mechanism, motion
+from tests.support import FOUR_BAR
 
 SIX_BAR = mechanism("six-bar")
-FOUR_BAR = """\
-format = 1
-title = "Four-bar"
-[links.frame]
-points = { A = [0, 0], D = [4, 0] }
-[links.crank]
-points = { A = [0, 0], B = [1, 0] }
-[links.coupler]
-points = { B = [0, 0], C = [3, 0] }
-[links.rocker]
-points = { D = [0, 0], C = [3, 0] }
-[[drives]]
-link = "crank"
-"""
 # The ground link is longer than all others together.
 NOT_ASSEMBLED = FOUR_BAR.replace("[4, 0]", "[100, 0]")
 

@@ -28,7 +28,7 @@ SECONDS, MOST_TEXT = 60.0, 200_000
 # A message about wrong arguments repeats them: beyond so many characters it names the rule alone.
 MOST_WORDS = 500
 # Where pictures and new mechanisms are written in the folder of a call.
-PICTURE, BETTER = "picture.png", "better.toml"
+PICTURE, BETTER, FOUND = "picture.png", "better.toml", "found"
 
 Schema = dict[str, Any]
 Arguments = Mapping[str, Any]
@@ -36,20 +36,24 @@ Arguments = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Tool:
-    """A verb as a tool: its arguments as JSON Schemas with those that must be there, and the words after FILE."""
+    """A verb as a tool: the arguments after its file as JSON Schemas, those that must be there, the words after FILE.
+
+    The file is a mechanism or a task; a tool that does without one says how one is written.
+    """
 
     name: str
     description: str
     arguments: Mapping[str, Schema]
     required: tuple[str, ...]
     words: Callable[[Arguments], Iterator[str]]
+    file: str = "mechanism"
 
     @property
     def schema(self) -> Schema:
         """The schema of all arguments."""
         return {
             "type": "object",
-            "properties": dict(self.arguments),
+            "properties": {self.file: FILES[self.file](), **self.arguments},
             "required": list(self.required),
             "additionalProperties": False,
         }
@@ -165,68 +169,100 @@ def _numbers(description: str) -> Schema:
     return {"type": "object", "additionalProperties": {"type": "number"}, "description": description}
 
 
-def tools() -> tuple[Tool, ...]:
-    """Return the tools.
+def _synthesise(given: Arguments) -> Iterator[str]:
+    yield from ("synthesise", "--format=markdown", f"--save={FOUND}")
+    yield from (f"--picture={PICTURE}" for _ in range(given.get("picture", False)))
 
-    >>> [tool.name for tool in tools()]
-    ['describe', 'solve', 'report', 'optimise', 'forces', 'draw']
-    """
-    mechanism = {"mechanism": _mechanism()}
-    ranges = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
-    return (
-        Tool(
-            "describe",
-            "Take a mechanism apart: links, pairs, Grübler's mobility, loops, Assur groups in order, faults with "
-            "their remedy. Without a mechanism: how one is written, and the names of those that are shipped.",
-            mechanism, (), _describe,
-        ),
-        Tool(
-            "solve",
-            "Positions, velocities and accelerations as a table in CSV, a row for each pose; angles in degrees.",
-            {**mechanism, **MOTION, "outputs": _texts("Quantities; all there are if left out.", "G.velocity")},
-            ("mechanism",), _solve,
-        ),
-        Tool(
-            "report",
-            "The whole report: structure, motion, figures such as the stroke, checks by independent methods.",
-            {**mechanism, **MOTION}, ("mechanism",), _report,
-        ),
-        Tool(
-            "optimise",
-            "Better dimensions: what may change, what shall be least, greatest or at a target, what must hold. A "
-            "report, and the new mechanism in TOML.",
-            {
-                **mechanism, **MOTION,
-                "free": {"type": "object", "minProperties": 1, "additionalProperties": ranges,
-                         "description": 'Dimensions with their bounds, lengths or degrees: {"crank.B.x": [1, 3]}.'},
-                "least": _texts("Figures to make small.", "rocker.angle.stroke"),
-                "greatest": _texts("Figures to make great.", "rocker.transmission_angle.least"),
-                "target": _numbers('Figures with the values to reach: {"rocker.angle.stroke": 60}.'),
-                "at_least": _numbers("Figures with lower bounds."),
-                "at_most": _numbers("Figures with upper bounds."),
-                "full_turn": _switch("The driver must turn fully."),
-                "assembled": _switch("It must be assembled all along the motion."),
-            },
-            ("mechanism", "free"), _optimise,
-        ),
-        Tool(
-            "forces",
-            "Forces in all pairs, efforts of drivers, shaking force, from the masses and loads of mechanism and call.",
-            {**mechanism, **MOTION, **LOADS, "statics": _switch("Leave inertia out.")}, ("mechanism",), _forces,
-        ),
-        Tool(
-            "draw",
-            "A kinematic sketch as a picture (PNG).",
-            {
-                **mechanism, **LOADS,
-                "at": _texts("The pose: the driver's value, degrees or length.", "crank=35"),
-                "forces": _switch("Draw forces."),
-                "dimensions": _switch("Draw dimensions."),
-                "configurations": _switch("Draw every way to assemble it at this pose."),
-            },
-            ("mechanism",), _draw,
-        ),
-    )  # fmt: skip
+
+def _task() -> Schema:
+    """Return the schema of a task: the text of a file, or its document with the keys that files have."""
+    from compoundkin.dimensional.tasks import CONDITIONS, KEYS
+
+    keys: Schema = {key: {} for own in KEYS.values() for key in own}
+    conditions = {"type": "object", "properties": {key: {} for key in CONDITIONS}, "additionalProperties": False}
+    document = {
+        "type": "object",
+        "properties": {"format": {"const": 1}, "task": {"enum": [*KEYS]}, **keys, "conditions": conditions},
+        "required": ["format", "task"],
+        "additionalProperties": False,
+    }
+    return {
+        "anyOf": [{"type": "string", "minLength": 1, "maxLength": MOST_TEXT}, document],
+        "description": "A task file, as its text in TOML or its document in JSON; angles in degrees: "
+        '{"format": 1, "task": "poses", "link": "plate", "poses": [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]], '
+        '"conditions": {"transmission": 30}}. '
+        f"Keys: {'; '.join(f'{kind}: {chr(44).join(keys)}' for kind, keys in KEYS.items())}.",
+    }
+
+
+# The files that tools take, by the argument that has them.
+FILES: Mapping[str, Callable[[], Schema]] = {"mechanism": _mechanism, "task": _task}
+_BOUNDS = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+TOOLS = (
+    Tool(
+        "describe",
+        "Take a mechanism apart: links, pairs, Grübler's mobility, loops, Assur groups in order, faults with their "
+        "remedy. Without a mechanism: how one is written, and the names of those that are shipped.",
+        {}, (), _describe,
+    ),
+    Tool(
+        "solve",
+        "Positions, velocities and accelerations as a table in CSV, a row for each pose; angles in degrees.",
+        {**MOTION, "outputs": _texts("Quantities; all there are if left out.", "G.velocity")}, ("mechanism",), _solve,
+    ),
+    Tool(
+        "report",
+        "The whole report: structure, motion, figures such as the stroke, checks by independent methods.",
+        MOTION, ("mechanism",), _report,
+    ),
+    Tool(
+        "optimise",
+        "Better dimensions: what may change, what shall be least, greatest or at a target, what must hold. A report, "
+        "and the new mechanism in TOML.",
+        {
+            **MOTION,
+            "free": {"type": "object", "minProperties": 1, "additionalProperties": _BOUNDS,
+                     "description": 'Dimensions with their bounds, lengths or degrees: {"crank.B.x": [1, 3]}.'},
+            "least": _texts("Figures to make small.", "rocker.angle.stroke"),
+            "greatest": _texts("Figures to make great.", "rocker.transmission_angle.least"),
+            "target": _numbers('Figures with the values to reach: {"rocker.angle.stroke": 60}.'),
+            "at_least": _numbers("Figures with lower bounds."),
+            "at_most": _numbers("Figures with upper bounds."),
+            "full_turn": _switch("The driver must turn fully."),
+            "assembled": _switch("It must be assembled all along the motion."),
+        },
+        ("mechanism", "free"), _optimise,
+    ),
+    Tool(
+        "forces",
+        "Forces in all pairs, efforts of drivers, shaking force, from the masses and loads of mechanism and call.",
+        {**MOTION, **LOADS, "statics": _switch("Leave inertia out.")}, ("mechanism",), _forces,
+    ),
+    Tool(
+        "draw",
+        "A kinematic sketch as a picture (PNG).",
+        {
+            **LOADS,
+            "at": _texts("The pose: the driver's value, degrees or length.", "crank=35"),
+            "forces": _switch("Draw forces."),
+            "dimensions": _switch("Draw dimensions."),
+            "configurations": _switch("Draw every way to assemble it at this pose."),
+        },
+        ("mechanism",), _draw,
+    ),
+    Tool(
+        "synthesise",
+        "Mechanisms that do a task: guide a body through poses, a point through points, an output by a function; "
+        "swing, stroke, dwell. A report, ranked, with what is wrong with the others, and the best as mechanism files. "
+        "Without a task: how one is written.",
+        {
+            "picture": _switch("Draw the mechanisms side by side."),
+            "best": {"type": "integer", "minimum": 1, "maximum": 5, "default": 1,
+                     "description": "How many mechanisms are sent as files in TOML."},
+        },
+        (), _synthesise, "task",
+    ),
+)  # fmt: skip
 
 
 @click.command(
@@ -243,7 +279,7 @@ In the settings of a program that talks:
 def command() -> int:
     """Serve programs that talk (Model Context Protocol) on standard input and output.
 
-    Tools: describe, solve, report, optimise, forces, draw. Needs the extra `mcp`.
+    Tools: describe, solve, report, optimise, forces, draw, synthesise. Needs the extra `mcp`.
     """
     made = server()
     import anyio
@@ -268,7 +304,7 @@ def server() -> Any:
         raise missing_extra("mcp", "the SDK of the Model Context Protocol is not installed", "mcp") from None
     from compoundkin.base.version import VERSION
 
-    known = {tool.name: tool for tool in tools()}
+    known = {tool.name: tool for tool in TOOLS}
 
     async def list_tools(*_: Any) -> Any:
         hints = types.ToolAnnotations(read_only_hint=True, open_world_hint=False)
@@ -306,14 +342,17 @@ async def call(known: Mapping[str, Tool], name: str, given: Arguments) -> tuple[
         return [f"{wrong.json_path.replace('$', 'arguments', 1)}: {what}"], True
     if not _is_plain(given):
         return ["arguments: a text has a character that cannot be passed on"], True
-    if "mechanism" not in given:
-        return [await _introduction()], False
+    file = known[name].file
+    if file not in given:
+        return [await _introduction(file)], False
     with tempfile.TemporaryDirectory(prefix="compoundkin-") as folder:
         verb, *words = known[name].words(given)
-        code, out, said = await _run([verb, _file(given["mechanism"], Path(folder)), *words], folder)
+        code, out, said = await _run([verb, _file(file, given[file], Path(folder)), *words], folder)
         parts: list[str | bytes] = [_shortened(text) for text in (out, said) if text.strip()]
         parts += [one.read_bytes() for one in [Path(folder, PICTURE)] if one.exists()]
-        parts += [one.read_text(encoding="utf-8") for one in [Path(folder, BETTER)] if one.exists()]
+        best = sorted(Path(folder, FOUND).glob("*"), key=lambda one: int(one.stem))[: given.get("best", 1)]
+        written = [*(one for one in [Path(folder, BETTER)] if one.exists()), *best]
+        parts += [one.read_text(encoding="utf-8") for one in written]
     return parts or ["It is silent."], code not in (0, 3, 4)
 
 
@@ -327,9 +366,10 @@ def _is_plain(given: Arguments) -> bool:
     return "\\u0000" not in text
 
 
-def _file(mechanism: str | Mapping[str, Any], folder: Path) -> str:
-    """Write a mechanism to a file and return its name; the name of a shipped one is returned as it is."""
-    if isinstance(mechanism, str) and "\n" not in mechanism and not mechanism.lstrip().startswith("{"):
+def _file(kind: str, mechanism: str | Mapping[str, Any], folder: Path) -> str:
+    """Write a mechanism or a task to a file and return its name; that of a shipped mechanism is returned as it is."""
+    is_word = isinstance(mechanism, str) and "\n" not in mechanism and not mechanism.lstrip().startswith("{")
+    if kind == "mechanism" and isinstance(mechanism, str) and is_word:
         from compoundkin.files.shipped_mechanisms import shipped
         from compoundkin.synthesis.linkages import is_linkage
 
@@ -340,18 +380,21 @@ def _file(mechanism: str | Mapping[str, Any], folder: Path) -> str:
             else f"{Path(mechanism).name or 'mechanism'}".replace(".", "-")
         )
     text = mechanism if isinstance(mechanism, str) else json.dumps(mechanism)
-    name = "mechanism.json" if text.lstrip().startswith("{") else "mechanism.toml"
+    name = f"{kind}.json" if text.lstrip().startswith("{") else f"{kind}.toml"
     (folder / name).write_text(text, encoding="utf-8")
     return name
 
 
-async def _introduction() -> str:
-    """Return how a mechanism is written, and the names of those that are shipped."""
+async def _introduction(kind: str) -> str:
+    """Return how a mechanism or a task is written, of mechanisms also the names of those that are shipped."""
     with tempfile.TemporaryDirectory(prefix="compoundkin-") as folder:
-        await _run(["new", "mine.toml"], folder)
+        await _run(["new", *([kind] if kind == "task" else []), "-o", "mine.toml"], folder)
         example = Path(folder, "mine.toml").read_text(encoding="utf-8")
+    text = f"A {kind} file, with what may be in it:\n\n{example}"
+    if kind == "task":
+        return text
     _, names, _ = await _run(["catalog", "list"], None)
-    return f"A mechanism file, with what may be in it:\n\n{example}\n\nShipped mechanisms:\n\n{names}"
+    return f"{text}\n\nShipped mechanisms:\n\n{names}"
 
 
 async def _run(words: Sequence[str], folder: str | None) -> tuple[int, str, str]:

@@ -28,8 +28,7 @@ Examples:
   compoundkin study press.toml -o press-study --workers 2
   compoundkin study press.toml --greatest ram.stroke --best 5
   compoundkin study press.toml -o press-study --format json > press.json
-  compoundkin study four-bar:60,20,50,40 --free crank.B.x=18:22 \
-      --output rocker.angle.stroke --count 1000000
+  compoundkin study crank-rocker --free crank.B.x=1.8:2.2 --count 1000000
 """
 )
 @click.argument("file", metavar="FILE", type=click.Path())

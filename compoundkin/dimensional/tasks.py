@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.arguments import checked, planar_numbers, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr, count_phrase, short_repr
-from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.base.errors import InvalidInput, Problem, nearest, suggestion
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.validation import PRINTABLE, is_name
 
@@ -605,7 +605,9 @@ _KINDS: Mapping[str, _TaskOfFile] = {
     "stroke": _TaskOfFile(stroke, ("length",), ("time_ratio", "linkage", "offset")),
     "dwell": _TaskOfFile(dwell, ("swing", "dwells"), ("tolerance",)),
 }
-_CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer")
+# The keys of each kind, and those of conditions.
+KEYS: Mapping[str, tuple[str, ...]] = {kind: (*one.needed, *one.optional) for kind, one in _KINDS.items()}
+CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer")
 
 
 def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:
@@ -620,14 +622,16 @@ def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:
     if document.get("format") != FORMAT:
         raise InvalidInput(Problem("format", "it is no known version of the format", f"write format = {FORMAT}"))
     if not isinstance(kind, str) or kind not in _KINDS:
-        raise InvalidInput(Problem("task", f"{short_repr(kind)} is no task", f"one of {', '.join(_KINDS)}"))
+        known = list(_KINDS)
+        near = f"{suggestion(kind, known)} " if nearest(kind, known) else ""
+        raise InvalidInput(Problem("task", f"{short_repr(kind)} is no task", f"{near}one of {', '.join(known)}"))
     make, needed, optional = _KINDS[kind]
     given = {key: value for key, value in document.items() if key not in ("format", "task", "conditions")}
     _known("", given, (*needed, *optional))
     said = document.get("conditions", {})
     if not isinstance(said, Mapping):
         raise InvalidInput(Problem("conditions", "it is no table", "write [conditions], then a line for each"))
-    _known("conditions.", said, _CONDITIONS)
+    _known("conditions.", said, CONDITIONS)
     conditions = dict(said)
     if "transmission" in conditions:
         conditions["transmission"] = _radians("conditions.transmission", conditions["transmission"])

@@ -259,7 +259,12 @@ def _items_without(mechanism: Mechanism, names: Sequence[str]) -> tuple[Item, ..
     unknown = [name for name in names if name not in named | letters]
     if unknown:
         known = sorted(filter(None, named)) + sorted(letters)
-        raise UnknownName([Problem(n, "there is nothing of this name", suggestion(str(n), known)) for n in unknown])
+        raise UnknownName(
+            [
+                Problem(n, "there is nothing of this name", _points_of(mechanism, n) or suggestion(str(n), known))
+                for n in unknown
+            ]
+        )
     gone = set(names)
     left: list[Item] = []
     for item in mechanism.items:
@@ -277,6 +282,12 @@ def _items_without(mechanism: Mechanism, names: Sequence[str]) -> tuple[Item, ..
     left = [item for item in left if not isinstance(item, Drawn)] + ([Drawn(places)] if places else [])
     owners = {getattr(item, "name", "") for item in left} | letters_left
     return tuple(item for item in left if not isinstance(item, Expectation) or _owners_of(item) <= owners)
+
+
+def _points_of(mechanism: Mechanism, letter: str) -> str:
+    """Return the remedy for the letter of a pin, which links have by their points; nothing for any other name."""
+    owners = [f"{link}.{letter}" for link in mechanism.carriers.get(letter, ())]
+    return f"{letter} is a point of links: {' or '.join(owners)}" if owners else ""
 
 
 def _links_of(item: Item) -> set[str]:

@@ -17,20 +17,7 @@ from compoundkin.cli import VERBS, cli, shell
 from compoundkin.files import dumps, load, shipped_mechanisms
 from compoundkin.files.shipped_mechanisms import path
 from tests import catalog
-
-FOUR_BAR = """
-format = 1
-title = "Four-bar"
-[links.frame]
-points = { A = [0, 0], D = [WIDTH, 0] }
-[links.crank]
-points = { A = [0, 0], B = [1, 0] }
-[links.coupler]
-points = { B = [0, 0], C = [3, 0] }
-[links.rocker]
-points = { D = [0, 0], C = [3, 0] }
-"""
-DRIVE = '[[drives]]\nlink = "crank"\n'
+from tests.support import DRIVE, FOUR_BAR
 
 Run = Callable[..., Result]
 
@@ -44,20 +31,20 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
 
 @pytest.fixture
 def broken(tmp_path: Path) -> str:
-    (tmp_path / "broken.toml").write_text(FOUR_BAR.replace("WIDTH", "6.5") + DRIVE)
+    (tmp_path / "broken.toml").write_text(FOUR_BAR.replace("[4, 0]", "[6.5, 0]"))
     return "broken.toml"
 
 
 @pytest.fixture
 def undriven(tmp_path: Path) -> str:
-    (tmp_path / "undriven.toml").write_text(FOUR_BAR.replace("WIDTH", "4"))
+    (tmp_path / "undriven.toml").write_text(FOUR_BAR.removesuffix(DRIVE))
     return "undriven.toml"
 
 
 @pytest.fixture
 def wrong(tmp_path: Path) -> str:
     expected = '[[expected]]\nat = { crank = 0 }\nquantity = "rocker.angle"\nvalue = 1\ntolerance = 0.1\n'
-    (tmp_path / "wrong.toml").write_text(FOUR_BAR.replace("WIDTH", "4") + DRIVE + expected)
+    (tmp_path / "wrong.toml").write_text(FOUR_BAR + expected)
     return "wrong.toml"
 
 
@@ -190,7 +177,7 @@ def test_report_over_a_part_of_the_range(run: Run) -> None:
 
 
 def test_report_of_a_design(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "sweep.toml").write_text(FOUR_BAR.replace("WIDTH", "[[4], [4.5]]") + DRIVE)
+    (tmp_path / "sweep.toml").write_text(FOUR_BAR.replace("[4, 0]", "[[[4], [4.5]], 0]"))
     assert "Shown is design 1 of 2" in run("report", "sweep.toml", "--design", "1").stdout
     result = run("report", "sweep.toml", "--design", "2")
     assert (result.exit_code, result.stdout) == (2, "")
@@ -304,7 +291,7 @@ def test_tables_in_every_format_say_the_same(run: Run, tmp_path: Path) -> None:
 
 
 def test_a_table_of_designs_has_their_index(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "sweep.toml").write_text(FOUR_BAR.replace("WIDTH", "[[4], [4.5]]") + DRIVE)
+    (tmp_path / "sweep.toml").write_text(FOUR_BAR.replace("[4, 0]", "[[[4], [4.5]], 0]"))
     for outputs in ((), ("--output", "rocker")):
         found = rows(run("solve", "sweep.toml", "--at", "0,90", *outputs).stdout)
         assert [row["design"] for row in found] == ["0", "0", "1", "1"]
@@ -455,7 +442,9 @@ def test_mistakes_are_explained(run: Run, tmp_path: Path, args: tuple[str, ...],
 
 
 def test_all_problems_of_a_file_are_listed(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "bad.toml").write_text(FOUR_BAR.replace("WIDTH", '"x"') + '[[drives]]\nlink = "crnk"\n')
+    (tmp_path / "bad.toml").write_text(
+        FOUR_BAR.replace("[4, 0]", '["x", 0]').replace('link = "crank"', 'link = "crnk"')
+    )
     error = run("report", "bad.toml").stderr
     assert error.startswith("Error: bad.toml")
     assert "links.frame.points.D" in error

@@ -21,24 +21,10 @@ import pytest
 import compoundkin as ck
 from compoundkin.cli import mcp as server_module
 from compoundkin.files.mechanism_files import loads
+from tests.support import FOUR_BAR
 
 anyio = pytest.importorskip("anyio")
 mcp = pytest.importorskip("mcp")
-
-FOUR_BAR = """\
-format = 1
-title = "Four-bar"
-[links.frame]
-points = { A = [0, 0], D = [4, 0] }
-[links.crank]
-points = { A = [0, 0], B = [1, 0] }
-[links.coupler]
-points = { B = [0, 0], C = [3.5, 0] }
-[links.rocker]
-points = { D = [0, 0], C = [3, 0] }
-[[drives]]
-link = "crank"
-"""
 
 
 def asked(*calls: tuple[str, dict[str, Any]], target: Any = None) -> list[Any]:
@@ -61,7 +47,7 @@ def text(result: Any) -> str:
     return "\n".join(part.text for part in result.content if part.type == "text")
 
 
-def test_a_client_sees_six_tools_with_strict_schemas() -> None:
+def test_a_client_sees_seven_tools_with_strict_schemas() -> None:
     from jsonschema import Draft202012Validator
 
     async def listed() -> Any:
@@ -69,7 +55,9 @@ def test_a_client_sees_six_tools_with_strict_schemas() -> None:
             return (await client.list_tools()).tools
 
     found = in_thread(listed)
-    assert [tool.name for tool in found] == ["describe", "solve", "report", "optimise", "forces", "draw"]
+    assert [tool.name for tool in found] == [
+        *("describe", "solve", "report", "optimise", "forces", "draw", "synthesise")
+    ]
     for tool in found:
         Draft202012Validator.check_schema(tool.input_schema)
         assert tool.input_schema["additionalProperties"] is False
@@ -105,7 +93,7 @@ def test_reports_forces_and_better_dimensions() -> None:
     assert "mobility 1" in text(described)
     assert "crank" in text(forces)
     crank = tomllib.loads(better.content[-1].text)["links"]["crank"]["points"]["B"][0]
-    ends = [np.arccos((9 + 16 - (3.5 + side * crank) ** 2) / 24) for side in (1, -1)]
+    ends = [np.arccos((9 + 16 - (3 + side * crank) ** 2) / 24) for side in (1, -1)]
     assert np.degrees(ends[0] - ends[1]) == pytest.approx(50, abs=1e-6)
 
 
@@ -116,6 +104,24 @@ def test_a_picture_is_an_image() -> None:
     picture = image.open(io.BytesIO(base64.b64decode(part.data)))
     assert (picture.format, part.mime_type) == ("PNG", "image/png")
     assert min(picture.size) > 300
+
+
+def test_mechanisms_for_a_task_are_found_drawn_and_sent() -> None:
+    """Each of the mechanisms that are sent has the body at the places of the poses, apart as they are."""
+    poses = [[2.0, 2.5, 53.1], [1.82, 4.1, 24.8], [-0.47, 3.42, 26.1], [-1.33, 1.34, 45.9], [-0.22, 0.46, 71.4]]
+    document = {"format": 1, "task": "poses", "link": "plate", "poses": poses}
+    found, explained = asked(("synthesise", {"task": document, "picture": True, "best": 2}), ("synthesise", {}))
+    assert not found.is_error
+    assert [part.type for part in found.content] == ["text", "text", "image", "text", "text"]
+    for part in found.content[-2:]:
+        mechanism = loads(part.text)
+        motion = ck.solve(mechanism)
+        link, places = motion.links["plate"], np.array([complex(x, y) for x, y, _ in poses])
+        far = np.abs(link.origin.position[:, None] - places) + np.abs(
+            np.exp(1j * link.angle)[:, None] - np.exp(1j * np.deg2rad([angle for *_, angle in poses]))
+        )
+        assert far.min(axis=0).max() < 0.2  # its own range passes near each pose
+    assert 'task = "poses"' in text(explained)
 
 
 @pytest.mark.parametrize(
@@ -132,6 +138,9 @@ def test_a_picture_is_an_image() -> None:
         ("optimise", {"mechanism": "six-bar", "free": {"crank.D.x": [1]}}, "arguments.free"),
         ("solve", {"mechanism": "six-bar", "outputs": ["bar\0"]}, "cannot be passed on"),
         ("solved", {}, "did you mean 'solve'?"),
+        ("synthesise", {"task": "/etc/passwd"}, "this is not TOML"),
+        ("synthesise", {"task": {"format": 1, "task": "path", "points": [[0, 0]]}}, "arguments.task"),
+        ("synthesise", {"task": 'format = 1\ntask = "path"'}, "did you mean 'points'?"),
     ],
 )
 def test_what_is_wrong_is_told_and_no_file_is_read(name: str, given: dict[str, Any], said: str) -> None:

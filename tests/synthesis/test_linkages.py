@@ -189,12 +189,12 @@ def test_a_specification_does_wherever_a_file_does(tmp_path: Path) -> None:
 
 
 def test_names_are_known_as_python_spells_them_and_with_a_slip() -> None:
-    for name in ("four_bar", "Four-Bar", " four-bar "):
+    for name in ("four_bar", "Four-Bar", " four-bar ", "fourbar", "4-bar"):
         made = linkage_of(f"{name}:60,20,50,40")
         assert made is not None
         assert made.title == "Four-bar linkage"
     with pytest.raises(UnknownName, match="did you mean 'five-bar'"):
-        linkage_of("fivebar:60,20,50,40,20")
+        linkage_of("fivve-bar:60,20,50,40,20")
     for other in ("C:/drafts/press.toml", "https://example.org/?mech=1", "press.toml:1", "four-bar"):
         assert linkage_of(other) is None
 
