@@ -22,6 +22,7 @@ from typing import Any
 import click
 
 from compoundkin.base.errors import missing_extra
+from compoundkin.base.suffixes import suffix_for
 
 # A call may take so many seconds; a mechanism may have so many characters, a reply as many.
 SECONDS, MOST_TEXT = 60.0, 200_000
@@ -380,7 +381,7 @@ def _file(kind: str, mechanism: str | Mapping[str, Any], folder: Path) -> str:
             else f"{Path(mechanism).name or 'mechanism'}".replace(".", "-")
         )
     text = mechanism if isinstance(mechanism, str) else json.dumps(mechanism)
-    name = f"{kind}.json" if text.lstrip().startswith("{") else f"{kind}.toml"
+    name = f"{kind}{suffix_for('mechanism', 'json' if text.lstrip().startswith('{') else 'toml')}"
     (folder / name).write_text(text, encoding="utf-8")
     return name
 

@@ -227,6 +227,10 @@ def link(name: str, *letters: str, **points: Any) -> Link:
     >>> link("crank", "E", "D").is_drawn
     True
     """
+    if "length" in points:
+        first, second = (*letters, "A", "B")[:2] if len(letters) == 2 else ("A", "B")
+        what, shown = "a link has no length of its own: its points say it", short_repr(points["length"])
+        raise InvalidMechanism(Problem(f"links.{name}", what, f'write link("{name}", {first}=0, {second}={shown})'))
     both = [letter for letter in letters if letter in points]
     if both or (letters and points) or len(set(letters)) < len(letters):
         what = "points are given twice, or partly as drawn"
