@@ -9,15 +9,18 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import compoundkin as ck
 from compoundkin.cli import cli
+from compoundkin.files import loads
 
 DOCS = Path(__file__).parents[1] / "docs"
 READERS = ["for-students.md", "for-engineers.md", "for-programmers.md"]
+TASKS = "first-tasks.md"
 
 
 @pytest.mark.parametrize(
@@ -53,7 +56,7 @@ def test_the_page_on_synthesis_prints_what_it_shows(capsys: pytest.CaptureFixtur
         assert capsys.readouterr().out == shown
 
 
-@pytest.mark.parametrize("page", READERS)
+@pytest.mark.parametrize("page", [*READERS, TASKS])
 def test_ten_minutes_of_a_reader_are_true(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -174,3 +177,24 @@ def test_the_paper_cites_what_its_bibliography_has() -> None:
     text, bibliography = ((paper / name).read_text("utf-8") for name in ("paper.md", "paper.bib"))
     assert set(re.findall(r"@(\w+)", text)) == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.MULTILINE))
     assert all((paper / picture).is_file() for picture in re.findall(r"\]\((\w+\.png)\)", text))
+
+
+def test_the_first_tasks_have_files_that_work_and_commands_that_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each file is solved as it stands; the words of each command are read, what they do is tested verb by verb."""
+    monkeypatch.chdir(tmp_path)
+    text = (DOCS / TASKS).read_text("utf-8")
+    press, triad, swapped = map(loads, re.findall(r"```toml\n(.*?)```", text, re.DOTALL))
+    assert [len(one.links) for one in (press, triad, swapped)] == [6, 6, 4]
+    assert all(ck.solve(one).assembled.all() for one in (press, triad, swapped))
+    assert [group.class_ for group in ck.decompose(triad).groups] == [3]
+    side = np.sqrt(20**2 + 30**2)  # of the plate: its third corner from both others
+    assert f"{side:.2f}" in text
+    commands = [line for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL) for line in block.splitlines()]
+    assert len(commands) > 20
+    for line in commands:
+        verb, *words = shlex.split(line, comments=True)[1:]
+        command = cli.get_command(click.Context(cli), verb)
+        assert command is not None, line
+        command.make_context(verb, words)  # raises UsageError for what there is not

@@ -94,7 +94,9 @@ def test_verbs_in_american_spelling_are_the_same(run: Run, verb: str) -> None:
         (("report", "hoist"), "hydraulic-crane"),
         (("report", "press"), "geared-press, toggle-press, toggle-press-loaded, wedge-press"),
         (("catalog", "show", "crane"), "in the catalog: hydraulic-crane"),
-        (("new", "class-iii-six-bar"), "compoundkin catalog copy class-iii-six-bar"),
+        (("new", "class-iii-six-bar"), "compoundkin new mine.toml --from class-iii-six-bar"),
+        (("new", "triad"), "compoundkin new mine.toml --from class-iii-six-bar"),
+        (("synthesise", "six-bar"), "compoundkin new task writes one"),
         (("tolerance", FOUR_BAR, "--tolerance", "AB=0.1"), "did you mean 'crank.B.x'?"),
         (("tolerance", FOUR_BAR, "--tolerance", "rocker=0.1"), "did you mean 'rocker.C.x'?"),
         (("export", "six-bar", "-o", "a.pmks"), "give --to pmks"),
@@ -107,6 +109,18 @@ def test_what_is_meant_is_said(run: Run, args: tuple[str, ...], said: str) -> No
     assert result.exit_code == 2
     assert said in " ".join(result.stderr.split())
     assert "Traceback" not in result.stderr
+
+
+def test_a_pin_is_no_value_to_set(run: Run) -> None:
+    Path("mine.toml").write_text(MINE)
+    assert "take A out of crank's points" in run("set", "mine.toml", "A=slide").stderr
+
+
+def test_a_shipped_mechanism_is_one_to_start_from(run: Run) -> None:
+    assert run("new", "mine.toml", "--from", "hydraulic-crane").exit_code == 0
+    assert ck.load("mine.toml") == ck.load("hydraulic-crane")
+    assert "in the catalog: hydraulic-crane" in run("new", "other.toml", "--from", "crane").stderr
+    assert not Path("other.toml").exists()
 
 
 def test_words_of_the_catalog_are_found(run: Run) -> None:
@@ -251,9 +265,16 @@ def linkage() -> Any:
         (lambda: ck.solve(linkage()).to_csv, "compoundkin.save(motion"),
         (lambda: ck.characteristics(ck.solve(linkage())).transmission_angle, "did you mean 'groups'?"),
         (lambda: linkage().without("D"), "D is a point of links: frame.D or rocker.D"),
-        (lambda: linkage().replace("D", ck.slide("rocker", "frame")), "D is a point of links: frame.D or rocker.D"),
+        (
+            lambda: linkage().replace("D", ck.slide("rocker", on="frame", through="D")),
+            "D is a point of links: frame.D or rocker.D",
+        ),
         (lambda: ck.link("crank", "A", "B", length=20), 'write link("crank", A=0, B=20)'),
-        (lambda: ck.bar, "did you mean compoundkin.link?"),
+        (lambda: ck.bar, "compoundkin.link?"),
+        (
+            lambda: ck.tolerance(linkage(), {"crank.B": 0.1}, "rocker.angle.stroke")["rocker.angle.stroke"].percentile,
+            "percentiles=(5, 95)",
+        ),
         (lambda: linkage().draw, "compoundkin.draw(mechanism)"),
         (lambda: linkage().solve, "compoundkin.solve(mechanism)"),
         (lambda: ck.load(FOUR_BAR), "compoundkin.linkages.four_bar(60,20,50,40)"),

@@ -192,6 +192,7 @@ base fixed: ground frame
 4bar fourbarlinkage crankrocker: four-bar four_bar
 crankslider piston slidercrankmechanism: slider-crank slider_crank
 hoist jib lift: hydraulic-crane scissor-lift-loaded
+triad classiii: class-iii-six-bar
 cylinder: hydraulic-crane oscillating-cylinder
 # other programs
 solidworks autocad cad step inventor catia: dxf

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.cli.shell import put, say
 
 TEMPLATE = """\
@@ -119,22 +119,24 @@ Examples:
   compoundkin new --list
   compoundkin new study -o variants.toml
   compoundkin new task -o points.toml
-  compoundkin catalog copy hydraulic-crane mine.toml
+  compoundkin new crane.toml --from hydraulic-crane
 """,
 )
 @click.argument("words", nargs=-1, metavar="[PATH | LINKAGE NAME=VALUE ...]")
 @click.option("-o", "--to-file", "path", type=click.Path(), metavar="PATH", help="Where to write it.")
 @click.option("--list", "listed", is_flag=True, help="List the linkages with what they take.")
+@click.option("--from", "source", metavar="NAME", help="Start from a shipped mechanism: its file, comments and all.")
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
-def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool) -> int:
+def command(words: tuple[str, ...], path: str | None, listed: bool, source: str | None, force: bool) -> int:
     """Write a commented mechanism file, to be changed into your own.
 
     Without a linkage it has a four-bar to start from. With one it is that linkage by its lengths, angles in degrees.
     The same words do wherever a FILE is expected: compoundkin report four-bar:60,20,50,40. `study` and `task` are files
-    of many designs, and of what a mechanism shall do; to start from a shipped mechanism, copy it from the catalog.
+    of many designs, and of what a mechanism shall do.
     """
     from compoundkin.base.suffixes import suffix_for, suffix_of
     from compoundkin.cli.file_options import write_new
+    from compoundkin.files.shipped_mechanisms import path as shipped_path
 
     if listed:
         put(linkage_list())
@@ -151,6 +153,7 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, force: bool)
         raise InvalidInput(Problem(str(target), "only TOML files have comments", "choose a name that ends in .toml"))
     text = linkage_file(name, given, target) if is_linkage and not document else starting_file(target)
     text = document.replace("@FILE@", target.name) or text
+    text = shipped_path(source).read_text(encoding="utf-8") if source else text
     write_new(target, text.encode("utf-8"), force)
     how = "compute" if document else "see"
     say(f"Wrote {target}; {how} it with: compoundkin {verb} {shlex.quote(str(target))}")
@@ -176,11 +179,12 @@ def linkage_list() -> str:
 def linkage_file(name: str, given: tuple[str, ...], target: Path) -> str:
     """Return the text of the file of a linkage, with what its numbers mean. Raises InvalidInput, UnknownName."""
     from compoundkin.files import dumps
-    from compoundkin.files.shipped_mechanisms import shipped
-    from compoundkin.synthesis.linkages import is_linkage, kind_named
+    from compoundkin.files.shipped_mechanisms import titles
+    from compoundkin.synthesis.linkages import kind_named, kinds
 
-    if name in shipped() and not is_linkage(f"{name}:"):
-        raise UnknownName(Problem(name, "it is in the catalog", f"compoundkin catalog copy {name} mine.toml"))
+    if not nearest(name, [one.name for one in kinds()]) and (found := titles(name)):
+        remedy = f"the catalog has {', '.join([*found][:6])}: compoundkin new mine.toml --from {next(iter(found))}"
+        raise UnknownName(Problem(name, "there is no such linkage", remedy))
     kind = kind_named(name)
     mechanism = kind.written(given)
     typed = " ".join(" ".join(given).split())

@@ -113,6 +113,11 @@ def _with_value(text: str, name: str, value: str, syntax: Syntax, where: str) ->
     """Return a text with one value replaced, where that and nothing else changes what the text says."""
     whole = parsed(text, syntax, where)
     places = _places(whole)
+    pinned = [link for link, own in whole.get("links", {}).items() if name in own.get("points", ())]
+    if len(pinned) > 1 and not re.fullmatch(r"\s*[-+.\d].*", value):
+        what = f"it is the pin of {' and '.join(pinned)}, no value"
+        how = f"take {name} out of {pinned[-1]}'s points in the file and write [[slides]], or another pair"
+        raise UnknownName(Problem(name, what, how))
     if name not in places:
         raise UnknownName(Problem(name, "there is no such value in the file", _meant(name, whole, places)))
     *way, last = places[name]

@@ -173,7 +173,8 @@ def _syntax(path: str | os.PathLike[str], kind: Kind) -> Syntax:
     syntax = SUFFIXES[kind].get(suffix_of(path))
     if syntax is None:
         known = " or ".join(SUFFIXES[kind])
-        raise unreadable(path, "the name does not tell the format", f"{kind} files end in {known}")
+        start = "" if kind == "mechanism" else f"; compoundkin new {kind} writes one to start from"
+        raise unreadable(path, "the name does not tell the format", f"{kind} files end in {known}{start}")
     return known_syntax(syntax)
 
 

@@ -204,7 +204,9 @@ def names_meant(motion: HasQuantities, name: str) -> list[str]:
     """
     owner, dot, word = name.rpartition(".")
     known_owner = owner in known_owners(motion)
-    if dot and not known_owner:
+    # what says itself why it has none keeps its reason
+    explained = any(word in DERIVED[kind] and owner in getattr(motion, kind) for kind in CATALOGUE)
+    if dot and (explained or not known_owner):
         return []
     owners = _beside(motion, owner) if known_owner else known_owners(motion)
     known = list(dict.fromkeys(word for kind in CATALOGUE for word in (*CATALOGUE[kind], *DERIVED[kind])))

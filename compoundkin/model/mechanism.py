@@ -176,7 +176,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture, ExplainsAttributes):
         >>> sorted(guided.pins), [pair.name for pair in guided.written_pairs]
         ([], ['crank/frame'])
         """
-        for name in (item for item in items if isinstance(item, str)):
+        for name in [str(item) for item in items if isinstance(item, str)]:
             remedy = _points_of(self, name) or "write what takes its place"
             what = "a name is no part of a mechanism; what is taken out is said by without="
             raise InvalidMechanism(Problem(name, what, remedy))

@@ -43,7 +43,7 @@ def assert_it_ran(path: Path) -> None:
 
 
 def test_there_are_notebooks() -> None:
-    first = ["better-press", "compound-mechanism", "design-sweep", "first-mechanism", "forces"]
+    first = ["better-press", "compound-mechanism", "design-sweep", "exercises", "first-mechanism", "forces"]
     assert [path.stem for path in NOTEBOOKS] == [*first, "wiper-tolerances"]
 
 

@@ -35,6 +35,9 @@ class OutputTolerance(ShortRepr, ExplainsAttributes):
     sources: tuple[ErrorSource, ...]
     sample: SampledOutput
 
+    def _instead(self, name: str) -> str:
+        return "write tolerance(..., percentiles=(5, 95)), then .sample.percentiles" if "percentile" in name else ""
+
     @property
     def is_course(self) -> bool:
         """Whether it has a value at every pose."""
