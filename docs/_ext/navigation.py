@@ -13,7 +13,8 @@ from sphinx.application import Sphinx
 # Headings and the pages below them; a pattern stands for the pages that are there.
 CONTENTS: dict[str, tuple[str, ...]] = {
     "Start": (
-        *("Quickstart <self>", "first-tasks", "for-students", "for-engineers", "for-programmers", "notebooks/first*", "notebooks/*"),
+        *("Quickstart <self>", "first-tasks", "for-students", "for-engineers", "for-programmers"),
+        *("notebooks/first*", "notebooks/*"),
         *("linkages", "press-drive", "outlines", "loads", "machine", "simulation", "exercises"),
     ),
     "Use it": (
