@@ -55,3 +55,29 @@ def test_text_in_the_sketch_is_legible_at_any_width(made: Any, opened: Any) -> N
         view.wait_for_timeout(100)
         assert view.value(SMALLEST) >= 11.99
         assert view.value(f"{player}.svg.clientWidth / {player}.root.clientWidth") > 0.99
+
+
+MEASURED = """() => {
+  const [player] = compoundkin.players, own = SVGGraphicsElement.prototype.getScreenCTM;
+  let asked = 0;
+  SVGGraphicsElement.prototype.getScreenCTM = function () { asked++; return own.call(this); };
+  const known = () => [asked, player.letters.pixels / own.call(player.svg).a];
+  const found = [];
+  for (const change of [() => {}, () => player.viewBox.by(2), () => player.viewBox.fit()]) {
+    change();
+    player.show((player.pose + 1) % player.poses);
+    asked = 0;
+    for (let k = 0; k < 10; k++) player.show((player.pose + 1) % player.poses);
+    found.push(known());
+  }
+  SVGGraphicsElement.prototype.getScreenCTM = own;
+  return found;
+}"""
+
+
+def test_the_view_is_measured_where_it_changes_and_not_at_each_pose(made: Any, opened: Any) -> None:
+    """To ask at each pose how large a picture unit is makes the browser lay the page out anew each time."""
+    view = opened(made("six-bar"))
+    for asked, ratio in view.value(MEASURED):
+        assert asked == 0
+        assert ratio == pytest.approx(1.0, rel=1e-6)

@@ -38,7 +38,8 @@
       this.player = player;
       this.boxes = player.parts.map((part) => (part.classList.contains("name") ? box(part) : null));
       this.size = 1; // so many times as large as they are drawn
-      this.pixels = 1; // for a picture unit
+      this.pixels = 1; // for a picture unit, as fit() or the first pose after a change of the view finds it
+      this.isMeasured = false; // the browser lays the page out anew to measure: once for a view, not at each pose
       this.whole = 1; // the same where the picture is not enlarged
       this.leaders = page.drawn("g", { class: "leaders", "aria-hidden": "true", "data-tool": "" });
       player.svg.querySelector(".parts").before(this.leaders);
@@ -48,9 +49,9 @@
       const { svg, base } = this.player;
       const grown = ({ width, height }) => {
         const pixels = Math.min(svg.clientWidth / width, svg.clientHeight / height);
-        if (pixels > 0) this.pixels = pixels;
         return pixels > 0 ? Math.min(LARGEST, Math.max(Math.min(1, LARGE / pixels), LEGIBLE / pixels)) : 1;
       };
+      this.isMeasured = false;
       const size = grown(svg.viewBox.baseVal), whole = grown(base);
       if (Math.abs(size - this.size) < SAME && Math.abs(whole - this.whole) < SAME) return false;
       Object.assign(this, { size, whole });
@@ -64,7 +65,7 @@
     // `seen` are the places on paper of all points, by letter; of those that are not known there is none
     place(numbers, seen) {
       const { player, boxes } = this, points = Object.entries(seen), put = [];
-      this.pixels = player.svg.getScreenCTM()?.a || this.pixels;
+      this.measure();
       boxes.forEach((name, index) => {
         const own = name?.letter && seen[name.letter];
         if (!own || player.parts[index].classList.contains("missing")) return name?.letter && this.lead(name, null);
@@ -85,6 +86,12 @@
         put.push({ x: best.x, y: best.y, wide: by * name.wide, tall: by * name.tall });
         this.write(name, best, own, by);
       });
+    }
+    // until the view changes: its size, what is seen of the picture
+    measure() {
+      if (this.isMeasured) return;
+      this.pixels = this.player.svg.getScreenCTM()?.a || this.pixels;
+      this.isMeasured = true;
     }
     // what a place of a letter costs
     offer({ name, own, by, others, numbers, put }, dx, dy, ring, line = 0, turned = 0) {

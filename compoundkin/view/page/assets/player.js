@@ -272,6 +272,7 @@
     seeRoom() {
       const { left, top, width, height } = this.room;
       this.svg.setAttribute("viewBox", `${left} ${top} ${width} ${height}`);
+      this.letters.isMeasured = false;
     }
     // names are fitted to the size of the picture on the screen
     fit() {

@@ -29,6 +29,7 @@
       this.middle = this.middle.map((at) => Math.min(Math.max(at, edge), 1 - edge));
       const { left, top, wide, high } = this.seen;
       this.svg.setAttribute("viewBox", `${left} ${top} ${wide} ${high}`);
+      this.player.letters.isMeasured = false;
       this.svg.classList.toggle("zoomed", this.zoom > 1);
       if (this.controls) [this.in.disabled, this.out.disabled, this.whole.disabled] = [this.zoom >= MOST, this.zoom <= 1, this.zoom <= 1];
     }
