@@ -1,4 +1,4 @@
-"""Tasks of dimensional synthesis, for `synthesise`: poses, points, both, functions, swings, strokes.
+"""Tasks of dimensional synthesis, for `synthesise`: poses, points, both, curves, functions, swings, strokes.
 
 >>> import compoundkin as ck
 >>> ck.tasks.points([(0, 0), (1, 0.5), (2, 0)]).in_words
@@ -7,6 +7,6 @@
 
 from __future__ import annotations
 
-from compoundkin.dimensional.tasks import dwell, function, mixed, output, points, poses, stroke, swing
+from compoundkin.dimensional.tasks import curve, dwell, function, mixed, output, points, poses, stroke, swing
 
-__all__ = ["dwell", "function", "mixed", "output", "points", "poses", "stroke", "swing"]
+__all__ = ["curve", "dwell", "function", "mixed", "output", "points", "poses", "stroke", "swing"]

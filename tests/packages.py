@@ -43,6 +43,7 @@ CALLS = {
     "study": ["study study.toml"],
     "optimise": ["optimise crank-rocker --free crank.B.x=1:3 --least rocker.angle.stroke --starts 2"],
     "synthesise": ["synthesise task.toml"],
+    "trace": ["trace curve.csv --links 4"],
     "exercise": ["exercise four-bar:60,20,50,40 --count 2 -o exercises"],
     "mcp": ["mcp"],
     "tolerance": ["tolerance crank-rocker --tolerance crank.B=0.05"],
@@ -72,6 +73,7 @@ task = "swing"
 angle = 40
 time_ratio = 1.25
 """
+CURVE = "".join(f"{x},{y}\n" for x, y in [(0, 0), (4, -1), (7, 0), (8, 2), (7, 4), (4, 5), (1, 4), (-1, 2), (0, 0)])
 
 
 def build(folder: Path) -> Path:
@@ -114,7 +116,7 @@ def tried(name: str, requirements: list[str], folder: Path) -> Iterator[str]:
     command = str(programs / "compoundkin")
     run([command, "report", "six-bar"], work)
     yield f"{name}: installed, first report after {time.perf_counter() - start:.0f} s"
-    for file, text in (("study.toml", STUDY), ("task.toml", TASK)):
+    for file, text in (("study.toml", STUDY), ("task.toml", TASK), ("curve.csv", CURVE)):
         (work / file).write_text(text, encoding="utf-8")
     run([command, "export", "crank-rocker", "-o", "crank-rocker.linkage2"], work)
     for call in (call for calls in CALLS.values() for call in calls):

@@ -326,6 +326,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "tasks.poses": {"link": "plate", "poses": FIVE_POSES[:3], "velocities": {0: (1, 0, 0.5)},
                         "accelerations": {0: (0, 1, 0.5)}, "tolerance": 0.0},
         "tasks.points": {"points": [(0, 0), (1, 0), (2, 1)], "at": (0.0, 0.5, 1.0), "tolerance": 0.0},
+        "tasks.curve": {"points": np.exp(1j * np.arange(12)), "closed": None, "links": 6, "tolerance": 0.0},
         "tasks.mixed": {"poses": FIVE_POSES[:2], "points": [(4, 4)], "link": "coupler", "tolerance": 0.0},
         "tasks.function": {"pairs": [(0, 0), (0.5, 0.3), (1, 0.8)], "between": None, "inputs": None,
                            "outputs": None, "count": 3, "linkage": "four-bar", "absolute": False, "tolerance": 0.0},

@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 from compoundkin.base.errors import InvalidInput, Problem
 
 Kind: TypeAlias = Literal[
-    "mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study", "task"
+    "mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study", "task", "curve"
 ]
 # Of each kind its suffixes and the format that each means; messages name the first suffix of a format.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
@@ -33,12 +33,13 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
         "program": {".c": "c", ".py": "python", ".js": "javascript", ".m": "matlab"},
         "study": {".toml": "toml", ".json": "json"},
         "task": {".toml": "toml", ".json": "json"},
+        "curve": {".csv": "csv", ".svg": "svg", ".dxf": "dxf"},
     }
 )
 # Kinds that messages call "mechanism files", not "mechanisms".
 _OF_FILES: tuple[Kind, ...] = ("mechanism", "study", "task")
 # Kinds that are written by hand and read, and not saved: messages of what can be saved leave them out.
-READ_ALONE: tuple[Kind, ...] = ("task",)
+READ_ALONE: tuple[Kind, ...] = ("task", "curve")
 # What a name without a suffix means, where there is one form that everybody expects.
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 

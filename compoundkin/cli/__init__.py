@@ -39,6 +39,7 @@ VERBS = {
     "optimise": "Better dimensions: what shall be least, what may change, what must hold.",
     "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
     "synthesise": "Mechanisms that do a task: poses, points, functions, swings, strokes.",
+    "trace": "Linkages whose point follows a drawn curve: CSV, SVG, DXF.",
     "exercise": "Variants of an exercise: sheets, worked solutions, a table of answers.",
     "import": "A mechanism out of another program's file or link: PMKS+, Linkage, pyslvs and others.",
     "export": "A file for another program, or a function in C, Python, JavaScript or MATLAB.",
@@ -65,6 +66,7 @@ _COMMANDS = {
     "import": ("import_command", "command"),
     "open": ("report", "open_command"),
     "size": ("forces", "size_command"),
+    "trace": ("synthesise", "trace_command"),
     "singularities": ("circuits", "singularities_command"),
 }
 

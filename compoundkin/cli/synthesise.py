@@ -1,11 +1,16 @@
-"""`compoundkin synthesise`: mechanisms that do what a task file says."""
+"""`compoundkin synthesise` and `trace`: mechanisms that do what a task file says, or follow a drawn curve."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import click
 
 from compoundkin.cli.file_options import check_place, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED, say, working
+
+if TYPE_CHECKING:
+    from compoundkin.dimensional.synthesis import Answer
 
 
 @click.command(
@@ -18,7 +23,7 @@ Examples:
 \b
 A task file:
   format = 1
-  task = "poses"           # or points, mixed, function, swing, stroke, dwell
+  task = "poses"           # or points, mixed, curve, function, swing, stroke, dwell
   link = "plate"
   poses = [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]]   # x, y, degrees
   [conditions]
@@ -37,24 +42,77 @@ def command(file: str, folder: str | None, picture: str | None, form: str | None
 
     Angles are degrees in the file. Exit code 3: no mechanism without a defect.
     """
-    from compoundkin.base.display import count_phrase
-    from compoundkin.base.suffixes import file_format, suffix_for
     from compoundkin.dimensional.synthesis import synthesise
     from compoundkin.dimensional.tasks import read_task
-    from compoundkin.files import save
-    from compoundkin.files.atomic import check_folder_is_new, new_folder
     from compoundkin.files.parsed_document import parsed, text_of
-    from compoundkin.view.report.synthesis_report import synthesis_report
+
+    _check_places(picture, folder)
+    text, syntax = text_of(file, "task")
+    task, conditions = read_task(parsed(text, syntax, file, "task"))
+    with working("synthesising"):
+        answer = synthesise(task, **conditions)
+    return _put(answer, folder, picture, form, path)
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin trace curve.csv
+  compoundkin trace letter.svg --links 4 --save found --picture found.svg
+  compoundkin trace path.dxf --transmission 30 --format html -o found.html
+"""
+)
+@click.argument("file", type=click.Path(), metavar="CURVE")
+@click.option("--links", type=int, default=6, show_default=True, help="At most so many links: 4 or 6.")
+@click.option("--open/--closed", "is_open", default=None, help="What the curve is, where its ends do not tell.")
+@click.option("--transmission", type=float, default=0.0, metavar="DEGREES", help="The least transmission angle.")
+@click.option(
+    "--save", "folder", type=click.Path(), metavar="FOLDER", help="Write each mechanism as a file there: a new folder."
+)
+@click.option("--picture", "picture", type=click.Path(), metavar="FILE", help="Draw the mechanisms side by side.")
+@report_options
+def trace_command(
+    file: str, links: int, is_open: bool | None, transmission: float, folder: str | None, picture: str | None,
+    form: str | None, path: str | None,
+) -> int:  # fmt: skip
+    """Find linkages whose point follows a drawn curve, of a .csv, .svg or .dxf file.
+
+    A curve whose ends meet is traced once in a turn of the driver, an open one forth and back. Exit code 3: no
+    mechanism without a defect.
+    """
+    from math import radians
+
+    from compoundkin.dimensional.synthesis import synthesise
+    from compoundkin.dimensional.tasks import curve
+    from compoundkin.files.curve_files import read_curve
+
+    _check_places(picture, folder)
+    task = curve(read_curve(file), closed=None if is_open is None else not is_open, links=links)
+    with working("tracing"):
+        answer = synthesise(task, transmission=radians(transmission))
+    return _put(answer, folder, picture, form, path)
+
+
+def _check_places(picture: str | None, folder: str | None) -> None:
+    """Check where results will be written, before anything is solved. Raises InvalidInput."""
+    from compoundkin.base.suffixes import file_format
+    from compoundkin.files.atomic import check_folder_is_new
 
     if picture is not None:
         file_format("picture", picture)
         check_place(picture)
     if folder is not None:
         check_folder_is_new(folder)
-    text, syntax = text_of(file, "task")
-    task, conditions = read_task(parsed(text, syntax, file, "task"))
-    with working("synthesising"):
-        answer = synthesise(task, **conditions)
+
+
+def _put(answer: Answer, folder: str | None, picture: str | None, form: str | None, path: str | None) -> int:
+    """Write the report, the picture and the mechanisms of an answer; return the exit code."""
+    from compoundkin.base.display import count_phrase
+    from compoundkin.base.suffixes import suffix_for
+    from compoundkin.files import save
+    from compoundkin.files.atomic import new_folder
+    from compoundkin.view.report.synthesis_report import synthesis_report
+
     put_report(synthesis_report(answer), form, path)
     if picture is not None:
         answer.draw().save(picture)

@@ -14,6 +14,7 @@ from compoundkin.base.display import DisplaysHtml, aligned_text, count_phrase, d
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.added_dyads import added_output, double_dwell
+from compoundkin.dimensional.curve_fitting import traced
 from compoundkin.dimensional.defects import ACCURACY as ACCURACY_DEFECT
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
 from compoundkin.dimensional.function_generation import (
@@ -36,6 +37,7 @@ from compoundkin.dimensional.tasks import (
     COMPACTNESS,
     TRANSMISSION,
     Conditions,
+    CurveTask,
     DwellTask,
     FunctionTask,
     MixedTask,
@@ -75,6 +77,7 @@ METHODS: tuple[Method, ...] = (
     Method(DwellTask, double_dwell),
     Method(StrokeTask, stroke_linkage),
     Method(PointTask, path_points),
+    Method(CurveTask, traced),
     Method(
         MixedTask, mixed_positions, lambda task: len(task.z) in (2, 3, 4) and 2 * len(task.z) + len(task.points) == 10
     ),
@@ -174,8 +177,10 @@ def synthesise(
     if method is None:
         raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
     candidates = method.run(asked)
-    # functions are approached anyhow; of any other task without a tolerance nothing is allowed
-    tolerance = np.inf if isinstance(task, FunctionTask | DwellTask) and not task.tolerance else task.tolerance
+    # functions and curves are approached anyhow; of any other task without a tolerance nothing is allowed
+    tolerance = (
+        np.inf if isinstance(task, FunctionTask | DwellTask | CurveTask) and not task.tolerance else task.tolerance
+    )
     found = [judged(one, asked.conditions, tolerance) for one in candidates]
     bad = [one for one in found if isinstance(one, Rejection)]
     good = sorted((one for one in found if isinstance(one, SolvedLinkage)), key=_rank(asked.conditions.prefer))
@@ -206,7 +211,9 @@ def _nearest(rejected: list[Rejection]) -> str:
 def _usual(task: Task) -> str:
     """Return what answers are ranked by where nothing is said: accuracy where they approach a task."""
     approached = isinstance(task, FunctionTask) and (task.whole is not None or len(task.inputs) > 5)
-    approached = approached or isinstance(task, DwellTask) or (isinstance(task, PoseTask) and task.count > 5)
+    approached = (
+        approached or isinstance(task, DwellTask | CurveTask) or (isinstance(task, PoseTask) and task.count > 5)
+    )
     return ACCURACY if approached else TRANSMISSION
 
 

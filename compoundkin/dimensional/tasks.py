@@ -20,6 +20,8 @@ from compoundkin.model.validation import PRINTABLE, is_name
 
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
+# A drawn curve has so many points at least; its ends meet within this part of its extent.
+FEWEST_OF_CURVE, MEETING = 8, 0.05
 # A function's error is seen at so many places of its range.
 WHOLE = 181
 # Preferences among answers, by what they are ranked.
@@ -172,6 +174,34 @@ class TimedPointTask(Task):
     def in_words(self) -> str:
         """The task as a phrase."""
         return f"a point through {count_phrase(len(self.points), 'point')} at given crank angles"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CurveTask(Task):
+    """A point traces a curve through `points`, complex (n,), with any timing, of a linkage of at most so many `links`.
+
+    A curve that is not `closed` is traced forth and back.
+    """
+
+    points: Number
+    closed: bool
+    links: int
+
+    @property
+    def closed_curve(self) -> Number:
+        """The points, and where the curve is open those on the way back."""
+        return self.points if self.closed else np.concatenate([self.points, self.points[-2:0:-1]])
+
+    @property
+    def radius(self) -> float:
+        """The root of the mean square of the points' distances from their mean."""
+        return float(np.sqrt(np.mean(np.abs(self.closed_curve - self.closed_curve.mean()) ** 2)))
+
+    @property
+    def in_words(self) -> str:
+        """The task as a phrase."""
+        how = "a closed curve" if self.closed else "a curve, forth and back,"
+        return f"a point along {how} of {count_phrase(len(self.points), 'point')}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -331,6 +361,32 @@ def points(points: Any, *, at: Any = None, tolerance: float = 0.0) -> PointTask 
     _different("at", "crank angle", np.exp(1j * angles)[:, None])
     _finite("at", angles)
     return TimedPointTask(found, angles, tolerance=_tolerance(tolerance))
+
+
+@checked
+def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance: float = 0.0) -> CurveTask:
+    """Return the task of a point that traces a drawn curve; the nearest linkages are found, and how far off they are.
+
+    `points` are complex or (n, 2), eight or more along the curve, joined by straight lines. It is `closed` if its ends
+    meet, within a twentieth of its extent, unless this is said; an open one is traced forth and back. Linkages have
+    four or six `links`; their driver turns fully. Within a `tolerance`, the mean distance, or as near as they come.
+    Raises InvalidInput for too few points, or other numbers of links.
+
+    >>> curve(np.exp(1j * np.linspace(0, 6, 30)) * (2 + np.cos(np.linspace(0, 12, 30)))).in_words
+    'a point along a curve, forth and back, of 30 points'
+    """
+    found = places("points", points)
+    if links not in (4, 6):
+        raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4 or 6"))
+    found = found[np.append(True, np.abs(np.diff(found)) > 0.0)]
+    if len(found) < FEWEST_OF_CURVE:
+        what = f"{count_phrase(len(found), 'different point')} say little of a curve"
+        raise InvalidInput(Problem("points", what, f"give {FEWEST_OF_CURVE} or more, or take the task `points`"))
+    meets = abs(found[-1] - found[0]) <= MEETING * extent(found)
+    is_closed = bool(meets if closed is None else closed)
+    if is_closed and found[-1] == found[0]:
+        found = found[:-1]
+    return CurveTask(found, is_closed, links, tolerance=_tolerance(tolerance))
 
 
 @checked
@@ -600,6 +656,7 @@ _KINDS: Mapping[str, _TaskOfFile] = {
     "poses": _TaskOfFile(poses, ("link", "poses"), ("velocities", "accelerations", "tolerance")),
     "points": _TaskOfFile(points, ("points",), ("at", "tolerance")),
     "mixed": _TaskOfFile(mixed, ("poses", "points"), ("link", "tolerance")),
+    "curve": _TaskOfFile(curve, ("points",), ("closed", "links", "tolerance")),
     "function": _TaskOfFile(function, ("pairs",), ("linkage", "absolute", "tolerance")),
     "swing": _TaskOfFile(swing, ("angle",), ("time_ratio",)),
     "stroke": _TaskOfFile(stroke, ("length",), ("time_ratio", "linkage", "offset")),

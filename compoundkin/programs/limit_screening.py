@@ -171,6 +171,11 @@ class LimitScreening(ShortRepr):
         self._clear.explore(numbers, partial(self._margins, numbers), min(self._spacings.values()))
         return near, np.any(early < NEAR, axis=1)
 
+    def clear(self, numbers: CallNumbers, least: Number) -> Number:
+        """Return which designs (designs,) need no screening, and are what the program computes."""
+        near, early = self.needed(numbers, least)
+        return np.broadcast_to(~(near | early), numbers.extent[:1])
+
     def _margins(self, numbers: CallNumbers, name: str, values: Number) -> Number:
         """Return the least margins of groups at values of the only driver, (1 or designs, values)."""
         return self._computed(self._poses, _resting(numbers, {name: values}))[1]

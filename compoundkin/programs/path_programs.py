@@ -209,6 +209,15 @@ class PathPrograms(ShortRepr):
         least = outputs.pop(LEAST)
         return self.checked_values(numbers, list(outputs.values()), least)
 
+    def unscreened(self, call: Call) -> tuple[dict[str, Number], Number]:
+        """Return all outputs as they are computed, and which designs (designs,) are clear of limits.
+
+        The others are not solved: their outputs mean nothing.
+        """
+        numbers = self.numbers(call)
+        outputs = self.program(numbers).run(numbers, 1, {})
+        return outputs, self.limits.clear(numbers, outputs.pop(LEAST))
+
     def solve(self, numbers: CallNumbers, order: int | None = None) -> Description:
         """Solve the designs of some numbers instead of computing them, in its configuration."""
         values = {one: one.value_in(numbers.given) for one in self.dimensions}

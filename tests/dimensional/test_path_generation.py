@@ -31,6 +31,17 @@ def planted(count: int, seed: int) -> tuple[complex, complex, np.ndarray, np.nda
     return a, b, joint + u * complex(1.2, 0.9), u
 
 
+def planted_curve(seed: int) -> np.ndarray:
+    """The whole coupler curve of a random crank-rocker."""
+    rng = np.random.default_rng(seed)
+    crank, coupler, rocker, ground = 1.0, 3.0 + rng.random(), 2.6 + rng.random(), 3.0 + rng.random()
+    joint = crank * np.exp(1j * np.linspace(0, 2 * np.pi, 200, endpoint=False))
+    way = ground - joint
+    along = (np.abs(way) ** 2 + coupler**2 - rocker**2) / (2 * np.abs(way))
+    other = joint + way / np.abs(way) * (along + 1j * np.sqrt(coupler**2 - along**2))
+    return joint + (other - joint) / coupler * complex(1.2, 0.9)
+
+
 def reaches(answer: Any, points: np.ndarray) -> float:
     """How far the best paths of all mechanisms stay from the points at most: solved anew, between poses too."""
     worst = 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import Problem, UnknownName, suggestion
-from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, check_threads
+from compoundkin.programs.call_numbers import Call, CallNumbers, ReadyProgram, check_threads
 from compoundkin.programs.derivatives.differentiation import forward
 from compoundkin.programs.derivatives.law_slopes import law_slope_parts, slope_inputs
 from compoundkin.programs.derivatives.solved_inputs import solved_inputs
@@ -137,6 +137,12 @@ class SensitivityPrograms(ShortRepr):
             missing = np.isnan(values.found[key[0]])
             slopes[key] = np.where(missing, np.nan, slope) if missing.any() else slope
         return PathSensitivities(values, slopes)
+
+    def unscreened(self, call: Call) -> tuple[dict[SlopeName, Number], Number]:
+        """Return outputs and slopes as they are computed, and which designs (designs,) are clear of limits."""
+        numbers = self.path.numbers(call, with_slopes=True)
+        slopes = self._run(numbers, _directions(numbers), False, 1)
+        return slopes, self.path.limits.clear(numbers, slopes.pop(_MARGIN))
 
     def _run(
         self, numbers: CallNumbers, by: Mapping[str, InputNumber], is_seeded: bool, threads: int

@@ -12,7 +12,7 @@ from compoundkin.dimensional.cognates import Cognates
 from compoundkin.dimensional.dyads import BurmesterCurve, Dyads
 from compoundkin.dimensional.linkages import POINT
 from compoundkin.dimensional.synthesis import Answer
-from compoundkin.dimensional.tasks import MixedTask, PointTask, PoseTask, Task, TimedPointTask, extent
+from compoundkin.dimensional.tasks import CurveTask, MixedTask, PointTask, PoseTask, Task, TimedPointTask, extent
 from compoundkin.kinematics import Motion
 from compoundkin.view.sketch.kinematic_sketch import by_links, in_layers, layered, point_path, window_on
 from compoundkin.view.sketch.painter import Painter
@@ -127,13 +127,13 @@ def _places_of(task: Task) -> Number:
         return task.z
     if isinstance(task, MixedTask):
         return np.concatenate([task.z, task.points])
-    if isinstance(task, PointTask | TimedPointTask):
+    if isinstance(task, PointTask | TimedPointTask | CurveTask):
         return task.points
     return np.zeros(0, complex)
 
 
 def marks_of(task: Task, window: Window) -> list[Shape]:
-    """Return the poses of a task as numbered pairs of axes, its points as numbered dots."""
+    """Return the poses of a task as numbered pairs of axes, its points as numbered dots, its curve."""
     shapes: list[Shape] = []
     poses = zip(task.z, task.u, strict=True) if isinstance(task, PoseTask | MixedTask) else ()
     count = 0
@@ -142,6 +142,9 @@ def marks_of(task: Task, window: Window) -> list[Shape]:
         shapes += [Polyline((at, at + AXIS * way), "drive"), Polyline((at, at - 1j * AXIS * way), "edge")]
         shapes.append(Text(at + AXIS * 1.5 * way, str(count + 1), "note"))
         count += 1
+    if isinstance(task, CurveTask):
+        along = window.at(np.append(task.points, task.points[:1]) if task.closed else task.points)
+        shapes.append(Polyline(tuple(map(complex, along)), "dashed2"))
     points = task.points if isinstance(task, PointTask | TimedPointTask | MixedTask) else ()
     for place in points:
         at = complex(window.at(complex(place)))

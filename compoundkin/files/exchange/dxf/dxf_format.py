@@ -29,6 +29,7 @@ from compoundkin.base.errors import (
     missing_extra,
     suggestion,
 )
+from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.exchange.chords import short_chords
 from compoundkin.files.exchange.contract import Exported, Writable, flag, letters_of, positive
 from compoundkin.files.exchange.dxf.link_contours import Contour, LinkPart, link_parts
@@ -350,7 +351,7 @@ class DxfFormat(Writable):
     name: ClassVar[str] = "dxf"
     program: ClassVar[str] = "CAD programs, laser cutters"
     title: ClassVar[str] = "DXF drawing"
-    suffix: ClassVar[str] = ".dxf"
+    suffix: ClassVar[str] = suffix_for("curve", "dxf")
     options: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
             "curves": "points whose paths are drawn, by commas; if left out those of outputs and of one link alone",

@@ -1,0 +1,267 @@
+"""Curves that are drawn: the atlas of coupler curves, descriptors, refinement, and files that curves are read from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+import compoundkin as ck
+from compoundkin.cli import cli
+from compoundkin.dimensional import coupler_atlas as atlases
+from compoundkin.dimensional import curve_fitting
+from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, likeness, mean_distance, resampled
+from compoundkin.dimensional.curve_chains import CurveChain, curve_chains
+from compoundkin.errors import InvalidInput
+from compoundkin.files.curve_files import read_curve
+from tests.dimensional.test_path_generation import planted_curve
+
+EGG = np.exp(1j * np.linspace(0, 2 * np.pi, 60, endpoint=False))
+EGG = 2 * EGG + 0.7 / EGG + 0.3 * EGG**2 + 5 + 3j
+
+
+@pytest.fixture(autouse=True)
+def _small_atlas(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(curve_fitting, "DESIGNS", 4_000)
+    monkeypatch.setattr(curve_fitting, "STARTED", 24)
+    monkeypatch.setattr(curve_fitting, "GIVEN", 3)
+
+
+def plain_distance(curve: np.ndarray, target: np.ndarray) -> float:
+    """The mean nearest distance both ways, in the target's RMS radius: every pair of many places."""
+
+    def even(z: np.ndarray) -> np.ndarray:
+        z = np.append(z, z[:1])
+        s = np.append(0.0, np.cumsum(np.abs(np.diff(z))))
+        at = np.arange(3000) / 3000 * s[-1]
+        return np.interp(at, s, z.real) + 1j * np.interp(at, s, z.imag)
+
+    one, two = even(curve), even(target)
+    gaps = np.abs(one[:, None] - two)
+    radius = np.sqrt(np.mean(np.abs(two - two.mean()) ** 2))
+    return float((gaps.min(axis=0).mean() + gaps.min(axis=1).mean()) / radius)
+
+
+def test_the_distance_of_curves_is_that_of_every_pair() -> None:
+    circle = np.exp(1j * np.linspace(0, 2 * np.pi, 400, endpoint=False))
+    assert mean_distance(EGG * 1.1, EGG) == pytest.approx(plain_distance(EGG * 1.1, EGG), rel=0.01)
+    # circles about one centre are their radii's difference apart, counted both ways
+    assert mean_distance(3 * circle + 1, 2 * circle + 1) == pytest.approx(1.0, rel=1e-4)
+
+
+@pytest.mark.parametrize("k", [0, 7, 31])
+def test_likeness_knows_no_turn_size_start_sense_or_mirror(k: int) -> None:
+    own = np.roll(resampled(EGG[None], 64)[0], k) * 3.7 * np.exp(0.4j) + 9
+    wanted = coefficients(EGG[None])[0][0]
+    for curve, is_mirrored in ((own, False), (own[::-1], False), (np.conj(own), True), (np.conj(own)[::-1], True)):
+        found, mirrored = likeness(coefficients(curve[None])[0], wanted)
+        assert found[0] == pytest.approx(1.0, abs=5e-3)
+        # an egg is its own mirror image but for its tilt, which is none here
+        assert mirrored[0] in (is_mirrored, False, True)
+    skew = EGG + 0.5j * np.exp(3j * np.angle(EGG - EGG.mean()))
+    for curve, is_mirrored in ((skew, False), (np.conj(skew), True)):
+        _, mirrored = likeness(coefficients(curve[None])[0], coefficients(skew[None])[0][0])
+        assert mirrored[0] == is_mirrored
+
+
+def test_an_atlas_is_made_again_bitwise_and_its_designs_turn_fully() -> None:
+    made = coupler_atlas.__wrapped__(6, 2400, 3)
+    again = coupler_atlas.__wrapped__(6, 2400, 3)
+    assert len(made) == 2400
+    for one, other in zip(made.designs + made.descriptors, again.designs + again.descriptors, strict=True):
+        np.testing.assert_array_equal(one, other)
+    for chain, designs, descriptors in zip(made.chains, made.designs, made.descriptors, strict=True):
+        motion = solved(chain, designs[7], 360)
+        assert motion.assembled.all(), chain.title
+        curve = np.ravel(motion.points["P"].position)
+        assert likeness(descriptors[[7]], coefficients(curve[None])[0][0])[0][0] > 0.99
+
+
+def solved(chain: CurveChain, design: np.ndarray, poses: int) -> Any:
+    dimensions = {name: value[0, 0] for name, value in chain.dimensions(np.array(design[None], float)).items()}
+    turn = np.arange(poses) * (2 * np.pi / poses)
+    return ck.solve(chain.program.mechanism(dimensions), {"crank": turn}, modes=chain.program.modes, order=0)
+
+
+def test_the_nearest_are_those_of_a_search_through_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = coupler_atlas(6, 6_000)
+    wanted = coefficients(EGG[None])[0][0]
+    monkeypatch.setattr(atlases, "COMPARED", 16)
+    for k, (designs, descriptors) in enumerate(zip(made.designs, made.descriptors, strict=True)):
+        best = next(made._nearest(k, wanted, 1))
+        np.testing.assert_array_equal(best.design, designs[likeness(descriptors, wanted)[0].argmax()])
+    found = made.near(EGG, 30)
+    assert [one.apart for one in found] == sorted(one.apart for one in found)
+    assert len({one.chain.title for one in found}) > 3
+
+
+@pytest.mark.parametrize("chain", curve_chains()[::5], ids=lambda chain: chain.title)
+def test_slopes_are_differences(chain: CurveChain) -> None:
+    designs = chain.designs(np.random.default_rng(2).random((4096, len(chain.numbers))))
+    design = designs[chain.curves(designs, 32)[1]][:1]
+    _, by, by_crank, _ = chain.slopes(design, 32)
+    for k in range(len(chain.numbers)):
+        step = np.zeros(len(chain.numbers))
+        step[k] = 1e-6
+        plain = (chain.curves(design + step, 32)[0] - chain.curves(design - step, 32)[0]) / 2e-6
+        assert np.allclose(by[k], plain, atol=1e-5 * (1 + np.abs(plain).max()))
+    assert by_crank.shape == (1, 32)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_planted_four_bar_is_traced(seed: int) -> None:
+    target = planted_curve(seed)
+    answer = ck.synthesise(ck.tasks.curve(target, links=4))
+    assert len(answer) >= 1
+    for one in answer:
+        path = np.ravel(one.motion.points["P"].position)[:-1]
+        radius = np.sqrt(np.mean(np.abs(target - target.mean()) ** 2))
+        assert one.error == pytest.approx(plain_distance(path, target) * radius / 2, rel=0.1, abs=1e-3 * radius)
+        assert one.turns
+    assert answer[0].error < 0.01 * np.sqrt(np.mean(np.abs(target - target.mean()) ** 2))
+
+
+def test_answers_do_not_depend_on_size_place_or_mirror() -> None:
+    plain = ck.synthesise(ck.tasks.curve(EGG, links=4))
+    moved = ck.synthesise(ck.tasks.curve(1e4 * np.exp(1j) * EGG + 1e5, links=4))
+    assert moved[0].error == pytest.approx(1e4 * plain[0].error, rel=1e-3)
+    mirrored = ck.synthesise(ck.tasks.curve(np.conj(EGG), links=4))
+    assert mirrored[0].error == pytest.approx(plain[0].error, rel=1e-3)
+
+
+@pytest.mark.full
+def test_six_links_trace_better_than_four_which_are_given_too() -> None:
+    answer = ck.synthesise(ck.tasks.curve(EGG))
+    assert {"Four-bar", "Slider-crank"} & {one.candidate.title for one in answer}
+    assert answer[0].candidate.title not in ("Four-bar", "Slider-crank")
+    for one in answer:
+        path = np.ravel(one.motion.points["P"].position)[:-1]
+        assert mean_distance(path, EGG) * 2.0 < 0.3
+
+
+def test_an_open_curve_is_traced_forth_and_back() -> None:
+    s = np.linspace(0, 1, 40)
+    task = ck.tasks.curve(np.exp(2.0j * s) * (1 + 0.2 * s), links=4)
+    assert not task.closed
+    best = ck.synthesise(task)[0]
+    path = np.ravel(best.motion.points["P"].position)
+    assert np.abs(path[:, None] - task.points).min(axis=1).max() < 0.1
+
+
+def test_conditions_hold_for_curves_too() -> None:
+    answer = ck.synthesise(ck.tasks.curve(EGG, links=4), transmission=ck.deg(25))
+    assert all(one.transmission >= ck.deg(25) - 1e-9 for one in answer)
+    assert "transmission" in answer.reasons
+
+
+@pytest.mark.parametrize(
+    ("points", "options", "words"),
+    [
+        (EGG[:5], {}, "say little of a curve"),
+        (EGG, {"links": 5}, "take 4 or 6"),
+        ([1, 2, np.nan, 4, 5, 6, 7, 8, 9], {}, "not finite"),
+        (np.ones(20), {}, "1 different point"),
+    ],
+)
+def test_wrong_curves_say_what_would_do(points: Any, options: Any, words: str) -> None:
+    with pytest.raises(InvalidInput, match=words):
+        ck.tasks.curve(points, **options)
+
+
+# --- files ------------------------------------------------------------------------------------------------------
+
+
+def file_of(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1,2\n3,4\n5,7\n",
+        "x,y\n1,2\n3,4\n5,7\n",
+        "t;x (mm);y (mm)\n0;1;2\n1;3;4\n2;5;7\n",
+        "# by a tracker\nt\tx\ty\n0\t1\t2\n1\t3\t4\n2\t\t\n3\t5\t7\n",
+        "1 2\n3 4\n5 7\n",
+        "x;y\n1,0;2,0\n3,0;4,0\n5,0;7,0\n",
+    ],
+)
+def test_tables_of_points(tmp_path: Path, text: str) -> None:
+    assert read_curve(file_of(tmp_path, "c.csv", text)).tolist() == [1 + 2j, 3 + 4j, 5 + 7j]
+
+
+def test_a_path_of_an_svg(tmp_path: Path) -> None:
+    """Lines, arcs and cubics by what is known of them: y upward, a circle's radius, a parabola's height."""
+    svg = '<svg xmlns="http://www.w3.org/2000/svg"><g transform="translate(10 0) scale(2)">{}</g></svg>'
+    line = read_curve(file_of(tmp_path, "a.svg", svg.format('<path d="m1 1 l3 0 0 4z"/>')))
+    assert np.allclose(line, [12 - 2j, 18 - 2j, 18 - 10j, 12 - 2j])
+    circle = read_curve(file_of(tmp_path, "b.svg", svg.format('<path d="M5 0A5 5 0 0 1-5 0 5 5 0 01 5 0Z"/>')))
+    assert np.allclose(np.abs(circle - 10), 10)
+    assert np.allclose(circle[: len(circle) // 2].imag, -np.abs(circle[: len(circle) // 2].imag))
+    quadratic = read_curve(file_of(tmp_path, "c.svg", svg.format('<path d="M0 0Q1 2 2 0T4 0"/>')))
+    x, y = (quadratic.real - 10) / 2, -quadratic.imag / 2
+    first = x <= 2
+    assert np.allclose(y[first], (2 * x - x**2)[first])
+    assert np.allclose(y[~first], ((x - 2) ** 2 - 2 * (x - 2))[~first])
+    cubic = read_curve(file_of(tmp_path, "d.svg", svg.format('<path d="M0 0C0 1 1 1 1 0S2-1 2 0"/>')))
+    assert np.isclose(cubic.imag.min(), -1.5)
+    assert np.isclose(cubic.imag.max(), 1.5)
+    polygon = read_curve(file_of(tmp_path, "e.svg", svg.format('<polygon points="0,0 1,0 1,1"/>')))
+    assert np.allclose(polygon, [10, 12, 12 - 2j, 10])
+
+
+def test_a_polyline_of_a_dxf(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    document.modelspace().add_lwpolyline([(0, 0), (3, 0), (3, 4)])
+    document.modelspace().add_circle((1, 1), 0.2)
+    document.saveas(tmp_path / "c.dxf")
+    assert np.allclose(read_curve(tmp_path / "c.dxf"), [0, 3, 3 + 4j])
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("c.txt", "1,2", "give one of .csv, .svg, .dxf"),
+        ("c.csv", "1,2,3\n4,5,6\n", "no heading says which are x and y"),
+        ("c.csv", "x,y\n1,2\n3,four\n", "line 3"),
+        ("c.csv", "", "there is no curve in it"),
+        ("c.svg", "<svg", "it is no SVG"),
+        ("c.svg", "<svg><path d='M0 0 L1'/></svg>", "has 1 numbers"),
+        ("c.svg", "<svg><g transform='warp(3)'><path d='M0 0 L1 1'/></g></svg>", "warp"),
+        ("c.svg", "<svg><circle r='3'/></svg>", "there is no curve in it"),
+        ("c.dxf", "no drawing", "it is no DXF drawing"),
+    ],
+)
+def test_wrong_files_of_curves(tmp_path: Path, name: str, text: str, words: str) -> None:
+    with pytest.raises(InvalidInput, match=words):
+        read_curve(file_of(tmp_path, name, text))
+
+
+# --- the verb ---------------------------------------------------------------------------------------------------
+
+
+def run(*args: str) -> Result:
+    return CliRunner().invoke(cli, list(args), standalone_mode=True)
+
+
+def test_the_verb_writes_mechanisms_and_a_picture(tmp_path: Path) -> None:
+    table = file_of(tmp_path, "egg.csv", "".join(f"{z.real},{z.imag}\n" for z in EGG))
+    found, picture = tmp_path / "found", tmp_path / "found.svg"
+    result = run("trace", str(table), "--links", "4", "--save", str(found), "--picture", str(picture))
+    assert result.exit_code == 0, result.output
+    assert "a point along a closed curve of 60 points" in result.stdout
+    assert picture.read_text(encoding="utf-8").startswith("<svg")
+    path = np.ravel(ck.solve(ck.load(found / "1.toml")).points["P"].position)
+    assert plain_distance(path, EGG) < 0.1
+
+
+def test_the_verb_says_what_is_wrong_with_a_file(tmp_path: Path) -> None:
+    result = run("trace", str(tmp_path / "none.csv"))
+    assert result.exit_code == 2
+    assert "cannot be read" in result.output
