@@ -46,6 +46,8 @@ from compoundkin.synthesis.linkage_words import (
 DRAWN = np.pi / 3.0
 # A pose is looked for at so many angles of a crank; a driver that does not turn fully has so many poses.
 TRIED, POSES = 720, 73
+# Links in one line, or lengths whose sums are equal, but for rounding: parts of a length, or of its square.
+FOLDED = 1e-12
 # A scissor lift of more stages takes minutes to solve.
 MOST_STAGES = 100
 
@@ -60,9 +62,10 @@ def _pin(first: complex, one: float, second: complex, two: float, closure: Closu
         return None
     along = (distance**2 + one**2 - two**2) / (2.0 * distance)
     square = one**2 - along**2
-    if square < 0.0:
+    if square < -FOLDED * max(one, distance) ** 2:
         return None
-    return complex(first + way / distance * (along + (1j if closure == "open" else -1j) * np.sqrt(square)))
+    across = np.sqrt(max(square, 0.0))
+    return complex(first + way / distance * (along + (1j if closure == "open" else -1j) * across))
 
 
 Pose: TypeAlias = "dict[str, complex]"
@@ -116,10 +119,10 @@ def _grashof(ground: float, crank: float, coupler: float, rocker: float) -> str:
     lengths = {"ground": ground, "crank": crank, "coupler": coupler, "rocker": rocker}
     shortest, longest = min(lengths, key=lambda k: lengths[k]), max(lengths.values())
     surplus = sum(lengths.values()) - 2.0 * (lengths[shortest] + longest)
+    if abs(surplus) <= FOLDED * longest:
+        return "A change-point linkage: shortest and longest together are as long as the others (Grashof)."
     if surplus < 0.0:
         return "No link turns fully: shortest and longest together are longer than the others (Grashof)."
-    if surplus == 0.0:
-        return "A change-point linkage: shortest and longest together are as long as the others (Grashof)."
     said = {
         "crank": "The crank turns fully, the rocker swings (Grashof).",
         "ground": "Crank and rocker both turn fully: a double crank (Grashof).",

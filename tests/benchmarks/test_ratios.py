@@ -11,6 +11,7 @@ import pytest
 import compoundkin as ck
 from tests.benchmarks import four_bar, six_bar
 from tests.benchmarks.measure import commands, interleaved, ratio
+from tests.dynamics.cases import crank_rocker
 
 MANY = 36_000
 TURN = np.linspace(0.0, 2 * np.pi, MANY)
@@ -149,19 +150,7 @@ def test_ten_seconds_of_a_four_bar_take_little_more_than_their_integration() -> 
     """A tenth of a second on a quiet machine, which is SciPy's own time for as many steps of a formula."""
     from scipy.integrate import solve_ivp
 
-    units = {"length": "m", "mass": "kg", "force": "N"}
-    linkage = ck.Mechanism(
-        "Four-bar",
-        ck.link("frame", O=(0, 0), C=(0.2, 0)),
-        ck.link("crank", O=(0, 0), A=(0.06, 0)),
-        ck.link("coupler", A=(0, 0), B=(0.18, 0)),
-        ck.link("rocker", C=(0, 0), B=(0.12, 0)),
-        ck.drive("crank"),
-        ck.mass("crank", 1.0, at="O", inertia=0.004),
-        ck.mass("coupler", 0.8, at=(0.09, 0), inertia=0.003),
-        ck.mass("rocker", 1.0, at=(0.06, 0), inertia=0.005),
-        units=units,
-    )
+    linkage = crank_rocker()
 
     def simulated() -> float:
         return ck.simulate(linkage, start=(0.0, 20.0), until=10.0).energy.worst

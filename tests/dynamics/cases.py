@@ -318,6 +318,23 @@ def planetary_train(row: Row) -> Case:
     return Case(mechanism, (row,), {"arm": ck.deg([row["arm_deg"]])}, radii["ring"], rates)
 
 
+def crank_rocker(*loads: Any) -> ck.Mechanism:
+    """A crank-rocker of 20 cm with masses, and any loads."""
+    return ck.Mechanism(
+        "Four-bar",
+        ck.link("frame", O=(0, 0), C=(0.2, 0)),
+        ck.link("crank", O=(0, 0), A=(0.06, 0)),
+        ck.link("coupler", A=(0, 0), B=(0.18, 0)),
+        ck.link("rocker", C=(0, 0), B=(0.12, 0)),
+        ck.drive("crank"),
+        ck.mass("crank", 1.0, at="O", inertia=0.004),
+        ck.mass("coupler", 0.8, at=(0.09, 0), inertia=0.003),
+        ck.mass("rocker", 1.0, at=(0.06, 0), inertia=0.005),
+        *loads,
+        units=SI,
+    )
+
+
 CASES: dict[str, Callable[[], Case]] = {
     "sixbar_example_3_4_masses dynamic": lambda: six_bar("dynamic", True),
     "sixbar_example_3_4_masses static": lambda: six_bar("static", False),

@@ -12,26 +12,13 @@ from compoundkin.dynamics.simulation import tabulated_chart
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
-from tests.dynamics.cases import SI
+from tests.dynamics.cases import SI, crank_rocker
 
 
-def four_bar(*loads: Any) -> ck.Mechanism:
+def sprung(*loads: Any) -> ck.Mechanism:
     """A crank and rocker with masses and weights, whose spring has a potential."""
-    return ck.Mechanism(
-        "Four-bar",
-        ck.link("frame", O=(0, 0), C=(0.2, 0)),
-        ck.link("crank", O=(0, 0), A=(0.06, 0)),
-        ck.link("coupler", A=(0, 0), B=(0.18, 0)),
-        ck.link("rocker", C=(0, 0), B=(0.12, 0)),
-        ck.drive("crank"),
-        ck.mass("crank", 1.0, at="O", inertia=0.004),
-        ck.mass("coupler", 0.8, at=(0.09, 0), inertia=0.003),
-        ck.mass("rocker", 1.0, at=(0.06, 0), inertia=0.005),
-        ck.gravity(0, -9.81),
-        ck.spring("rocker", "B", to="frame", at="O", stiffness=60.0, free_length=0.1),
-        *loads,
-        units=SI,
-    )
+    spring = ck.spring("rocker", "B", to="frame", at="O", stiffness=60.0, free_length=0.1)
+    return crank_rocker(ck.gravity(0, -9.81), spring, *loads)
 
 
 LOADS = {
@@ -60,7 +47,7 @@ LOADS = {
 
 @pytest.mark.parametrize("kind", LOADS)
 def test_plain_rates_are_those_of_solved_states(kind: str) -> None:
-    mechanism = four_bar(*LOADS[kind])
+    mechanism = sprung(*LOADS[kind])
     chart = chart_of(ck.solve(mechanism, {"crank": [0.3]}), ("crank",), {})
     assert isinstance(chart, TabulatedChart)
     assert (chart.plain_efforts is None) == (kind == "points")
@@ -75,9 +62,9 @@ def test_plain_rates_are_those_of_solved_states(kind: str) -> None:
 
 def test_functions_are_checked_at_every_state() -> None:
     with pytest.raises(ck.errors.InvalidInput, match="not finite"):
-        ck.simulate(four_bar(ck.effort("crank", lambda t: np.where(t < 0.5, 1.0, np.inf))), until=1.0)
+        ck.simulate(sprung(ck.effort("crank", lambda t: np.where(t < 0.5, 1.0, np.inf))), until=1.0)
     with pytest.raises(ck.errors.InvalidInput, match="outside its table"):
-        ck.simulate(four_bar(ck.effort("crank", {"over": "time", "at": [0, 0.5], "values": [0, 1]})), until=1.0)
+        ck.simulate(sprung(ck.effort("crank", {"over": "time", "at": [0, 0.5], "values": [0, 1]})), until=1.0)
 
 
 def test_the_integrator_is_scipys() -> None:
@@ -153,7 +140,7 @@ def test_nothing_is_halved_where_nothing_is_assembled(monkeypatch: pytest.Monkey
         return between(motion, design, places)
 
     monkeypatch.setattr(tabulated_chart, "between", counted)
-    plain = four_bar()
+    plain = sprung()
     items = [item for item in plain.items if item is not plain.drives[0]]
     rocker = ck.Mechanism("By its rocker", *items, ck.drive("rocker"), units=SI)
     chart = chart_of(ck.solve(rocker, {"rocker": [1.9]}), ("rocker",), {})

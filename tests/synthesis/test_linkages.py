@@ -78,6 +78,17 @@ def test_any_four_lengths_move_or_cannot_be_closed(lengths: list[float]) -> None
     assert turns == (surplus > 0 and shortest in (ground, crank))
 
 
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6, 1.0 / 3.0, 0.7])
+def test_change_points_are_known_in_any_unit(scale: float) -> None:
+    """Links that come to lie in one line are not parted by rounding: at no angle the linkage is cut there."""
+    folded = make.four_bar(*(scale * one for one in (60, 20, 50, 10)))
+    assert folded.description.startswith("A change-point linkage")
+    (driver,) = folded.drives
+    # from where coupler and rocker are stretched to where they are so on the other side
+    half = np.arccos((60**2 + 20**2 - 60**2) / (2 * 60 * 20))
+    assert np.ptp(driver.values) == pytest.approx(2 * half, abs=np.deg2rad(1.0))
+
+
 def test_a_crank_that_cannot_turn_moves_over_its_range_and_no_farther() -> None:
     """Its ends by the law of cosines: coupler and rocker in line."""
     ground, crank, coupler, rocker = 50.0, 60.0, 40.0, 45.0
