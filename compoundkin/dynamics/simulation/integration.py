@@ -91,16 +91,7 @@ def integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Pr
 def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
-        n = len(chart.free)
-        longest = course.until if chart.held is None and not chart.closed else course.until / HELD_STEPS
-        y, f = solver.y, solver.f
-        solver.max_step = min(longest, longest_step(chart, y[n : 2 * n], f[n : 2 * n]))
-        solver.h_abs = min(solver.h_abs, solver.max_step)
-        # next to a change point no tolerance is kept that is below the rounding there
-        loosened = max(1.0, min(chart.digits_lost(solver.t, y), LOOSEST) / course.tolerance)
-        solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
-        before = _Begin(solver.t, y, f)
-        _shorten(chart, solver, before, course)
+        before, n = _prepared(chart, solver, course), len(chart.free)
         _step(solver, course)
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
@@ -113,37 +104,60 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
             Step(chart, float(solver.t_old), float(solver.t), _between(solver, before, n), chart.memory)
         )
         passed = _passed(course, _by_ends(before, solver, n))
-        if passed is not None and (passed.state is None or passed.time >= course.until):
-            return None
-        released = _released(chart, course) if passed is None and chart.held is not None else None
-        if released is not None:
-            solver = _begun(chart, course.last, released, course)
-        elif passed is None:
-            y = solver.y
-            chart.accept(solver.t, y[:n], y[n : 2 * n])
-            settled = chart.settled(solver.t, y)
-            if settled is not y:
-                solver.y, solver.f = settled, solver.fun(solver.t, settled)
-            changed = _changed(chart, solver, course)
-            if changed is not None:
-                chart, state = changed
-                solver = _begun(chart, course.last, state, course)
-            elif solver.status == "finished" and course.last < course.until and not course.ended:
-                solver = _behind_break(chart, solver, course)
-            elif solver.status == "running" and course.changes_method(chart, solver):
-                solver = _begun(chart, course.last, solver.y, course)
+        if passed is None:
+            chart, solver = _after_step(chart, solver, course)
+        elif passed.state is None or passed.time >= course.until:
+            return
         else:
-            assert passed.state is not None
-            state = passed.state
-            if passed.released is not None or passed.landing is not None:
-                chart, state = _next_phase(chart, passed, state, course)
-                n = len(chart.free)
-            # friction changes, and nothing else: steps are as long as before
-            paced = solver.h_abs if passed.is_smooth and not solver.is_implicit else passed.step
-            solver = _begun(chart, passed.time, state, course, paced)
+            chart, solver = _after_event(chart, solver, passed, passed.state, course)
         if progress is not None:
             progress(int(PARTS * course.last / course.until), PARTS)
-    return None
+
+
+def _prepared(chart: Chart, solver: Any, course: SimulatedCourse) -> _Begin:
+    """Bound the next step of a solver and set its tolerance; return where it begins."""
+    n, y, f = len(chart.free), solver.y, solver.f
+    longest = course.until if chart.held is None and not chart.closed else course.until / HELD_STEPS
+    solver.max_step = min(longest, longest_step(chart, y[n : 2 * n], f[n : 2 * n]))
+    solver.h_abs = min(solver.h_abs, solver.max_step)
+    # next to a change point no tolerance is kept that is below the rounding there
+    loosened = max(1.0, min(chart.digits_lost(solver.t, y), LOOSEST) / course.tolerance)
+    solver.rtol, solver.atol = loosened * course.tolerance, loosened * solver.allowed
+    before = _Begin(solver.t, y, f)
+    _shorten(chart, solver, before, course)
+    return before
+
+
+def _after_step(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart, Any]:
+    """Return the chart and the solver with which it goes on after a step in which nothing happened."""
+    released = _released(chart, course) if chart.held is not None else None
+    if released is not None:
+        return chart, _begun(chart, course.last, released, course)
+    n, y = len(chart.free), solver.y
+    chart.accept(solver.t, y[:n], y[n : 2 * n])
+    settled = chart.settled(solver.t, y)
+    if settled is not y:
+        solver.y, solver.f = settled, solver.fun(solver.t, settled)
+    changed = _changed(chart, solver, course)
+    if changed is not None:
+        chart, state = changed
+        return chart, _begun(chart, course.last, state, course)
+    if solver.status == "finished" and course.last < course.until and not course.ended:
+        return chart, _behind_break(chart, solver, course)
+    if solver.status == "running" and course.changes_method(chart, solver):
+        return chart, _begun(chart, course.last, solver.y, course)
+    return chart, solver
+
+
+def _after_event(
+    chart: Chart, solver: Any, passed: _Interruption, state: Number, course: SimulatedCourse
+) -> tuple[Chart, Any]:
+    """Return the chart and the solver with which it goes on from the state that an event leaves."""
+    if passed.released is not None or passed.landing is not None:
+        chart, state = _next_phase(chart, passed, state, course)
+    # friction changes, and nothing else: steps are as long as before
+    paced = solver.h_abs if passed.is_smooth and not solver.is_implicit else passed.step
+    return chart, _begun(chart, passed.time, state, course, paced)
 
 
 def _step(solver: Any, course: SimulatedCourse) -> None:
