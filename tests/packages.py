@@ -46,6 +46,7 @@ CALLS = {
     "trace": ["trace curve.csv --links 4"],
     "exercise": ["exercise four-bar:60,20,50,40 --count 2 -o exercises"],
     "mcp": ["mcp"],
+    "studio": ["studio --help"],
     "tolerance": ["tolerance crank-rocker --tolerance crank.B=0.05"],
     "import": ["import crank-rocker.linkage2 -o imported.toml"],
     "export": ["export crank-rocker -o again.linkage2", "export crank-rocker --to dxf -o crank-rocker.dxf"],

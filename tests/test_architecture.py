@@ -49,6 +49,7 @@ ROOMS = (
     ("studies",),
     ("dimensional",),
     ("view",),
+    ("studio",),
     ("cli",),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(ROOMS) for room in rooms}

@@ -44,11 +44,12 @@ def test_its_version_is_that_of_the_package(unpacked):
 
 
 def test_it_holds_what_pages_are_made_with(unpacked):
-    assets = ROOT / "compoundkin" / "view" / "page" / "assets"
-    held = {path.relative_to(assets) for path in assets.rglob("*") if path.is_file()}
-    assert held
-    there = unpacked / "compoundkin" / "view" / "page" / "assets"
-    assert {path.relative_to(there) for path in there.rglob("*") if path.is_file()} == held
+    for room in ("view/page", "studio"):
+        assets = ROOT / "compoundkin" / room / "assets"
+        held = {path.relative_to(assets) for path in assets.rglob("*") if path.is_file()}
+        assert held
+        there = unpacked / "compoundkin" / room / "assets"
+        assert {path.relative_to(there) for path in there.rglob("*") if path.is_file()} == held
     page = run(unpacked, "-m", "compoundkin", "report", "crank-rocker", "--format", "html").stdout
     assert page.startswith("<!DOCTYPE html>")
 

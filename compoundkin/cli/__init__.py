@@ -48,6 +48,7 @@ VERBS = {
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",
     "new": "Write a commented mechanism file to start from.",
+    "studio": "Draw a mechanism in the browser; it moves at once.",
     "mcp": "A server for programs that talk (Model Context Protocol).",
     "set": "Change values in a mechanism file; its comments stay.",
     "schema": "The JSON Schema of mechanism files and of study files.",

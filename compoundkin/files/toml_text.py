@@ -1,11 +1,24 @@
-"""A document as TOML that is pleasant to read. Short tables and lists on one line, one order of keys."""
+"""A document as TOML that is pleasant to read, and a text of TOML changed only where another document wants it.
+
+Short tables and lists stand on one line, in one order of keys. A text that is changed keeps its comments and layout:
+what is another value, more or gone is replaced, inserted or cut out at its place, and the text is read again.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+import json
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import SequenceMatcher
+from typing import Any, TypeAlias
+
+from compoundkin.base.errors import InvalidInput, Problem
 
 WIDTH = 100
+# The keys, and the places in arrays, that lead to a value.
+Way: TypeAlias = tuple[str | int, ...]
 
 
 def dumps(document: Mapping[str, Any]) -> str:
@@ -111,3 +124,322 @@ def _key(key: str) -> str:
     import tomli_w
 
     return tomli_w.dumps({key: 0})[: -len(" = 0\n")]
+
+
+def changed(text: str, wanted: Mapping[str, Any]) -> str:
+    """Return a text of TOML changed so that it says what is wanted; its comments and layout stay.
+
+    Raises InvalidInput where the text alone cannot be changed so, such as a table written in several places.
+
+    >>> print(changed("a = 1  # one\\nb = [1, 2]\\n", {"a": 2, "b": [1, 2, 3]}))
+    a = 2  # one
+    b = [1, 2, 3]
+    <BLANKLINE>
+    """
+    old = tomllib.loads(text)
+    if old == wanted:
+        return text
+    # a last line without an end would take in what is written after it
+    text += "" if not text or text.endswith("\n") else "\n"
+    try:
+        edits = _Edits(text, _Layout(text))
+        edits.table((), old, wanted)
+        new = edits.applied()
+        if tomllib.loads(new) == wanted:
+            return new
+    except (_NoPlace, tomllib.TOMLDecodeError):
+        pass
+    raise InvalidInput(Problem("", "this cannot be written into the text at its place", "change it in the text"))
+
+
+class _NoPlace(Exception):
+    """What shall change has no place in the text that is known."""
+
+
+@dataclass
+class _Section:
+    """A heading with its lines: from the heading to the end of its last line that holds something."""
+
+    way: Way
+    start: int
+    end: int
+
+
+_BLANK = re.compile(r"(?:[ \t\r\n]+|\#[^\n]*)*")
+_SPACES = re.compile(r"[ \t]*")
+_KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'""")
+_STRING = re.compile(
+    r'"""(?:[^\\]|\\.)*?"{3,5}' + r"|'{3}[\s\S]*?'{3,5}" + r'|"(?:[^"\\\n]|\\.)*"' + r"|'[^'\n]*'", re.DOTALL
+)
+_BARE = re.compile(r"[^\s,\]}#]+(?: \d[^\s,\]}#]*)?")
+_HEAD = re.compile(r"\[\[?")
+
+
+@dataclass
+class _Layout:
+    """Where the sections, entries and values of a text of TOML stand: by their ways, from where to where."""
+
+    text: str
+    sections: list[_Section] = field(default_factory=list)
+    entries: dict[Way, tuple[int, int]] = field(default_factory=dict)
+    values: dict[Way, tuple[int, int]] = field(default_factory=dict)
+    own: dict[Way, Way] = field(default_factory=dict)  # of an entry in lines: the way of its section
+
+    def __post_init__(self) -> None:
+        at, section, counts = 0, _Section((), 0, 0), dict[Way, int]()
+        self.sections.append(section)
+        while (at := self._skip(_BLANK, at)) < len(self.text):
+            head = _HEAD.match(self.text, at)
+            if head:
+                keys, stop = self._keys(self._skip(_SPACES, head.end()))
+                way = self._resolved(keys, counts)
+                if len(head[0]) == 2:
+                    counts[way] = counts.get(way, -1) + 1
+                    way = (*way, counts[way])
+                section = _Section(way, self.line_start(at), self.line_end(stop))
+                self.sections.append(section)
+            else:
+                stop = self._entry(at, section.way, section.way)
+                section.end = self.line_end(stop)
+            at = self.line_end(stop)
+
+    def _resolved(self, keys: Way, counts: Mapping[Way, int]) -> Way:
+        """Return the way of a heading, in the last of the tables of arrays that it leads through."""
+        way: Way = ()
+        for k, key in enumerate(keys):
+            way = (*way, key)
+            if way in counts and k < len(keys) - 1:
+                way = (*way, counts[way])
+        return way
+
+    def _skip(self, what: re.Pattern[str], at: int) -> int:
+        found = what.match(self.text, at)
+        return found.end() if found else at
+
+    def skip_blank(self, at: int) -> int:
+        """Return where the next thing after a place stands that is neither blank nor a comment."""
+        return self._skip(_BLANK, at)
+
+    def line_start(self, at: int) -> int:
+        """Return where the line of a place begins."""
+        return self.text.rfind("\n", 0, at) + 1
+
+    def line_end(self, at: int) -> int:
+        """Return where the line of a place ends, its sign of the end included."""
+        end = self.text.find("\n", at)
+        return len(self.text) if end < 0 else end + 1
+
+    def _keys(self, at: int) -> tuple[Way, int]:
+        found: list[str] = []
+        while True:
+            key = _KEY.match(self.text, at)
+            if key is None:
+                raise _NoPlace
+            written = key[0]
+            found.append(json.loads(written) if written[0] == '"' else written.strip("'"))
+            at = self._skip(_SPACES, key.end())
+            if self.text[at : at + 1] != ".":
+                return tuple(found), at
+            at = self._skip(_SPACES, at + 1)
+
+    def _entry(self, at: int, way: Way, section: Way | None) -> int:
+        """Note a key with its value; return where it ends."""
+        keys, stop = self._keys(at)
+        if self.text[stop : stop + 1] != "=":
+            raise _NoPlace
+        whole = (*way, *keys)
+        end = self._value(self._skip(_SPACES, stop + 1), whole)
+        self.entries[whole] = at, end
+        if section is not None:
+            self.own[whole] = section
+        return end
+
+    def _value(self, at: int, way: Way) -> int:
+        sign = self.text[at : at + 1]
+        if sign in ("[", "{"):
+            end = self._several(at + 1, way, "]" if sign == "[" else "}")
+        else:
+            found = (_STRING if sign in ("'", '"') else _BARE).match(self.text, at)
+            if found is None:
+                raise _NoPlace
+            end = found.end()
+        self.values[way] = at, end
+        return end
+
+    def _several(self, at: int, way: Way, closing: str) -> int:
+        """Note the items of an array or the entries of an inline table; return where it ends."""
+        count = 0
+        while True:
+            at = self._skip(_BLANK, at)
+            if self.text[at : at + 1] == closing:
+                return at + 1
+            if closing == "}":
+                at = self._entry(at, way, None)
+            else:
+                start = at
+                at = self._value(at, (*way, count))
+                self.entries[*way, count] = start, at
+                count += 1
+            at = self._skip(_BLANK, at)
+            if self.text[at : at + 1] == ",":
+                at += 1
+            elif self.text[at : at + 1] != closing:
+                raise _NoPlace
+
+
+@dataclass
+class _Edits:
+    """What of a text is replaced: from where, to where, by what."""
+
+    text: str
+    layout: _Layout
+    splices: list[tuple[int, int, str]] = field(default_factory=list)
+
+    def applied(self) -> str:
+        """Return the text with all replacements; of several at one place those noted first stand first."""
+        new, last = [], 0
+        for start, end, by in sorted(self.splices, key=lambda one: one[:2]):
+            if start < last:
+                # cut out already, with what held it
+                if by:
+                    raise _NoPlace
+                last = max(last, end)
+                continue
+            new += [self.text[last:start], by]
+            last = end
+        return "".join([*new, self.text[last:]])
+
+    def table(self, way: Way, old: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
+        """Change a table: keys that are gone, those that have other values, new ones."""
+        gone = [key for key in old if key not in wanted]
+        new = {key: value for key, value in wanted.items() if key not in old}
+        for key, value in wanted.items():
+            if key in old and old[key] != value:
+                self._change((*way, key), old[key], value)
+        if way in self.layout.values:
+            if gone or new:
+                ways = [(*way, key) for key in gone]
+                self._inside(way, ways, [f"{_key(k)} = {_inline(v)}" for k, v in new.items()])
+            return
+        for key in gone:
+            self._cut((*way, key))
+        for key, value in new.items():
+            self._insert(way, key, value)
+
+    def _change(self, way: Way, old: Any, new: Any) -> None:
+        if isinstance(old, dict) and isinstance(new, dict):
+            self.table(way, old, new)
+        elif isinstance(old, list) and isinstance(new, list) and (way in self.layout.values or _lists_tables(old)):
+            self._list(way, old, new)
+        elif way in self.layout.values:
+            self.splices.append((*self.layout.values[way], _text(new) if isinstance(new, str) else _inline(new)))
+        else:
+            raise _NoPlace
+
+    def _list(self, way: Way, old: list[Any], new: list[Any]) -> None:
+        """Change an array: what is equal in both stays, items between are changed, cut out or inserted."""
+        before, after = ([json.dumps(one, sort_keys=True, default=str) for one in items] for items in (old, new))
+        ways = SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
+        in_line = way in self.layout.values
+        if in_line and not _lists_tables(old) and not any(what == "equal" for what, *_ in ways):
+            self.splices.append((*self.layout.values[way], _inline(new)))
+            return
+        gone: list[Way] = []
+        for what, i, j, k, m in ways:
+            if what == "equal":
+                continue
+            both = min(j - i, m - k)
+            for one in range(both):
+                self._change((*way, i + one), old[i + one], new[k + one])
+            gone += [(*way, one) for one in range(i + both, j)]
+            if k + both < m and in_line:
+                self._inside(way, [], [_inline(one) for one in new[k + both : m]], j)
+            elif k + both < m:
+                self._insert_tables(way, new[k + both : m], j)
+        if gone and in_line:
+            self._inside(way, gone, [])
+        elif gone:
+            for table in gone:
+                self._cut(table)
+
+    def _insert_tables(self, way: Way, tables: Iterable[Any], before: int) -> None:
+        """Insert tables of an array, each with its heading."""
+        beside = (*way, before - 1 if before else 0)
+        spans = [(one.start, one.end) for one in self.layout.sections if one.way[: len(beside)] == beside]
+        if not spans:
+            raise _NoPlace
+        place = spans[-1][1] if before else spans[0][0]
+        for one in tables:
+            lines = "\n".join((f"[[{_path(way)}]]", *_table(one, _path(way)))) + "\n"
+            self.splices.append((place, place, f"\n{lines}" if before else f"{lines}\n"))
+
+    def _inside(self, way: Way, gone: Sequence[Way], new: Sequence[str], before: int | None = None) -> None:
+        """Cut entries out of an array or an inline table, and insert others after the last one or before an index."""
+        start, end = self.layout.values[way]
+        inner = sorted((span, one) for one, span in self.layout.entries.items() if self._is_direct(way, one))
+        spans = [span for span, _ in inner]
+        out = [any(one[: len(k)] == k for k in gone) for _, one in inner]
+        if all(out):
+            pad = " " if self.text[start] == "{" and new else ""
+            whole = f"{self.text[start]}{pad}{', '.join(new)}{pad}{self.text[end - 1]}"
+            self.splices.append((start, end, whole))
+            return
+        for k in (k for k, is_out in enumerate(out) if is_out):
+            self.splices.append((*self._with_comma(spans, k, not all(out[:k])), ""))
+        at = len(spans) if before is None else before
+        if new and at:
+            self.splices.append((spans[at - 1][1], spans[at - 1][1], "".join(f", {one}" for one in new)))
+        elif new:
+            self.splices.append((spans[0][0], spans[0][0], "".join(f"{one}, " for one in new)))
+
+    def _with_comma(self, spans: Sequence[tuple[int, int]], k: int, is_after_others: bool) -> tuple[int, int]:
+        """Return from where to where an item is cut out: with the comma before it, or after it where it is the first.
+
+        A comment between the two stays: then a comma stays behind, which an array may end with.
+        """
+        start, end = spans[k]
+        cut = (spans[k - 1][1], end) if is_after_others else (start, spans[k + 1][0])
+        between = self.text[cut[0] : start] + self.text[end : cut[1]]
+        if "#" not in between:
+            return cut
+        after = self.layout.skip_blank(end)
+        return start, after + 1 if self.text[after : after + 1] == "," else end
+
+    def _is_direct(self, way: Way, one: Way) -> bool:
+        """Return whether an entry is of this array or inline table itself, not of one inside it."""
+        inside = len(one) > len(way) and one[: len(way)] == way
+        return inside and not any(one[:k] in self.layout.values for k in range(len(way) + 1, len(one)))
+
+    def _cut(self, way: Way) -> None:
+        """Cut out a key of a table: its lines and its sections, each with one of the empty lines before it."""
+        size, before = len(way), len(self.splices)
+        for one, (start, end) in self.layout.entries.items():
+            if one[:size] == way and one in self.layout.own and len(self.layout.own[one]) < size:
+                self.splices.append((self.layout.line_start(start), self.layout.line_end(end), ""))
+        for section in self.layout.sections:
+            if section.way and section.way[:size] == way:
+                is_apart = self.text[: section.start].endswith("\n\n")
+                self.splices.append((section.start - is_apart, section.end, ""))
+        if len(self.splices) == before:
+            raise _NoPlace
+
+    def _insert(self, way: Way, key: str, value: Any) -> None:
+        """Insert a key with its value into a table that is written in lines."""
+        whole = _path((*way, key))
+        if _has_own_heading(key, value, nested=len(way) > 1):
+            lines = "\n".join(_section_of(whole, value) if way else _section(whole, value)) + "\n"
+            # beside the tables of its kind, else at the end
+            same = [one for one in self.layout.sections if way and one.way[: len(way)] == way]
+            place = same[-1].end if same else len(self.text)
+            self.splices.append((place, place, lines if place else lines.lstrip()))
+            return
+        home = next((one for one in self.layout.sections if one.way == way), None)
+        if home is None:
+            raise _NoPlace
+        line = f"{_key(key)} = {_wrapped(value, WIDTH - len(_key(key)) - 3)}\n"
+        self.splices.append((home.end, home.end, line))
+
+
+def _path(way: Way) -> str:
+    """Return the words of a heading; which table of an array it is, its place in the file tells."""
+    return ".".join(_key(key) for key in way if isinstance(key, str))

@@ -19,6 +19,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "synthesis", "pictures", "animation", "plots", "page"),
+        "studio",
         *("studies", "clusters", "data-sets", "tolerances", "optimisation", "compiled"),
         *("cli", "file-format", "exchange/index", "study-files", "programs_in_other_languages"),
     ),

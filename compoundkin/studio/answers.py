@@ -1,0 +1,606 @@
+"""`answer`: what the studio is asked of a document, and what it replies, as plain data.
+
+Three questions: `structure` is what follows from letters, with where everything is; `motion` is all poses over the
+range of the drivers; `edit` changes the text. What is not yet a mechanism is shown as far as it goes: what cannot be
+part of one is set aside, named with its remedy, and the rest is taken apart.
+"""
+
+from __future__ import annotations
+
+import cmath
+import json
+import re
+import warnings
+from collections.abc import Iterator, Mapping
+from copy import deepcopy
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import floor, isfinite, log10
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, suggestion
+from compoundkin.files import toml_text
+from compoundkin.files.mechanism_files import changed_text
+from compoundkin.files.parsed_document import Syntax, located, parsed
+from compoundkin.files.reader import read
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.gaps import gaps
+from compoundkin.model.geometry import FRAME, Geometry
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import WRITTEN
+from compoundkin.model.pairs.contract import Pair, as_drivable
+from compoundkin.structure import Fault, Structure, decompose
+from compoundkin.studio.edits import Document, Placement, edited
+
+Reply: TypeAlias = dict[str, Any]
+
+# A document may have so many characters and links, a motion so many poses.
+MOST_TEXT, MOST_LINKS, MOST_POSES = 200_000, 400, 721
+# A driver that states a range, and one that turns fully, is solved at so many poses: as the window shows them.
+POSES = 361
+# So many times something is set aside before the rest is given up.
+ROUNDS = 40
+# Numbers of a motion are told with so many digits of the mechanism's size: less than a thousandth of a dot.
+DIGITS = 6
+
+
+def answer(document: str, question: Mapping[str, Any]) -> Reply:
+    """Return what a question asks of a document, the text of a mechanism file in TOML or JSON, as plain data.
+
+    `question["ask"]` is "structure", "motion" or "edit" (`question["edit"]`, with `do` and what it needs, and `pose`:
+    at which pose of the motion the drawing is shown). A reply has `problems`, each with `where`, `what` and `remedy`;
+    nothing is raised for a document that is not yet a mechanism, nor for a question that cannot be answered.
+
+    >>> text = 'format = 1\\ntitle = "Crank"\\n[links]\\nframe.points = ["A"]\\n[drawn]\\nA = [0, 0]\\n'
+    >>> bar = {"do": "bar", "from": {"point": "A"}, "to": {"at": [3, 4]}}
+    >>> reply = answer(text, {"ask": "edit", "edit": bar})
+    >>> answer(reply["text"], {"ask": "structure"})["mobility"]
+    {'freedoms': 1, 'sum': 'F = 3·1 − 2·1 = 1'}
+    """
+    asked = question.get("ask")
+    try:
+        if asked not in QUESTIONS:
+            raise InvalidInput(
+                Problem("ask", f"there is no question {asked!r}", suggestion(str(asked), list(QUESTIONS)))
+            )
+        if len(document) > MOST_TEXT:
+            raise InvalidInput(Problem("", f"the document is longer than {MOST_TEXT:,} characters", "shorten it"))
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            return {"ask": asked, **QUESTIONS[asked](document, question)}
+    except CompoundkinError as error:
+        return {"ask": asked, "text": document, "problems": [_problem(one) for one in error.problems]}
+
+
+def _problem(one: Problem) -> dict[str, str]:
+    return {"where": one.where, "what": one.what, "remedy": one.remedy}
+
+
+# --- the document as far as it goes -------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A document, the mechanism of what of it goes together, and what was set aside with the problems that it has."""
+
+    document: Document
+    mechanism: Mechanism | None
+    problems: tuple[Problem, ...]
+    aside: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # names of links, `drives[1]` and the like
+
+    @cached_property
+    def structure(self) -> Structure | None:
+        """The mechanism taken apart."""
+        return decompose(self.mechanism) if self.mechanism is not None else None
+
+    @cached_property
+    def letters(self) -> dict[str, tuple[str, ...]]:
+        """The letters of all links that are written, those set aside included."""
+        links = self.document.get("links")
+        tables = links.items() if isinstance(links, dict) else ()
+        points = ((name, table.get("points", ())) for name, table in tables if isinstance(table, dict))
+        return {name: tuple(map(str, own)) for name, own in points if isinstance(own, list | dict)}
+
+    @cached_property
+    def motion(self) -> Motion | None:
+        """The motion over the range of the drivers. None where there is none; raises as `solve`."""
+        if self.structure is None or self.structure.faults or not self.structure.mechanism.drives:
+            return None
+        return solve(self.structure, _range(self.structure.mechanism), order=0)
+
+    @cached_property
+    def first_pose(self) -> Motion | None:
+        """The first pose of the motion alone, which takes a fraction of the time. None where it is not assembled."""
+        if self.structure is None or self.structure.faults or not self.structure.mechanism.drives:
+            return None
+        values = {drive.name: drive.values for drive in self.structure.mechanism.drives}
+        angles = self.structure.driven_angles
+        first = {
+            name: 0.0 if v is None and angles[name] else v if v is None else np.ravel(v)[:1]
+            for name, v in values.items()
+        }
+        if any(drive.law for drive in self.structure.mechanism.drives) or None in first.values():
+            return None
+        try:
+            found = solve(self.structure, first, order=0)
+        except CompoundkinError:
+            return None
+        return found if found.failed.size == 1 and not found.failed.any() else None
+
+
+def syntax_of(text: str) -> Syntax:
+    """Return the syntax of a document.
+
+    >>> syntax_of(' {"title": "m"}'), syntax_of('title = "m"')
+    ('json', 'toml')
+    """
+    return "json" if text.lstrip().startswith("{") else "toml"
+
+
+def reading_of(text: str) -> Reading:
+    """Read a document as far as it goes. Raises InvalidMechanism for a text that is neither TOML nor JSON."""
+    whole = parsed(text, syntax_of(text), "")
+    if isinstance(links := whole.get("links"), dict) and len(links) > MOST_LINKS:
+        raise InvalidInput(
+            Problem("links", f"there are more than {MOST_LINKS} links", "take the command line for them")
+        )
+    part, aside, found = deepcopy(whole), dict[str, list[str]](), list[Problem]()
+    # of what is left of an array, the places in the whole
+    kept = {name: list(range(len(array))) for name, array in whole.items() if isinstance(array, list)}
+    for _ in range(ROUNDS):
+        try:
+            return Reading(whole, read(part, ""), tuple(found), {k: tuple(v) for k, v in aside.items()})
+        except InvalidMechanism as error:
+            problems = error.problems
+        gone = [(one, _set_aside(part, one, kept)) for one in problems]
+        for one, name in gone:
+            sort, _, _ = name.partition("[")
+            found.append(_at_its_place(one, name))
+            aside.setdefault("links" if sort == name else sort, []).append(name)
+        if not any(name for _, name in gone):
+            break
+        for name, places in kept.items():
+            if name in part:
+                part[name] = [one for one in part[name] if one is not _GONE]
+                kept[name] = [place for place in places if place >= 0]
+                if not part[name]:
+                    del part[name]
+    return Reading(whole, None, tuple(dict.fromkeys(found)), {k: tuple(v) for k, v in aside.items()})
+
+
+# Stands in an array for what is set aside, until all problems have been looked at.
+_GONE: Any = object()
+_INDEXED = re.compile(r"(\w+)\[(\d+)\]")
+
+
+def _set_aside(part: Document, problem: Problem, kept: dict[str, list[int]]) -> str:
+    """Take out of a document what has a problem, and return its name in the whole; "" where nothing could be."""
+    head, _, rest = problem.where.partition(".")
+    if indexed := _INDEXED.match(head):
+        name, place = indexed[1], int(indexed[2])
+        if not isinstance(part.get(name), list) or place >= len(part[name]):
+            return ""
+        was = kept[name][place]
+        part[name][place], kept[name][place] = _GONE, -1
+        return f"{name}[{was}]" if was >= 0 else ""
+    if head in ("format", "title") and not rest:
+        part[head] = 1 if head == "format" else "Mechanism"
+        return head
+    if head == "links":
+        link, _, key = rest.partition(".")
+        if key and key != "points" and not key.startswith("points.") and isinstance(part["links"].get(link), dict):
+            return f"links.{link}.{key}" if part["links"][link].pop(key, None) is not None else ""
+        if link and link != FRAME and isinstance(part.get("links"), dict):
+            return link if part["links"].pop(link, None) is not None else ""
+        return ""
+    holder = part.get(head) if rest else part
+    key = rest or head
+    return problem.where if isinstance(holder, dict) and holder.pop(key, None) is not None else ""
+
+
+def _at_its_place(problem: Problem, name: str) -> Problem:
+    """Return a problem at the place that it has in the whole document."""
+    indexed = _INDEXED.match(problem.where)
+    return Problem(name + problem.where[indexed.end() :], problem.what, problem.remedy) if indexed and name else problem
+
+
+def _range(mechanism: Mechanism) -> dict[str, Number] | None:
+    """Return the values of the only driver as finely as they are shown, from its first to its last."""
+    if len(mechanism.drives) != 1 or mechanism.drives[0].law is not None or mechanism.prescribed_motions:
+        return None
+    drive = mechanism.drives[0]
+    if drive.values is None:
+        pairs = {pair.name for pair in mechanism.written_pairs if not pair.free_is_angle}
+        if pairs & set(mechanism.drivable(drive)):
+            return None
+        return {drive.name: np.deg2rad(np.arange(POSES, dtype=float))}
+    values = np.atleast_1d(np.asarray(drive.values, float))
+    steps = np.diff(values)
+    if values.ndim == 1 and len(values) > 2 and (np.all(steps > 0) or np.all(steps < 0)):
+        return {drive.name: np.linspace(values[0], values[-1], POSES)}
+    return {drive.name: values.reshape(-1, values.shape[-1])[0][:MOST_POSES]}
+
+
+# --- where everything is ------------------------------------------------------------------------------------
+
+
+def drawing_of(reading: Reading, pose: int | None = None) -> Placement:
+    """Return where points and links are: as drawn where all links take their dimensions off it, else at a pose.
+
+    Without a `pose` it is the first that is assembled. What cannot be solved stands where the drawing has it, else
+    where the coordinates of its link lead from what is known.
+    """
+    places, poses = dict[str, complex](), dict[str, tuple[complex, complex]]()
+    mechanism = reading.mechanism
+    if mechanism is not None and not mechanism.unplaced:
+        if pose is None and _is_as_drawn(mechanism):
+            places = {k: complex(p) for k, p in mechanism.geometry.sketch.items() if not np.ndim(p)}
+            known = mechanism.drawn_poses
+            poses = {name: (complex(p.z.c[0]), complex(p.u.c[0])) for name, p in known.items() if not np.ndim(p.z.c[0])}
+        else:
+            places, poses = _solved(reading, pose)
+    poses.setdefault(FRAME, (0j, 1 + 0j))
+    _complete(reading.document, places, poses)
+    return Placement(places, poses)
+
+
+def _solved(reading: Reading, pose: int | None) -> tuple[dict[str, complex], dict[str, tuple[complex, complex]]]:
+    motion = reading.first_pose if pose is None else None
+    if motion is None:
+        try:
+            motion = reading.motion
+        except CompoundkinError:
+            motion = None
+    if motion is None:
+        return {}, {}
+    whole = np.flatnonzero(motion.failed[0] == 0)
+    k = pose if pose is not None and 0 <= pose < motion.failed.shape[1] and motion.failed[0, pose] == 0 else whole[0]
+    poses = {}
+    for name, one in motion.poses.items():
+        z, u = (np.broadcast_to(part.c[0], motion.failed.shape)[0, k] for part in (one.z, one.u))
+        poses[name] = complex(z), complex(u)
+    places = {letter: complex(np.atleast_2d(point.position)[0, k]) for letter, point in motion.points.items()}
+    return places, poses
+
+
+def _is_as_drawn(mechanism: Mechanism) -> bool:
+    """Return whether all moving links take their dimensions off the drawing."""
+    return all(link.is_drawn or name == FRAME for name, link in mechanism.links.items())
+
+
+def _complete(document: Document, places: dict[str, complex], poses: dict[str, tuple[complex, complex]]) -> None:
+    """Add the points and links that are not known yet: from the drawing, then link by link from what is known."""
+    drawn = document.get("drawn")
+    for letter, value in drawn.items() if isinstance(drawn, dict) else ():
+        if (place := _plain_place(value)) is not None:
+            places.setdefault(str(letter), place)
+    links = document.get("links")
+    tables = (
+        {name: table.get("points") for name, table in links.items() if isinstance(table, dict)}
+        if isinstance(links, dict)
+        else {}
+    )
+    written = {
+        name: {k: p for k, v in points.items() if (p := _plain_place(v)) is not None}
+        for name, points in tables.items()
+        if isinstance(points, dict)
+    }
+    for letter, place in written.get(FRAME, {}).items():
+        places.setdefault(letter, place)
+    left = [name for name in written if name not in poses and written[name]]
+    while left:
+        # the one of which most is known: two points or more show how it lies
+        name = max(left, key=lambda one: min(2, sum(k in places for k in written[one])))
+        left.remove(name)
+        poses[name] = _pose(written[name], places)
+    for name, points in written.items():
+        origin, along = poses.get(name, (0j, 1 + 0j))
+        for letter, p in points.items():
+            places.setdefault(letter, origin + along * p)
+    for name, letters in tables.items():
+        known = [places[k] for k in letters if k in places] if isinstance(letters, list) else []
+        if name not in poses and len(known) > 1 and known[0] != known[1]:
+            line = known[1] - known[0]
+            poses[name] = known[0], line / abs(line)
+
+
+def _pose(points: Mapping[str, complex], places: Mapping[str, complex]) -> tuple[complex, complex]:
+    """Return how a link lies by the first two of its points that have places; by one it is not turned."""
+    known = [k for k in points if k in places]
+    far = [k for k in known[1:] if points[k] != points[known[0]] and places[k] != places[known[0]]]
+    along = 1 + 0j
+    if far:
+        along = (places[far[0]] - places[known[0]]) / (points[far[0]] - points[known[0]])
+        along /= abs(along)
+    return (places[known[0]] - along * points[known[0]] if known else 0j), along
+
+
+def _plain_place(value: Any) -> complex | None:
+    """Return the place that a document writes; None for what is none. Of several designs and poses it is the first."""
+    try:
+        if isinstance(value, dict):
+            radius, angle = map(_first, value["polar"])
+            place = cmath.rect(radius, np.deg2rad(angle))
+        else:
+            x, y = map(_first, value)
+            place = complex(x, y)
+    except (TypeError, ValueError, KeyError, IndexError, OverflowError):
+        return None
+    return place if isfinite(place.real) and isfinite(place.imag) else None
+
+
+def _first(value: Any) -> float:
+    while isinstance(value, list):
+        value = value[0]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError
+    return float(value)
+
+
+# --- the waves ----------------------------------------------------------------------------------------------
+
+
+def _structure(document: str, question: Mapping[str, Any]) -> Reply:
+    """Reply what follows from letters: links, pairs, groups, mobility, faults; and where everything is."""
+    try:
+        reading = reading_of(document)
+    except InvalidMechanism as error:
+        told = located(error, document) if syntax_of(document) == "toml" else error
+        return {"problems": [_problem(one) for one in told.problems], "is_text": False}
+    drawing, structure, mechanism = drawing_of(reading), reading.structure, reading.mechanism
+    colours = _colours(structure)
+    own = reading.letters
+    carriers: dict[str, list[str]] = {}
+    for name, letters in own.items():
+        for letter in letters:
+            carriers.setdefault(letter, []).append(name)
+    driven = structure.driven if structure else {}
+    return {
+        "is_text": True,
+        "is_as_drawn": mechanism is None or _is_as_drawn(mechanism),
+        "title": str(reading.document.get("title", "")),
+        "unit": mechanism.unit if mechanism else "",
+        "links": [
+            {
+                "name": name,
+                "points": list(letters),
+                "colour": colours.get(name),
+                "is_aside": name in reading.aside.get("links", ()),
+            }
+            for name, letters in own.items()
+        ],
+        "points": {k: [p.real, p.imag] for k, p in drawing.places.items() if k in carriers},
+        "angles": {name: cmath.phase(along) for name, (_, along) in drawing.poses.items()},
+        "pins": {letter: names for letter, names in carriers.items() if len(names) > 1},
+        "pairs": list(_pairs(mechanism)) if mechanism else [],
+        "drives": [
+            {
+                "name": name,
+                "link": step.link,
+                "on": step.parent,
+                "points": list(step.pair.letters),
+                "is_angle": step.pair.free_is_angle,
+            }
+            for name, step in driven.items()
+        ],
+        "groups": [
+            {"name": group.name, "links": list(group.links), "colour": colours[group.links[0]]}
+            for group in (structure.groups if structure else ())
+        ],
+        "mobility": _mobility(reading),
+        "faults": list(_faults(reading)),
+        "problems": [_problem(one) for one in reading.problems if not _is_fault(one, reading)],
+        "moves": bool(structure and not structure.faults and driven and not structure.mechanism.unplaced),
+    }
+
+
+def _colours(structure: Structure | None) -> dict[str, int]:
+    """Return the colours of links: 0 of the frame and driven links, then one for each group."""
+    if structure is None:
+        return {}
+    found = dict.fromkeys(structure.ground.links, 0)
+    for k, group in enumerate(structure.groups):
+        found |= dict.fromkeys(group.links, k + 1)
+    return found
+
+
+def _pairs(mechanism: Mechanism) -> Iterator[dict[str, Any]]:
+    """Yield the pairs that are no pins; those with a line, where it lies in the frame of the first link."""
+    geometry: Geometry | None = None if mechanism.unplaced else mechanism.geometry
+    for pair in mechanism.written_pairs:
+        told: dict[str, Any] = {"name": pair.name, "kind": pair.title, "code": pair.code}
+        told |= {"links": list(pair.members), "points": list(pair.letters)}
+        if geometry is not None:
+            guide = pair.ends(geometry)[0]
+            if guide.direction is not None:
+                point, along = (complex(np.ravel(np.asarray(one))[0]) for one in (guide.point, guide.direction))
+                told["guide"] = [point.real, point.imag, cmath.phase(along)]
+        yield told
+
+
+def _mobility(reading: Reading) -> dict[str, Any]:
+    """Return the mobility and its sum, F = 3 (n - 1) - what the pairs hold; links without a frame are counted too."""
+    if reading.structure is not None:
+        count = reading.structure.mobility
+        moving, passive = count.links - 1, count.passive
+        held: dict[int, int] = {}
+        for one in count.pairs:
+            held[one.held] = held.get(one.held, 0) + one.number
+    else:
+        moving, passive = len(reading.letters.keys() - {FRAME}), 0
+        carried = [letter for letters in reading.letters.values() for letter in letters]
+        held = {2: len(carried) - len(set(carried))}
+        for name, kind in WRITTEN.items():
+            tables = reading.document.get(name)
+            if isinstance(tables, list):
+                held[kind.held] = held.get(kind.held, 0) + len(tables)
+    freedoms = 3 * moving - sum(h * n for h, n in held.items()) - passive
+    terms = "".join(f" − {f'{h}·' if h > 1 else ''}{n}" for h, n in sorted(held.items(), reverse=True) if n)
+    minus = f" − {passive}" if passive else ""
+    return {"freedoms": freedoms, "sum": f"F = 3·{moving}{terms}{minus} = {freedoms}".replace("-", "−")}
+
+
+def _faults(reading: Reading) -> Iterator[dict[str, Any]]:
+    """Yield what stands in the way of a motion, each with its remedy and the edits that mend it."""
+    structure, own = reading.structure, reading.letters
+    if not own:
+        yield _fault("", "there is no link", "drag from an empty place: a bar")
+    elif FRAME not in own:
+        ends = dict.fromkeys(letters[0] for letters in own.values() if letters)
+        fixes = [_fix(f"ground {letter}", do="ground", point=letter) for letter in list(ends)[:4]]
+        yield _fault("", "no point is fixed: there is no frame", "ground a point (key G)", fixes)
+    for name in reading.aside.get("links", ()):
+        if name in own:
+            yield _fault(
+                name, f"{name} is loose: it is joined to nothing", "drop one of its points on a point of another link"
+            )
+    drives = reading.document.get("drives")
+    for name in reading.aside.get("drives", ()):
+        table = drives[int(name[7:-1])] if isinstance(drives, list) else {}
+        called = str(table.get("name", table.get("link", ""))) if isinstance(table, dict) else ""
+        text = next((one.what for one in reading.problems if one.where.startswith(name)), "it drives nothing")
+        fixes = [_fix(f"remove the driver {called}", do="delete", drive=called)] if called else []
+        yield _fault(called, f"the driver {called} is set aside: {text}", "remove it", fixes)
+    if structure is None:
+        return
+    for fault in structure.faults:
+        yield _fault(
+            ", ".join(fault.links), fault.text, fault.remedy, list(_fixes(structure, fault)), list(fault.links)
+        )
+    if not structure.faults and not structure.mechanism.drives and len(own) > 1:
+        yield _fault("", structure.mobility.verdict, "take a bar out, or leave it: it stands still")
+    if structure.mechanism.unplaced:
+        yield _fault("", "points have no place", "give them places in [drawn]")
+
+
+def _is_fault(problem: Problem, reading: Reading) -> bool:
+    """Return whether a problem is told among the faults: of a link or a driver that is set aside, of the frame."""
+    head, _, rest = problem.where.partition(".")
+    name, aside = rest.partition(".")[0], reading.aside.get("links", ())
+    is_of_link = head == "links" and name in ("", FRAME, *aside)
+    is_of_point = head == "drawn" and any(name in letters for letters in reading.letters.values())
+    return is_of_link or is_of_point or head.startswith("drives[")
+
+
+def _fault(where: str, what: str, remedy: str, fixes: list[Any] | None = None, links: list[str] | None = None) -> Reply:
+    return {"where": where, "what": what, "remedy": remedy, "fixes": fixes or [], "links": links or [where]}
+
+
+def _fix(words: str, **edit: str) -> dict[str, Any]:
+    return {"words": words, "edit": edit}
+
+
+# So many remedies have a button.
+FIXES = 4
+
+
+def _fixes(structure: Structure, fault: Fault) -> Iterator[dict[str, Any]]:
+    """Yield the edits that mend a fault: a driver more, or one less."""
+    mechanism = structure.mechanism
+    if fault.kind == "over":
+        for drive in [one for one in mechanism.drives if {one.link, one.on} & set(fault.links)][:FIXES]:
+            yield _fix(f"remove the driver {drive.name}", do="delete", drive=drive.name)
+        return
+    driven = {(one.link, one.on) for one in mechanism.drives}
+    blocks = {name for name, link in mechanism.links.items() if len(link.points) == 1 and name != FRAME}
+    pairs = [one for one in structure.pairs if one.table or not blocks & set(one.members)]
+    choices = [one for one in pairs if _may_be_driven(one, fault, driven)]
+    for pair in sorted(choices, key=lambda one: FRAME not in one.members)[:FIXES]:
+        on, link = sorted(pair.members, key=lambda name: name != FRAME)
+        yield _fix(f"drive {link} at {pair.letters[0]}", do="driver", point=pair.letters[0], link=link, on=on)
+
+
+def _may_be_driven(pair: Pair, fault: Fault, driven: set[tuple[str, str]]) -> bool:
+    inside = len(pair.members) == 2 and not set(fault.links).isdisjoint(pair.members)
+    is_free = pair.members not in driven and pair.members[::-1] not in driven
+    # of the pairs that are written only slides can be driven by a gesture
+    return inside and is_free and bool(as_drivable(pair)) and (not pair.table or pair.code == "P")
+
+
+def _motion(document: str, question: Mapping[str, Any]) -> Reply:
+    """Reply all poses of all points over the range of the drivers, and where it cannot be assembled: why."""
+    reading = reading_of(document)
+    motion = reading.motion
+    if motion is None:
+        return {"problems": [], "poses": 0}
+    good = motion.failed[0] == 0
+    if len(good) > MOST_POSES:
+        raise InvalidInput(Problem("drives", f"there are more than {MOST_POSES} poses", "take fewer values"))
+    digits = DIGITS - floor(log10(motion.size))
+
+    def row(values: Number, digits: int = digits) -> list[float | None]:
+        found = np.round(np.broadcast_to(np.atleast_2d(values), (motion.failed.shape))[0], digits).tolist()
+        return [None if not isfinite(one) else one for one in found]
+
+    turned = {pair.members[0] for pair in motion.mechanism.written_pairs} - {FRAME}
+    names = list(motion.drives)
+    places = {letter: np.atleast_2d(point.position) for letter, point in motion.points.items()}
+    return {
+        "poses": len(good),
+        "drives": {
+            name: {
+                "values": row(np.rad2deg(v) if motion.structure.driven_angles[name] else v, 6),
+                "unit": "°" if motion.structure.driven_angles[name] else motion.mechanism.unit,
+            }
+            for name in names
+            for v in [np.broadcast_to(motion.inputs.drives[name][0], motion.failed.shape)]
+        },
+        "points": {letter: [row(place.real), row(place.imag)] for letter, place in places.items()},
+        "origins": {
+            name: [row(z.real), row(z.imag), row(np.angle(u), DIGITS)]
+            for name in turned
+            for z, u in [
+                [np.broadcast_to(s.c[0], motion.failed.shape) for s in (motion.poses[name].z, motion.poses[name].u)]
+            ]
+        },
+        "assembled": [int(one) for one in good],
+        "start": _nearest(motion, drawing_of(reading)),
+        "gaps": [
+            {"from": gap.first, "to": gap.last, "why": gap.reason, "links": list(gap.links)}
+            for gap in (gaps(motion) if not good.all() else ())
+        ],
+        "problems": [],
+    }
+
+
+def _nearest(motion: Motion, drawing: Placement) -> int:
+    """Return the pose that is nearest to the drawing."""
+    away = np.zeros(motion.failed.shape[1])
+    for letter, place in drawing.places.items():
+        if letter in motion.points:
+            away = away + np.abs(np.atleast_2d(motion.points[letter].position)[0] - place)
+    return int(np.nanargmin(np.where(motion.failed[0] == 0, away, np.nan)))
+
+
+def _edit(document: str, question: Mapping[str, Any]) -> Reply:
+    """Reply the text of the changed document, with what was made."""
+    edit, pose = question.get("edit"), question.get("pose")
+    if not isinstance(edit, dict):
+        raise InvalidInput(Problem("edit", "there is no edit", 'give {"do": ...} with what it needs'))
+    if edit.get("do") == "set":
+        changes = {str(edit.get("name")): str(edit.get("value"))}
+        return {"text": changed_text(document, changes, syntax_of(document)), "made": {}, "problems": []}
+    reading = reading_of(document)
+    wanted = deepcopy(reading.document)
+    is_at = isinstance(pose, int) and not isinstance(pose, bool)
+    drawing = drawing_of(reading, pose if is_at else None)
+    if is_at and isinstance(wanted.get("drawn"), dict):
+        # who changes it at another pose draws that one
+        scale = Placement(drawing.places, {})
+        digits = 9 - floor(log10(scale.size))
+        for letter in wanted["drawn"]:
+            if letter in drawing.places:
+                place = drawing.places[letter]
+                wanted["drawn"][letter] = [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
+    made = edited(wanted, edit, drawing)
+    if syntax_of(document) == "json":
+        text = json.dumps(wanted, indent=2, ensure_ascii=False) + "\n"
+    else:
+        text = toml_text.changed(document, wanted)
+    return {"text": text, "made": made, "problems": []}
+
+
+QUESTIONS = {"structure": _structure, "motion": _motion, "edit": _edit}

@@ -1,0 +1,385 @@
+// The window: a history of whole documents, the socket that questions go over, the panels. It draws what it is told.
+import { Canvas } from "./canvas.js";
+import { Gestures } from "./gestures.js";
+
+const KEPT = "compoundkin-studio", MOST_KEPT = 200, TYPING = 900, PAUSE = 250;
+const part = (id) => document.getElementById(id);
+const element = (name, text, attributes = {}, ...inner) => {
+  const node = document.createElement(name);
+  if (text) node.textContent = text;
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  node.append(...inner);
+  return node;
+};
+
+class Wire {
+  constructor(token, opened, closed) {
+    this.waiting = new Map();
+    this.count = 0;
+    this.socket = new WebSocket(`ws://${location.host}/talk`);
+    this.socket.addEventListener("open", () => this.socket.send(JSON.stringify({ token })));
+    this.socket.addEventListener("close", closed);
+    this.socket.addEventListener("message", ({ data }) => {
+      const reply = JSON.parse(data);
+      if (reply.id === undefined) { opened(reply); return; }
+      this.waiting.get(reply.id)?.(reply);
+      this.waiting.delete(reply.id);
+    });
+  }
+
+  ask(message) {
+    if (this.socket.readyState !== WebSocket.OPEN) return new Promise(() => {});
+    const id = ++this.count;
+    return new Promise((resolve) => {
+      this.waiting.set(id, resolve);
+      this.socket.send(JSON.stringify({ id, ...message }));
+    });
+  }
+}
+
+class Studio {
+  constructor() {
+    this.canvas = new Canvas(part("canvas"));
+    this.gestures = new Gestures(this.canvas, this);
+    this.history = [];
+    this.place = 0;
+    this.mark = "";
+    this.saved = null;
+    this.queue = Promise.resolve();
+    this.typed = 0;
+    this.edits = 0;
+    this.isFitted = false;
+    const kept = this.#kept(), token = location.hash.slice(1) || kept?.token || "";
+    // the token leaves the address, which people copy
+    history.replaceState(null, "", location.pathname);
+    this.token = token;
+    this.before = kept?.token === token ? kept : null;
+    this.wire = new Wire(token, (reply) => this.#open(reply), () => this.#lost());
+    this.#listen();
+  }
+
+  get text() { return this.history[this.place] ?? ""; }
+  get structure() { return this.canvas.structure; }
+  get motion() { return this.canvas.motion; }
+  get isSettled() { return this.edits === 0 && this.shown === this.text && this.file !== undefined; }
+  get unit() { return this.structure?.unit ?? ""; }
+
+  // --- the document and its history
+
+  #open({ text, mark, file, folder, is_new: isNew }) {
+    this.file = file;
+    part("file").textContent = file;
+    part("file").title = folder;
+    document.title = `${file} - studio`;
+    [this.history, this.place, this.mark] = [[text], 0, mark];
+    this.saved = isNew ? null : text;
+    if (this.before?.history?.length) {
+      ({ history: this.history, place: this.place } = this.before);
+      if (this.before.mark === mark) this.saved = this.before.saved;
+      else [this.mark, this.saved] = [this.before.mark, this.before.saved];
+    }
+    this.#show();
+    this.choose(/^\s*\[links/m.test(this.text) ? "move" : "draw");
+  }
+
+  #kept() {
+    try { return JSON.parse(sessionStorage.getItem(KEPT)); } catch { return null; }
+  }
+
+  #keep() {
+    const { token, history: texts, place, mark, saved } = this;
+    try { sessionStorage.setItem(KEPT, JSON.stringify({ token, history: texts, place, mark, saved })); } catch { /* too long to be kept */ }
+  }
+
+  #lost() {
+    this.#notice(`The studio on this machine has ended, or did not let this window in. The drawing is kept here: copy its text, or start it again: compoundkin studio ${this.file ?? ""}`);
+    part("save").disabled = true;
+  }
+
+  #notice(text, ...choices) {
+    const box = part("notice");
+    box.hidden = !text;
+    box.replaceChildren(text ?? "");
+    for (const [words, run] of choices) {
+      const button = element("button", words);
+      button.addEventListener("click", () => { box.hidden = true; run(); });
+      box.append(button);
+    }
+  }
+
+  // one entry for each gesture
+  put(text, isTyped = false) {
+    if (text === this.text) return;
+    const isOn = isTyped && performance.now() - this.typed < TYPING && this.place;
+    this.history.splice(this.place + (isOn ? 0 : 1), Infinity, text);
+    if (this.history.length > MOST_KEPT) this.history.splice(0, this.history.length - MOST_KEPT);
+    this.place = this.history.length - 1;
+    this.typed = isTyped ? performance.now() : 0;
+    this.#show(isTyped);
+  }
+
+  step(by) {
+    const place = this.place + by;
+    if (place < 0 || place >= this.history.length) return;
+    this.place = place;
+    this.typed = 0;
+    this.#show();
+  }
+
+  // an edit follows the one before it, of whose text it is
+  edit(edit) {
+    const pose = this.canvas.pose;
+    this.edits += 1;
+    this.queue = this.queue.then(async () => {
+      const text = this.text, reply = await this.wire.ask({ document: text, question: { ask: "edit", edit, pose } });
+      if (text !== this.text) return;
+      if (reply.problems?.length) {
+        const [{ what, remedy }] = reply.problems;
+        this.say(`Not done: ${what}${remedy ? `; ${remedy}` : ""}`);
+        return;
+      }
+      const { made } = reply;
+      if (made?.points?.length && edit.do !== "point") this.canvas.chosen = { point: made.points.at(-1) };
+      this.goTo = this.structure?.is_as_drawn ? null : pose;
+      this.put(reply.text);
+    }).finally(() => { this.edits -= 1; });
+    return this.queue;
+  }
+
+  async save(mark = this.mark) {
+    const text = this.text, reply = await this.wire.ask({ document: text, save: true, mark });
+    if (reply.is_saved) {
+      [this.mark, this.saved] = [reply.mark, text];
+      this.say(`Saved ${this.file}`);
+    } else if (reply.why) {
+      this.#notice(`Not saved: ${reply.why}`, ["Close", () => {}]);
+    } else {
+      this.#notice(`${this.file} has changed on disk since it was read here.`,
+        ["Replace it by this drawing", () => this.save(reply.mark)],
+        ["Take the file's text", () => { [this.mark, this.saved] = [reply.mark, reply.disk]; this.put(reply.disk); }]);
+    }
+    this.#state();
+  }
+
+  // --- the waves
+
+  async #show(isTyped = false) {
+    const text = this.text;
+    if (!isTyped || part("text").value !== text) part("text").value = text;
+    this.#state();
+    this.#keep();
+    this.halt();
+    this.asked = text;
+    const structure = await this.wire.ask({ document: text, question: { ask: "structure" } });
+    if (text !== this.text || structure.is_dropped) return;
+    this.#problems(structure.problems ?? []);
+    if (!structure.is_text) { this.shown = text; return; }
+    this.canvas.motion = null;
+    this.canvas.pose = null;
+    this.#forget(structure);
+    this.canvas.show(structure);
+    this.#panels(structure);
+    if (structure.moves) {
+      const motion = await this.wire.ask({ document: text, question: { ask: "motion" } });
+      if (text !== this.text || motion.is_dropped) return;
+      this.#problems([...(structure.problems ?? []), ...(motion.problems ?? [])]);
+      if (motion.poses) {
+        this.canvas.motion = motion;
+        if (this.goTo !== null && this.goTo !== undefined && this.canvas.isShown(this.goTo)) this.canvas.pose = this.goTo;
+        this.#gaps(motion);
+      }
+    }
+    this.goTo = null;
+    if (!this.isFitted && structure.links.length) {
+      this.isFitted = this.history.length === 1;
+      if (this.isFitted) this.canvas.fit();
+      this.isFitted = true;
+    }
+    this.#driver();
+    this.canvas.draw();
+    this.shown = text;
+  }
+
+  // what is chosen may be no more
+  #forget({ points, links }) {
+    const isThere = (it) => it && (it.point ? it.point in points : links.some((one) => one.name === it.link));
+    for (const key of ["chosen", "over"]) if (!isThere(this.canvas[key])) this.canvas[key] = null;
+  }
+
+  #state() {
+    const isSaved = this.text === this.saved;
+    part("state").textContent = isSaved ? "saved" : "not saved";
+    part("undo").disabled = this.place === 0;
+    part("redo").disabled = this.place >= this.history.length - 1;
+  }
+
+  #problems(problems) {
+    part("problems").replaceChildren(...problems.map(({ where, what, remedy }) => {
+      const line = element("li", where ? `${where}: ${what}` : what);
+      if (remedy) line.append(element("span", remedy, { class: "remedy" }));
+      return line;
+    }));
+  }
+
+  #panels({ mobility, faults, links, groups, drives, points, moves, pairs }) {
+    const chip = part("chip"), missing = mobility.freedoms - drives.length, isFixed = links.some((one) => one.name === "frame");
+    const less = !isFixed ? "no frame" : missing > 0 ? `${missing} driver${missing > 1 ? "s" : ""} missing` : missing < 0 ? `${-missing} too many` : "";
+    chip.textContent = `${mobility.sum}${moves ? ": moves" : less && links.length ? `: ${less}` : ""}`;
+    chip.className = `chip ${moves ? "good" : links.length ? "bad" : ""}`;
+    part("faults").replaceChildren(...faults.map(({ what, remedy, fixes }) => {
+      const line = element("li", what);
+      line.append(element("span", remedy, { class: "remedy" }));
+      for (const { words, edit } of fixes) {
+        const button = element("button", words[0].toUpperCase() + words.slice(1));
+        button.addEventListener("click", () => this.edit(edit));
+        line.append(button);
+      }
+      return line;
+    }));
+    if (!faults.length) part("faults").append(element("li", "Nothing: it moves.", { class: "good" }));
+    const row = (head, ...inner) => element("div", "", { class: "row" }, head, ...inner);
+    const pick = (words, it) => {
+      const button = element("button", words);
+      button.addEventListener("click", () => { this.canvas.chosen = it; this.canvas.draw(); part("canvas").focus({ preventScroll: true }); });
+      return button;
+    };
+    const linksOf = (names) => names.filter((name) => name !== "frame").map((name) => pick(name, { link: name }));
+    const swatch = (k) => element("i", "", { class: `swatch g${k === 0 ? 0 : ((k - 1) % 7) + 1}` });
+    const grouped = new Set(groups.flatMap((one) => one.links));
+    const rest = links.filter((one) => !one.is_aside && !grouped.has(one.name)).map((one) => one.name);
+    const loose = links.filter((one) => one.is_aside).map((one) => one.name);
+    const rows = groups.map((group) => row(swatch(group.colour), element("span", group.name), ...linksOf(group.links)));
+    if (linksOf(rest).length) rows.unshift(row(swatch(0), element("span", moves ? "driven" : "links"), ...linksOf(rest)));
+    if (loose.length) rows.push(row(element("span", "loose"), ...linksOf(loose)));
+    if (Object.keys(points).length) rows.push(row(element("span", "points"), ...Object.keys(points).map((one) => pick(one, { point: one }))));
+    const other = pairs.filter((one) => one.code !== "P").map((one) => `${one.name} (${one.kind})`);
+    if (other.length) rows.push(row(element("span", `drawn by their points only: ${other.join(", ")}`, { class: "quiet" })));
+    part("structure").replaceChildren(...rows);
+  }
+
+  #gaps({ gaps }) {
+    for (const { why, links } of gaps.slice(0, 3)) {
+      const line = element("li", `Not assembled all the way: ${why}`);
+      line.append(element("span", links.join(", "), { class: "remedy" }));
+      part("faults").append(line);
+    }
+  }
+
+  // --- the driver
+
+  #driver() {
+    const { motion, canvas } = this, box = part("drive");
+    box.hidden = !motion?.poses;
+    if (box.hidden) return;
+    const at = canvas.pose ?? motion.start, [[name, { values, unit }]] = Object.entries(motion.drives);
+    part("pose").max = motion.poses - 1;
+    part("pose").value = at;
+    part("pose").setAttribute("aria-label", `Driver ${name}`);
+    const shown = `${Number(values[at].toPrecision(5))}${unit === "°" ? unit : ` ${unit}`}`;
+    part("pose").setAttribute("aria-valuetext", shown);
+    part("value").textContent = canvas.pose === null ? "as drawn" : shown;
+  }
+
+  pose(k) {
+    if (!this.canvas.isShown(k)) return false;
+    this.canvas.pose = k;
+    this.canvas.draw();
+    this.#driver();
+    return true;
+  }
+
+  // the pose at which a point of the driven link is nearest to a place
+  drive(letter, [x, y]) {
+    const [xs, ys] = this.motion?.points[letter] ?? [[], []];
+    let best = -1, near = Infinity;
+    xs.forEach((one, k) => {
+      const away = one === null ? Infinity : Math.hypot(one - x, ys[k] - y);
+      if (away < near) [best, near] = [k, away];
+    });
+    if (best >= 0) this.pose(best);
+  }
+
+  play() {
+    if (!this.motion?.poses || this.playing) { this.halt(); return; }
+    part("play").textContent = "Pause";
+    let k = this.canvas.pose ?? this.motion.start, by = 1;
+    const last = this.motion.poses - 1;
+    const [xs, ys] = Object.values(this.motion.points).at(-1);
+    const isRound = this.motion.assembled.every(Boolean) && Math.hypot(xs[0] - xs[last], ys[0] - ys[last]) < 1e-3 * Math.max(1, ...xs.map(Math.abs));
+    const next = () => {
+      let to = k + by;
+      if (isRound) to = (to + last) % last;
+      else if (to < 0 || to > last || !this.canvas.isShown(to)) { by = -by; to = k + by; }
+      if (this.pose(to)) k = to;
+      this.playing = requestAnimationFrame(next);
+    };
+    this.playing = requestAnimationFrame(next);
+  }
+
+  halt() {
+    cancelAnimationFrame(this.playing);
+    this.playing = null;
+    part("play").textContent = "Play";
+  }
+
+  // --- what gestures ask, and keys
+
+  linksAt(letter) { return this.structure?.links.filter((one) => one.points.includes(letter)).map((one) => one.name) ?? []; }
+  driveAt(letter) { return this.structure?.drives.find((one) => one.points[0] === letter)?.name; }
+  slideAt(letter) { return this.structure?.pairs.find((one) => one.code === "P" && one.points[0] === letter)?.name; }
+  say(text) { part("hint").textContent = text; }
+
+  choose(tool) {
+    this.gestures.choose(tool);
+    for (const one of ["draw", "move"]) part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
+  }
+
+  #listen() {
+    const on = (id, run) => part(id).addEventListener("click", run);
+    on("undo", () => this.step(-1));
+    on("redo", () => this.step(1));
+    on("save", () => this.save());
+    on("fit", () => this.canvas.fit());
+    on("play", () => this.play());
+    on("home", () => { this.halt(); this.canvas.pose = null; this.canvas.draw(); this.#driver(); });
+    on("tool-draw", () => this.choose("draw"));
+    on("tool-move", () => this.choose("move"));
+    for (const what of ["ground", "driver", "slide", "delete"]) {
+      // what is under the pointer is the button
+      on(`do-${what}`, () => { this.canvas.over = null; this.gestures.act(what); });
+    }
+    part("pose").addEventListener("input", (event) => { this.halt(); this.pose(Number(event.target.value)); });
+    let pause = 0;
+    part("text").addEventListener("input", (event) => {
+      clearTimeout(pause);
+      pause = setTimeout(() => this.put(event.target.value, true), PAUSE);
+    });
+    document.addEventListener("keydown", (event) => this.#key(event));
+    addEventListener("beforeunload", (event) => { if (this.text !== this.saved && this.history.length > 1) event.preventDefault(); });
+  }
+
+  #key(event) {
+    const key = event.key.toLowerCase(), isCommand = event.ctrlKey || event.metaKey;
+    const isText = event.target.matches("textarea"), isButton = event.target.matches("button, input");
+    if (isCommand && key === "s") this.save();
+    else if (isCommand && key === "z") this.step(event.shiftKey ? 1 : -1);
+    else if (isCommand && key === "y") this.step(1);
+    else if (isText || isCommand || event.altKey || (isButton && [" ", "enter", "arrowleft", "arrowright", "arrowup", "arrowdown"].includes(key))) return;
+    else if (key === "g") this.gestures.act("ground");
+    else if (key === "d") this.gestures.act("driver");
+    else if (key === "s") this.gestures.act("slide");
+    else if (key === "p") this.gestures.act("point");
+    else if (key === "delete" || key === "backspace") this.gestures.act("delete");
+    else if (key === "b") this.choose("draw");
+    else if (key === "v") this.choose("move");
+    else if (key === "n") this.gestures.bar();
+    else if (key === "f") this.canvas.fit();
+    else if (key === " ") this.play();
+    else if (key === "escape") { this.gestures.stop(); this.canvas.chosen = null; this.canvas.draw(); }
+    else if (key.startsWith("arrow")) this.gestures.nudge({ arrowleft: [-8, 0], arrowright: [8, 0], arrowup: [0, -8], arrowdown: [0, 8] }[key]);
+    else return;
+    event.preventDefault();
+  }
+}
+
+window.studio = new Studio();

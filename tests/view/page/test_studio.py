@@ -1,0 +1,385 @@
+"""The window of the studio in a browser: mechanisms drawn by gestures, moved, undone, saved, without a complaint."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import shutil
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.cli.studio import HOST, StudioServer
+from compoundkin.files.mechanism_files import loads
+
+uvicorn = pytest.importorskip("uvicorn")
+pytest.importorskip("starlette")
+pytest.importorskip("websockets")
+
+START = '# drawn by gestures\nformat = 1\ntitle = "Drawn"  # kept\n'
+DESK = (1440, 900)
+
+
+@contextmanager
+def served_studio() -> Iterator[StudioServer]:
+    """A server in a thread, at a free port."""
+    listener = socket.socket()
+    listener.bind((HOST, 0))
+    served = StudioServer(Path("none.toml"), START, "token-of-tests", f"{HOST}:{listener.getsockname()[1]}")
+    served.start()
+    how = {"ws": "websockets-sansio", "lifespan": "off", "log_level": "critical", "timeout_graceful_shutdown": 1}
+    running = uvicorn.Server(uvicorn.Config(served.application(), **how))
+    thread = threading.Thread(target=lambda: asyncio.run(running.serve([listener])), daemon=True)
+    thread.start()
+    yield served
+    running.should_exit = True
+    thread.join(10)
+    served.end()
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[StudioServer]:
+    """One server for all windows; each test gives it a file of its own."""
+    with served_studio() as served:
+        yield served
+
+
+class Window:
+    """A window of the studio, with what it complained of, driven by the pointer in pixels from the canvas's middle."""
+
+    def __init__(self, view: Any, server: StudioServer) -> None:
+        self.view, self.server, self.complaints = view, server, list[str]()
+        view.on("console", lambda message: self.complaints.append(message.text))
+        view.on("pageerror", lambda error: self.complaints.append(str(error)))
+        view.on("dialog", lambda dialog: dialog.accept())
+        view.goto(f"http://{server.host}/#{server.token}")
+        self.settle()
+        box = view.locator("#canvas").bounding_box()
+        self.middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def value(self, script: str, *given: Any) -> Any:
+        return self.view.evaluate(script, *given)
+
+    def until(self, script: str, seconds: float = 60.0) -> None:
+        """Wait until something holds: by asking, as the page's policy forbids scripts of texts."""
+        end = time.monotonic() + seconds
+        while not self.value(script):
+            assert time.monotonic() < end, script
+            self.view.wait_for_timeout(15)
+
+    def settle(self) -> None:
+        self.until("Boolean(window.studio?.isSettled)")
+
+    @property
+    def text(self) -> str:
+        return str(self.value("studio.text"))
+
+    def at(self, place: tuple[float, float]) -> tuple[float, float]:
+        return self.middle[0] + place[0], self.middle[1] + place[1]
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        (x, y), (u, v) = self.at(start), self.at(end)
+        self.view.mouse.move(x, y)
+        self.view.mouse.down()
+        self.view.mouse.move((x + u) / 2, (y + v) / 2)
+        self.view.mouse.move(u, v)
+        self.view.mouse.up()
+        self.settle()
+
+    def press(self, place: tuple[float, float], key: str) -> None:
+        self.view.mouse.move(*self.at(place))
+        self.view.keyboard.press(key)
+        self.settle()
+
+    def save(self) -> ck.Mechanism:
+        self.view.keyboard.press("Control+s")
+        self.until("studio.text === studio.saved")
+        return ck.load(str(self.server.path))
+
+
+@pytest.fixture
+def window(contexts: Callable[..., Any], server: StudioServer, tmp_path: Path) -> Iterator[Callable[..., Window]]:
+    """Open the studio of a text in a new window; all are closed afterwards."""
+    views: list[Any] = []
+
+    def of(text: str = START, size: tuple[int, int] = DESK, **how: Any) -> Window:
+        server.path, server.text = tmp_path / "drawn.toml", text
+        views.append(contexts(size, "", **how).new_page())
+        return Window(views[-1], server)
+
+    yield of
+    for view in views:
+        view.close(run_before_unload=False)
+
+
+def same_motion(drawn: ck.Mechanism, by_hand: ck.Mechanism, names: dict[str, str]) -> None:
+    one, other = ck.solve(drawn), ck.solve(by_hand)
+    for letter, own in names.items():
+        np.testing.assert_allclose(one.points[letter].position, other.points[own].position, rtol=0, atol=1e-9)
+
+
+A, B, C, D = (-200, 100), (-150, 0), (100, -120), (150, 100)
+
+
+def four_bar(seen: Window) -> None:
+    for start, end in ((A, B), (B, C), (C, D)):
+        seen.drag(start, end)
+    for place, key in ((A, "g"), (D, "g"), (A, "d")):
+        seen.press(place, key)
+
+
+def test_a_four_bar_is_drawn_moved_and_saved(window: Any) -> None:
+    """Six gestures. Its file solves as the mechanism with the lengths that the drawing has, at four pixels a unit."""
+    seen = window()
+    four_bar(seen)
+    assert seen.view.locator("#chip").inner_text() == "F = 3·3 − 2·4 = 1: moves"
+    a, b, c, d = (complex(x, -y) / 4 for x, y in (A, B, C, D))
+    by_hand = ck.Mechanism(
+        "By hand",
+        ck.link("frame", A=a, D=d),
+        ck.link("crank", A=0, B=abs(b - a)),
+        ck.link("coupler", B=0, C=abs(c - b)),
+        ck.link("rocker", D=0, C=abs(c - d)),
+        ck.drive("crank"),
+        ck.drawn(B=b, C=c),
+    )
+    same_motion(seen.save(), by_hand, {letter: letter for letter in "ABCD"})
+    # the driver is dragged by its handle, and the link follows
+    seen.view.keyboard.press("v")
+    seen.drag(B, (A[0] - 112, A[1]))
+    assert seen.value("studio.canvas.pose") == pytest.approx(180, abs=1)
+    shown = seen.value("studio.canvas.place('C')")
+    solved = ck.solve(by_hand, {"crank": np.deg2rad([float(seen.value("studio.canvas.pose"))])})
+    assert complex(*shown) == pytest.approx(solved.points["C"].position[0], abs=1e-3)
+    assert seen.complaints == []
+
+
+def test_a_slider_crank_is_drawn(window: Any) -> None:
+    seen = window()
+    seen.drag((-200, 0), (-150, -60))
+    seen.drag((-150, -60), (100, 0))
+    for place, key in (((-200, 0), "g"), ((100, 0), "s"), ((-200, 0), "d")):
+        seen.press(place, key)
+    by_hand = ck.Mechanism(
+        "By hand",
+        ck.link("frame", A=-50 + 0j, Q=25 + 0j),
+        ck.link("crank", A=0, B=abs(12.5 + 15j)),
+        ck.link("rod", B=0, C=abs(62.5 - 15j)),
+        ck.link("piston", C=0),
+        ck.slide("piston", on="frame", through="Q"),
+        ck.drive("crank"),
+        ck.drawn(B=-37.5 + 15j, C=25 + 0j),
+    )
+    same_motion(seen.save(), by_hand, {letter: letter for letter in "ABC"})
+    assert seen.complaints == []
+
+
+# The six-bar of Example 3-4 with its crank at zero, to tenths.
+SIX_BAR = {
+    "E": (0, 0), "D": (14, 0), "A": (41.2, -28), "C": (28.7, -2.8), "B": (41, 0), "F": (0, -34), "G": (37.3, 6.4),
+}  # fmt: skip
+
+
+def six_bar(seen: Window) -> None:
+    """Draw it at ten pixels a unit, the slot last: the point of the plate slides along the bar."""
+    seen.value("Object.assign(studio.canvas.view, { scale: 10, x: 20, y: -14 })")
+    px = {k: ((x - 20) * 10, -(y + 14) * 10) for k, (x, y) in SIX_BAR.items()}
+
+    def middle(one: str, other: str) -> tuple[float, float]:
+        return (px[one][0] + px[other][0]) / 2, (px[one][1] + px[other][1]) / 2
+
+    for start, end in ("ED", "DA", "AB", "FG"):
+        seen.drag(px[start], px[end])
+    seen.view.mouse.click(*seen.at(middle("D", "A")))
+    seen.press(px["C"], "p")
+    for letter in "EBF":
+        seen.press(px[letter], "g")
+    seen.view.mouse.click(*seen.at(px["C"]))
+    seen.press(middle("F", "C"), "s")
+    seen.press(px["E"], "d")
+
+
+def test_the_six_bar_of_the_textbook_is_drawn(window: Any) -> None:
+    seen = window()
+    six_bar(seen)
+    by_hand = ck.Mechanism(
+        "By hand",
+        ck.link("frame", "E", "B", "F"),
+        ck.link("crank", "E", "D"),
+        ck.link("plate", "D", "A", "C"),
+        ck.link("rocker", "A", "B"),
+        ck.link("bar", "F", "G"),
+        ck.link("block", "C"),
+        ck.slide("block", on="bar", at="C", through="F", toward="G"),
+        ck.drive("crank"),
+        ck.drawn(**SIX_BAR),
+    )
+    same_motion(seen.save(), by_hand, dict(zip("ABCDEFG", "EDABFGC", strict=True)))
+    assert seen.view.locator("#chip").inner_text() == "F = 3·5 − 2·7 = 1: moves"
+    assert seen.complaints == []
+
+
+def test_bars_start_and_end_on_bars_and_points_join(window: Any) -> None:
+    seen = window()
+    four_bar(seen)
+    on_bar = (B[0] + C[0]) / 2, (B[1] + C[1]) / 2
+    seen.drag(on_bar, (0, -250))
+    mechanism = loads(seen.text)
+    assert (mechanism.links["bar2"].letters, mechanism.links["bar4"].letters) == (("B", "C", "E"), ("E", "F"))
+    seen.drag((300, -250), (200, -200))
+    seen.view.keyboard.press("v")
+    seen.drag((200, -200), (0, -250))
+    assert loads(seen.text).pins["F"] == ("bar4", "bar5")
+    assert seen.complaints == []
+
+
+def test_text_and_drawing_are_two_sides_of_one_document(window: Any) -> None:
+    seen = window()
+    four_bar(seen)
+    before = seen.text
+    seen.view.locator("#text").fill(before.replace("B = [-37.5, 0]", "B = [-40, 0]"))
+    seen.until("studio.canvas.structure.points.B[0] === -40")
+    seen.view.locator("#text").fill(before + "[[drives]\n")
+    seen.until("document.querySelector('#problems').textContent.includes('line')")
+    assert seen.value("studio.canvas.structure.points.B[0]") == -40
+    while seen.view.locator("#undo").is_enabled():
+        seen.view.locator("#undo").click()
+        seen.settle()
+    assert seen.text == START
+    assert seen.complaints == []
+
+
+def test_a_reload_and_a_changed_file_lose_nothing(window: Any) -> None:
+    seen = window()
+    four_bar(seen)
+    drawn = seen.text
+    assert "#" not in seen.view.url
+    seen.view.reload()
+    seen.settle()
+    assert seen.text == drawn
+    seen.view.locator("#undo").click()
+    seen.settle()
+    seen.server.path.write_text(START)
+    seen.view.keyboard.press("Control+s")
+    notice = seen.view.locator("#notice")
+    notice.get_by_text("has changed on disk").wait_for()
+    assert seen.server.path.read_text() == START
+    notice.get_by_role("button", name="Replace it").click()
+    seen.until("studio.text === studio.saved")
+    assert seen.server.path.read_text() == seen.text
+    assert seen.complaints == []
+
+
+def test_without_its_token_a_window_is_told_so(window: Any, server: StudioServer, contexts: Any) -> None:
+    view = contexts(DESK, "").new_page()
+    view.goto(f"http://{server.host}/#wrong")
+    view.locator("#notice").get_by_text("did not let this window in").wait_for()
+    view.close()
+
+
+def test_by_the_keyboard_alone(window: Any) -> None:
+    """A bar from nothing and one from its end, a point moved by arrows, grounded, driven; all names are there."""
+    seen = window()
+    keys = seen.view.keyboard
+    seen.view.locator("#canvas").focus()
+    for key in ("n", "n", "ArrowUp", "ArrowUp"):
+        keys.press(key)
+        seen.settle()
+    seen.view.get_by_role("button", name="A", exact=True).press("Enter")
+    for key in ("g", "d"):
+        keys.press(key)
+        seen.settle()
+    mechanism = loads(seen.text)
+    assert mechanism.links["frame"].letters == ("A",)
+    assert [drive.link for drive in mechanism.drives] == ["bar1"]
+    assert seen.view.get_by_role("button", name="Drive bar2 at B").is_visible()
+    assert seen.complaints == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_is_narrow_enough_and_accessible(window: Any, scheme: str) -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+    seen = window(size=(390, 800), color_scheme=scheme, has_touch=True)
+    wire = seen.view.context.new_cdp_session(seen.view)
+    # a finger draws a bar
+    for kind, places in (
+        ("touchStart", [(-80, 20)]),
+        ("touchMove", [(0, 0)]),
+        ("touchMove", [(60, -40)]),
+        ("touchEnd", []),
+    ):
+        points = [dict(zip("xy", seen.at(place), strict=True)) for place in places]
+        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    seen.until("studio.text.includes('bar1')")
+    seen.settle()
+    assert seen.value("document.documentElement.scrollWidth") <= 390
+    found = axe.Axe().run(seen.view)
+    assert found.violations_count == 0, found.generate_report()
+    assert seen.complaints == []
+
+
+def gestures(seen: Window, count: int, dice: random.Random) -> None:
+    for _ in range(count):
+        points = [
+            tuple(one) for one in seen.value("Object.keys(studio.structure.points).map((k) => studio.canvas.at(k))")
+        ]
+        wide, high = seen.value("studio.canvas.size")
+
+        def somewhere(points: Any = points, wide: float = wide, high: float = high) -> tuple[float, float]:
+            if points and dice.random() < 0.6:
+                x, y = dice.choice(points)
+                return min(max(x, 2), wide - 2) - wide / 2, min(max(y, 2), high - 2) - high / 2
+            return dice.uniform(-wide, wide) / 2.2, dice.uniform(-high, high) / 2.2
+
+        if dice.random() < 0.55:
+            seen.drag(somewhere(), somewhere())
+        else:
+            keys = ["g", "g", "d", "s", "Delete", "v", "b", "Control+z", "Control+y", " ", "n", "ArrowUp", "Escape"]
+            seen.press(somewhere(), dice.choice(keys))
+
+
+def undone(seen: Window) -> str:
+    seen.value("() => { while (studio.place) studio.step(-1); }")
+    seen.settle()
+    return seen.text
+
+
+@pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.full)])
+def test_random_gestures_never_raise_and_are_undone_byte_for_byte(window: Any, count: int) -> None:
+    seen = window()
+    gestures(seen, count, random.Random(count))
+    assert "# kept" in seen.text
+    assert undone(seen) == START
+    assert seen.complaints == []
+
+
+def picture(path: Path) -> None:
+    """Write the picture of the page about the studio: the six-bar of the textbook, drawn by gestures and moved."""
+    from playwright.sync_api import sync_playwright
+
+    from tests.view.page.conftest import BROWSERS, FLAGS
+
+    found = next(where for name in BROWSERS if (where := shutil.which(name)))
+    with sync_playwright() as driver, served_studio() as served:
+        browser = driver.chromium.launch(executable_path=found, args=list(FLAGS))
+        served.text = START.replace("Drawn", "Six-bar").replace("# drawn by gestures\n", "").replace("  # kept", "")
+        served.path = Path("six-bar.toml")
+        seen = Window(browser.new_page(viewport={"width": 1280, "height": 760}), served)
+        six_bar(seen)
+        seen.value(
+            "() => { studio.canvas.chosen = null; studio.canvas.over = null; studio.pose(35); studio.canvas.fit(); }"
+        )
+        seen.view.screenshot(path=str(path))
+        browser.close()
+
+
+if __name__ == "__main__":
+    picture(Path(__file__).parents[3] / "docs" / "figures" / "studio.png")
