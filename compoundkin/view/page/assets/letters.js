@@ -30,7 +30,7 @@
     return { x, y, wide, tall: round ? RIM : TALL, small, texts, letter: part.dataset.letter, shown: "", now: [x, y], line: null };
   };
 
-  const far = ([ax, ay], [bx, by]) => Math.hypot(ax - bx, ay - by);
+  const far = (here, there) => Math.sqrt((here[0] - there[0]) ** 2 + (here[1] - there[1]) ** 2); // faster than hypot
   const AROUND_A_POINT = Array.from({ length: AROUND }, (_, k) => [Math.cos((2 * Math.PI * k) / AROUND), Math.sin((2 * Math.PI * k) / AROUND)]);
 
   class Letters {
@@ -69,9 +69,17 @@
       boxes.forEach((name, index) => {
         const own = name?.letter && seen[name.letter];
         if (!own || player.parts[index].classList.contains("missing")) return name?.letter && this.lead(name, null);
-        const by = this.grown(name), others = points.filter(([letter, at]) => letter !== name.letter && far(at, own) > APART).map(([, at]) => at);
-        const held = { name, own, by, others, numbers, put };
-        const drawn = Math.hypot(name.x, name.y), kept = this.offer(held, by * name.x, by * name.y, drawn > FARTHEST ? 1 : 0);
+        const by = this.grown(name), drawn = Math.hypot(name.x, name.y);
+        // what is farther than this from the point matters at no place that is tried
+        const wide = by * name.wide, tall = by * name.tall, away = Math.max(by * drawn, RINGS[LED] * by * Math.max(CLEAR + Math.hypot(name.wide, name.tall), 11));
+        const reach = (1 + NEARER) * away + DOT, others = [];
+        for (const [letter, at] of points) {
+          const between = letter === name.letter ? 0 : far(at, own);
+          if (between > APART && between < reach) others.push(at);
+        }
+        const meets = (one) => Math.abs(one.x - own[0]) < away + wide + one.wide && Math.abs(one.y - own[1]) < away + tall + one.tall;
+        const held = { name, own, by, others, numbers: numbers.filter(meets), put: put.filter(meets) };
+        const kept = this.offer(held, by * name.x, by * name.y, drawn > FARTHEST ? 1 : 0);
         let best = kept;
         if (kept.cost >= RING) {
           for (let ring = 0; ring < RINGS.length && best.cost > ring * RING; ring++) {
@@ -97,7 +105,9 @@
     offer({ name, own, by, others, numbers, put }, dx, dy, ring, line = 0, turned = 0) {
       const x = own[0] + dx, y = own[1] + dy, wide = by * name.wide, tall = by * name.tall, { left, top, width, height } = this.player.room;
       let cost = ring * RING + turned + line;
-      const away = Math.hypot(dx, dy), nearest = others.reduce((least, at) => Math.min(least, Math.hypot(at[0] - x, at[1] - y)), Infinity);
+      const away = Math.hypot(dx, dy);
+      let nearest = Infinity;
+      for (const at of others) nearest = Math.min(nearest, far(at, [x, y]));
       // who follows a line needs no distance
       if (nearest < away * NEARER) cost += line ? ON_POINT : WRONG * (1 + (away * NEARER - nearest) / away);
       for (const at of others) if (Math.abs(at[0] - x) < wide + DOT && Math.abs(at[1] - y) < tall + DOT) cost += ON_POINT;
