@@ -187,7 +187,7 @@ def _check(one: LinkageParameter, value: Any) -> None:
     elif one.kind == "str":
         if not isinstance(value, str):
             raise wrong(one.name, f"{short_repr(value)} is no word", one.meaning)
-    elif np.ndim(value):
+    elif isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim):
         many = 'many lengths are for a linkage of one: with_dimensions(linkage, {"crank.B.x": lengths}), or study(...)'
         raise wrong(one.name, f"{short_repr(value)} is not one number", many)
     elif not is_real(value) or not np.isfinite(value):
