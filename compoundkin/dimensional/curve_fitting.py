@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, unwrapped
+from compoundkin.dimensional.candidates import Candidates, Linkage
 from compoundkin.dimensional.coupler_atlas import AtlasMatch, coupler_atlas, mean_distance, resampled
 from compoundkin.dimensional.curve_chains import CRANK, GUIDE, GUIDE_OFFSET, POINT, CurveChain, guide
-from compoundkin.dimensional.linkages import Candidates, Linkage
 from compoundkin.dimensional.tasks import CurveTask
 from compoundkin.kinematics import solve
 from compoundkin.model.attributes import POSITION

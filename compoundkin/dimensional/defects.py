@@ -23,7 +23,7 @@ from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.poses import Pose
 from compoundkin.configurations.circuit import CircuitPlace
 from compoundkin.configurations.circuit_search import Circuits, circuits
-from compoundkin.dimensional.linkages import Linkage
+from compoundkin.dimensional.candidates import Linkage
 from compoundkin.dimensional.tasks import Conditions, extent
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at

@@ -26,8 +26,8 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number, wrapped
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.dimensional.candidates import COUPLER, Candidates, Linkage, of_dyads
 from compoundkin.dimensional.dyads import PR, RP, RR, Dyad, Dyads, dyads_of
-from compoundkin.dimensional.linkages import COUPLER, Candidates, Linkage, of_dyads
 from compoundkin.dimensional.tasks import (
     INPUT,
     OUTPUT,

@@ -14,6 +14,7 @@ from compoundkin.base.display import DisplaysHtml, aligned_text, count_phrase, d
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.added_dyads import added_output, double_dwell
+from compoundkin.dimensional.candidates import Candidates
 from compoundkin.dimensional.curve_fitting import traced
 from compoundkin.dimensional.defects import ACCURACY as ACCURACY_DEFECT
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
@@ -23,7 +24,6 @@ from compoundkin.dimensional.function_generation import (
     exact_function,
     stroke_linkage,
 )
-from compoundkin.dimensional.linkages import Candidates
 from compoundkin.dimensional.motion_generation import (
     few_poses_with_timing,
     five_poses,

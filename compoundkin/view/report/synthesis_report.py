@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.base.arrays import degrees
-from compoundkin.dimensional.linkages import Linkage
+from compoundkin.dimensional.candidates import Linkage
 from compoundkin.dimensional.synthesis import Answer
 from compoundkin.dimensional.tasks import Task
 from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dimensional.candidates import coupler_orientations, of_points
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, confirmed, judged
-from compoundkin.dimensional.linkages import coupler_orientations, of_points
 from compoundkin.dimensional.tasks import Conditions
 
 # C. W. Wampler, A. P. Morgan, A. J. Sommese, J. Mech. Des. 114 (1992) 153, problem 3.
