@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation import tabulated_chart
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
+from compoundkin.dynamics.simulation.friction_table import tabulated_pressing
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 from tests.dynamics.cases import SI, crank_rocker
 
 
@@ -149,3 +152,30 @@ def test_nothing_is_halved_where_nothing_is_assembled(monkeypatch: pytest.Monkey
     assert chart.table.motion.failed.any()
     assert chart.table.piece(1.9) is not None
     assert 0 < solved[0] < 4000
+
+
+@pytest.mark.parametrize("name", ["cam-return-spring", "oscillating-flat-follower"])
+def test_what_presses_a_contact_is_tabulated(name: str) -> None:
+    """It is that of the forces of a solved state, with loads that depend on speed and time."""
+    plain = ck.load(name)
+    size, (driver,) = plain.geometry.size, plain.drives
+    masses = [ck.mass(link, 1.0, inertia=0.1 * size**2) for link in plain.links if link != "frame"]
+    follower = next(link for link in plain.links if link not in ("frame", driver.link))
+    loads = (
+        ck.torque(driver.link, lambda t, w: np.sin(t) - 0.3 * w),
+        ck.force(follower, (lambda t: 3.0 * t, 2.0), at=0j),
+    )
+    units = {"length": "mm", "mass": "kg", "force": "N"}
+    cam = plain.replace(*masses, ck.gravity(0, -9.81), *loads, unit="", units=units)
+    chart = chart_of(ck.solve(cam, {driver.name: [0.3]}), (driver.name,), {})
+    assert isinstance(chart, TabulatedChart)
+    contact = next(pair.name for pair in cam.written_pairs if as_profile_contact(pair) is not None)
+    known = 0
+    for value in np.linspace(-2.4, 2.6, 8).tolist():
+        found = tabulated_pressing(chart, contact, 0.7, value, 3.0)
+        if found is None:  # next to a corner of the program
+            continue
+        known += 1
+        state = chart.state(0.7, np.array([value]), np.array([3.0]))
+        assert found == pytest.approx(pressing_force(ck.force_analysis(state.motion), contact), rel=1e-11)
+    assert known >= 6

@@ -54,8 +54,10 @@ from compoundkin.dynamics.simulation.tabulated_chart import (
     piece_at,
 )
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.pairs.contact import as_friction_pair
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 # The release of a driver is searched at so many times, and found to this part of the time.
 RELEASE_SAMPLES, RELEASED = 200, 1e-12
@@ -176,14 +178,6 @@ class FrictionTable(TabulatedChart):
     def contacts(self) -> tuple[LoadedContact, ...]:
         """The pairs with friction."""
         return friction_contacts_of(self.start)
-
-    @cached_property
-    def touched(self) -> tuple[str, ...]:
-        """The links on which loads that depend on time or speed act."""
-        value = [float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items() if name in self.free]
-        at = self.state(0.0, np.array(value), np.zeros(1)).loaded
-        links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
-        return tuple(dict.fromkeys(link for link in links if link != FRAME))
 
     def state(self, time: float, values: Number, speeds: Number) -> DriverState:
         """Return the state at a value and a speed of the driver."""
@@ -381,28 +375,11 @@ class FrictionTable(TabulatedChart):
         rows = piece.terms.dot(basis)
         others = pressed.layout.none
         if self.has_others:
-            more = self._others(piece, basis, time, value, speed)
+            more = self.wrenches_of_others(piece, basis, time, value, speed)
             if more is None:
                 return None
             others = more
         return pressed.layout.state(rows, speed, way * sliding, others, pressed.mild[id(piece)])
-
-    def _others(self, piece: TablePiece, basis: Number, time: float, value: float, speed: float) -> Number | None:
-        """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
-        at = self.loaded_at(piece, basis, time, np.array([value]), speed)
-        found = np.zeros(2 + 3 * len(self.touched))
-        for k, loads in enumerate(self.others):
-            for link, wrench in (one for load in loads for one in load.wrenches(at)):
-                if link == FRAME:
-                    continue
-                if link not in self.touched:
-                    return None
-                assert at.columns is not None
-                found[k] += np.ravel(at.freed(link, wrench).power(at.columns[link]))[0]
-                force, moment = complex(np.ravel(wrench.force)[0]), float(np.ravel(wrench.moment)[0])
-                first = 2 + 3 * self.touched.index(link)
-                found[first : first + 3] += force.real, force.imag, moment
-        return found
 
     def _at_rest(self, time: float, values: Number, way: float) -> NormalForceState:
         found = self._in_table(time, float(values[0]), 0.0, way)
@@ -560,12 +537,72 @@ class NormalForceTable:
         return SlidingStretch(self.edges[k], self.edges[k + 1], self.senses[k])
 
 
+class ContactForces:
+    """The forces that press contacts which may let go, without friction: a table over a driver, as of normal forces."""
+
+    def __init__(self, chart: TabulatedChart, contacts: tuple[LoadedContact, ...]) -> None:
+        assert chart.table is not None
+        table, motion = chart.table, chart.table.motion
+        self.layout = _layout(chart, motion, contacts)
+        sizes = _usual_sizes(self.layout, motion) | dict(table.least)
+        self.pieces = accurate_pieces(table.course, self.layout.terms, self.layout.scales, chart.candidates, sizes)
+        self.starts = [piece.low for piece in self.pieces]
+        self.index = {contact.name: k for k, contact in enumerate(contacts)}
+
+    def pressing(self, name: str, chart: TabulatedChart, time: float, value: float, speed: float) -> float | None:
+        """Return the force that presses a contact at a state of a chart, None where the table has none."""
+        inside = chart.tabulated(value)
+        piece = piece_at(self.pieces, self.starts, inside) if name in self.index else None
+        if piece is None:
+            return None
+        basis, n = piece.basis(inside), len(self.layout.contacts)
+        causes = piece.terms[4 + n :].dot(basis).reshape(-1, n)[:, self.index[name]]
+        second = float(chart.rates(time, np.array([value]), np.array([speed])).accelerations[0])
+        found = causes[0] + second * causes[1] + speed * speed * causes[2]
+        if chart.has_others:
+            more = chart.wrenches_of_others(piece, basis, time, value, speed)
+            if more is None:
+                return None
+            found += more[2:].dot(causes[3 + n :])
+        return float(found)
+
+
+def _usual_sizes(layout: ForceLayout, motion: Motion) -> dict[int, float]:
+    """Return the usual sizes of the scales of rows: in dwells some are rounding alone."""
+    rows, scales = np.abs(layout.terms(motion)), np.array(layout.scales)
+    found = {}
+    for scale in set(layout.scales):
+        known = np.max(rows[scales == scale], axis=0)
+        known = known[np.isfinite(known) & (known > 0.0)]
+        found[scale] = float(np.median(known)) if known.size else 0.0
+    return found
+
+
+def tabulated_pressing(chart: TabulatedChart, name: str, time: float, value: float, speed: float) -> float | None:
+    """Return the force that presses a contact, from a table made once; None where it is to be found from the state.
+
+    That is so with friction, stops and redundant pairs, and where the effort of a motor depends on the acceleration.
+    """
+    start, table = chart.start, chart.table
+    if type(chart) is not TabulatedChart or table is None or chart.laws or chart.held is not None or chart.closed:
+        return None
+    if start.structure.relaxation is not None or chart.rotors_that_lose:
+        return None
+    if chart.pressing is None or chart.pressing[0] is not table:
+        pairs = (pair for pair in chart.order.pairs.values()
+                 if (own := as_profile_contact(pair)) is not None and not own.has_ends)  # fmt: skip
+        contacts = (LoadedContact(one, Friction(one.name, 0.0)) for one in map(as_friction_pair, pairs) if one)
+        chart.pressing = table, ContactForces(chart, tuple(contacts))
+    forces: ContactForces = chart.pressing[1]
+    return forces.pressing(name, chart, time, value, speed)
+
+
 def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     """Return the table of normal forces of a chart with a table, None where they are nowhere accurate."""
     table = chart.table
     assert table is not None
-    layout = _layout(chart, table.motion)
-    sizes = _sizes_of_scales(layout, table.motion) | dict(table.least)
+    layout = _layout(chart, table.motion, chart.contacts)
+    sizes = _usual_sizes(layout, table.motion) | _sizes_of_scales(layout, table.motion) | dict(table.least)
     pieces = accurate_pieces(table.course, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
         return None
@@ -574,9 +611,9 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     return NormalForceTable(layout, pieces, [piece.low for piece in pieces], edges, found, mild)
 
 
-def _layout(chart: FrictionTable, motion: Motion) -> ForceLayout:
+def _layout(chart: TabulatedChart, motion: Motion, contacts: tuple[LoadedContact, ...]) -> ForceLayout:
     """Return the layout of the rows, whose number the first block shows."""
-    contacts, at = chart.contacts, next(iter(loaded_blocks(motion)))
+    at = next(iter(loaded_blocks(motion)))
     nothing = reverse_pass(motion.solving_order, at.block, {})
     each = [normal_forces_of(at, (contact,), nothing) for contact in contacts]
     rows = [row for own in each for row in own]

@@ -16,7 +16,7 @@ from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, LoadedState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
-from compoundkin.dynamics.simulation.friction_table import FrictionTable
+from compoundkin.dynamics.simulation.friction_table import FrictionTable, tabulated_pressing
 from compoundkin.dynamics.simulation.load_breaks import BreakPassed, LoadBreak, LoadPlace, first_break, load_places
 from compoundkin.dynamics.simulation.phases import LANDED, OpenPair, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
@@ -144,8 +144,7 @@ class LiftOffWatch(Watch):
 
     def value(self, chart: Chart, time: float, state: Number) -> float:
         """Return the force that presses it."""
-        n = len(chart.free)
-        return _pressed(self.pair, chart, chart.state(time, state[:n], state[n : 2 * n]), state)
+        return _pressing(self.pair, chart, time, state)
 
     def reason(self, states: Sequence[KnownState]) -> str:
         """Return why it lets go, by states of the step in which it does; nothing where it just comes to that."""
@@ -385,6 +384,17 @@ class OpenWatch(Watch):
 
 
 @dataclass(frozen=True, eq=False)
+class LiftWatch(OpenWatch):
+    """A contact that may let go and go on without it."""
+
+    pair: str = field(kw_only=True)
+
+    def value(self, chart: Chart, time: float, state: Number) -> float:
+        """Return the force that presses it."""
+        return _pressing(self.pair, chart, time, state)
+
+
+@dataclass(frozen=True, eq=False)
 class LandWatch(Watch):
     """A contact that has let go, and closes where both links meet."""
 
@@ -435,7 +445,7 @@ def stop_watches(chart: Chart) -> Iterator[ContactWatch]:
         elif release is not None:
             name = pair_meant(chart, release.pair).name
             text = f"the contact at {name} lets go"
-            yield OpenWatch(OPENS, _speed, text, False, True, item=release, margin=partial(_pressed, name))
+            yield LiftWatch(OPENS, _speed, text, False, True, item=release, margin=partial(_pressed, name), pair=name)
     for landing in (one for one in chart.open_pairs if one.contact is not None):
         yield LandWatch(LANDS, _speed, landing.pair.name, False, True, landing=landing)
 
@@ -450,6 +460,16 @@ def _latched(one: StopContact, chart: Chart, here: KnownState, state: Number) ->
 def _pressed(name: str, chart: Chart, here: KnownState, state: Number) -> float:
     """Return the normal force in a contact."""
     return pressing_force(force_analysis(here.motion), name)
+
+
+def _pressing(name: str, chart: Chart, time: float, state: Number) -> float:
+    """Return the normal force in a contact, from a table where there is one."""
+    n = len(chart.free)
+    if isinstance(chart, TabulatedChart):
+        found = tabulated_pressing(chart, name, time, *state[:2].tolist())
+        if found is not None:
+            return found
+    return _pressed(name, chart, chart.state(time, state[:n], state[n : 2 * n]), state)
 
 
 def _joining(release: Release, chart: Chart, here: KnownState, state: Number) -> float:

@@ -44,6 +44,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.attachments import PairLoad, PlainEffort
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.motor import Motor, PlainRotor
@@ -71,6 +72,7 @@ class TabulatedChart(DriverChart):
                             for loads, known in zip(self.loads, self.timeless, strict=True))  # fmt: skip
         self.table: DriveTable | None = None
         self.wraps = False
+        self.pressing: tuple[DriveTable, Any] | None = None  # what presses contacts, by the table for which it is made
         self._straight: dict[int, tuple[float, float]] = {}
         first = {name: float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items()}[self.free[0]]
         self._tabulate(first, self.start.poses)
@@ -207,6 +209,33 @@ class TabulatedChart(DriverChart):
             value = self.turns_of(pair.name, free, values) if pair.free_is_angle else free
             known[pair.name] = KnownCoordinate(value, rate * speed, np.array([rate]), second * speed * speed)
         return replace(at, driven=known)
+
+    @cached_property
+    def touched(self) -> tuple[str, ...]:
+        """The links on which loads that depend on time or speed act."""
+        value = [float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items() if name in self.free]
+        at = self.state(0.0, np.array(value), np.zeros(1)).loaded
+        links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
+        return tuple(dict.fromkeys(link for link in links if link != FRAME))
+
+    def wrenches_of_others(
+        self, piece: TablePiece, basis: Number, time: float, value: float, speed: float
+    ) -> Number | None:
+        """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
+        at = self.loaded_at(piece, basis, time, np.array([value]), speed)
+        found = np.zeros(2 + 3 * len(self.touched))
+        for k, loads in enumerate(self.others):
+            for link, wrench in (one for load in loads for one in load.wrenches(at)):
+                if link == FRAME:
+                    continue
+                if link not in self.touched:
+                    return None
+                assert at.columns is not None
+                found[k] += np.ravel(at.freed(link, wrench).power(at.columns[link]))[0]
+                force, moment = complex(np.ravel(wrench.force)[0]), float(np.ravel(wrench.moment)[0])
+                first = 2 + 3 * self.touched.index(link)
+                found[first : first + 3] += force.real, force.imag, moment
+        return found
 
     @cached_property
     def loaded_pairs(self) -> tuple[Pair, ...]:
