@@ -107,6 +107,15 @@ def test_the_files_are_whole(tmp_path: Path) -> None:
         body = text.replace("°", "")
         assert not [sign for sign in body if ord(sign) > 255]
     # the sheet does not give the groups away
+    for name in ("01", "01-solution"):
+        text = (folder / f"{name}.tex").read_text()
+        used = {
+            one
+            for options in re.findall(r"\\(?:path|node)\[([^]]*)\]", text)
+            for one in re.findall(r"ck-[\w-]+", options)
+        }
+        assert used
+        assert used <= {*re.findall(r"(ck-[\w-]+)/\.style", text)}  # another is an arrow to TikZ, and an error
     assert 'ck-bar1"' not in (folder / "01.svg").read_text()
     assert 'ck-bar1"' in (folder / "01-solution.svg").read_text()
     with pytest.raises(ck.errors.InvalidInput, match="not empty"):
