@@ -264,17 +264,30 @@ class ExplainsAttributes:
         def __getattr__(self, name: str) -> Any:
             if hasattr(type(self), name):
                 return object.__getattribute__(self, name)  # a property that failed: its own error
-            what = f"{type(self).__name__!r} object has no attribute {name!r}"
-            if name.startswith("_"):
-                raise AttributeError(what)
-            package = sys.modules[__name__.partition(".")[0]]
-            own = [one for one in dir(self) if not one.startswith("_")]
-            remedy = self._instead(name)
-            functions = [one for one in (name, *OTHER_WORDS.get(plain_word(name), ())) if one in package.__all__]
-            if not remedy and (name in functions or not nearest(name, own)):
-                words = f"{package.__name__}.{functions[0]}({plain_word(type(self).__name__)})" if functions else ""
-                remedy = f"write {words}" if words else ""
-            raise AttributeError(f"{what}; {remedy or suggestion(name, own)}")
+            raise _NoAttribute(self, name)
+
+
+class _NoAttribute(AttributeError):
+    """An attribute that is not there; what is meant is found when somebody reads it, as `hasattr` asks often."""
+
+    def __init__(self, whole: ExplainsAttributes, name: str) -> None:
+        super().__init__(f"{type(whole).__name__!r} object has no attribute {name!r}")
+        self._whole, self._name = whole, name
+
+    def __reduce__(self) -> tuple[type[AttributeError], tuple[str]]:
+        return AttributeError, (str(self),)
+
+    def __str__(self) -> str:
+        what, name, whole = self.args[0], self._name, self._whole
+        if name.startswith("_"):
+            return str(what)
+        package = sys.modules[__name__.partition(".")[0]]
+        own = [one for one in dir(whole) if not one.startswith("_")]
+        functions = [one for one in (name, *OTHER_WORDS.get(plain_word(name), ())) if one in package.__all__]
+        remedy = whole._instead(name)
+        if not remedy and functions and (name in functions or not nearest(name, own)):
+            remedy = f"write {package.__name__}.{functions[0]}({plain_word(type(whole).__name__)})"
+        return f"{what}; {remedy or suggestion(name, own)}"
 
 
 _lock = Lock()
