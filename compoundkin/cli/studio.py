@@ -35,8 +35,10 @@ from compoundkin.cli.shell import say
 HOST = "127.0.0.1"
 # A message may have so many bytes; a socket so many questions that wait; there may be so many windows.
 MOST_BYTES, MOST_WAITING, MOST_WINDOWS = 500_000, 24, 8
-# Seconds for a reply, for the first message of a socket, and the memory of a process that replies, in bytes.
-SECONDS, GREETING, MEMORY = 10.0, 5.0, 4 << 30
+# Seconds for a reply, for a process to begin, for the first message of a socket; memory of such a process, in bytes.
+SECONDS, BEGINNING, GREETING, MEMORY = 10.0, 60.0, 15.0, 4 << 30
+# What a process says when it has begun.
+READY = b"ready\n"
 # Closed for a reason that is the other side's.
 REFUSED = 1008
 POLICY = (
@@ -186,6 +188,7 @@ class AnsweringProcess:
 
     process: subprocess.Popen[bytes] | None = None
     has_ended: bool = False
+    is_ready: bool = False
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def start(self) -> subprocess.Popen[bytes]:
@@ -194,6 +197,7 @@ class AnsweringProcess:
         paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
         # nothing is imported from the folder that it is started in
         words = [sys.executable, "-P", "-c", "from compoundkin.cli.studio import reply_to_lines; reply_to_lines()"]
+        self.is_ready = False
         self.process = subprocess.Popen(
             words,
             stdin=subprocess.PIPE,
@@ -210,16 +214,10 @@ class AnsweringProcess:
             process = self.process
             if process is None or process.poll() is not None:
                 process = self.start()
-            assert process.stdin is not None
-            assert process.stdout is not None
-            timer = threading.Timer(seconds, process.kill)
-            timer.start()
-            line = b""
-            with suppress(OSError):
-                process.stdin.write(json.dumps([document, question]).encode() + b"\n")
-                process.stdin.flush()
-                line = process.stdout.readline()
-            timer.cancel()
+            # what it imports does not count
+            if not self.is_ready:
+                self.is_ready = _line(process, BEGINNING) == READY
+            line = _line(process, seconds, json.dumps([document, question]).encode() + b"\n") if self.is_ready else b""
             if line.endswith(b"\n"):
                 reply: dict[str, Any] = json.loads(line)
                 return reply
@@ -242,6 +240,21 @@ class AnsweringProcess:
                 self.lock.release()
 
 
+def _line(process: subprocess.Popen[bytes], seconds: float, question: bytes = b"") -> bytes:
+    """Return the next line of a process, after a question if there is one; what there is of it when time is over."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    timer = threading.Timer(seconds, process.kill)
+    timer.start()
+    line = b""
+    with suppress(OSError, ValueError):
+        process.stdin.write(question)
+        process.stdin.flush()
+        line = process.stdout.readline()
+    timer.cancel()
+    return line
+
+
 def _closed(process: subprocess.Popen[bytes]) -> None:
     """Wait for a process that has been ended, and close what led to it."""
     process.wait()
@@ -259,6 +272,8 @@ def reply_to_lines() -> None:
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    sys.stdout.buffer.write(READY)
+    sys.stdout.buffer.flush()
     for line in sys.stdin.buffer:
         document, question = json.loads(line)
         try:

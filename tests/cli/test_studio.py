@@ -20,6 +20,7 @@ from click.testing import CliRunner
 from compoundkin.cli import cli
 from compoundkin.cli.studio import MOST_BYTES, POLICY, REFUSED, AnsweringProcess, opened
 from compoundkin.errors import InvalidInput
+from compoundkin.files.shipped_mechanisms import resolve
 
 sync = pytest.importorskip("websockets.sync.client")
 exceptions = pytest.importorskip("websockets.exceptions")
@@ -162,7 +163,7 @@ def test_what_takes_too_long_is_ended_and_the_next_question_is_answered() -> Non
     one = AnsweringProcess()
     try:
         first = one.start()
-        reply = one.ask(TEXT, {"ask": "structure"}, seconds=0.01)
+        reply = one.ask(resolve("v8-engine").read_text(encoding="utf-8"), {"ask": "motion"}, seconds=0.005)
         assert reply["is_ended"]
         assert "took longer" in reply["problems"][0]["what"]
         assert first.poll() is not None

@@ -48,6 +48,7 @@ class Studio {
     this.queue = Promise.resolve();
     this.typed = 0;
     this.edits = 0;
+    this.asking = {};
     this.isFitted = false;
     const kept = this.#kept(), token = location.hash.slice(1) || kept?.token || "";
     // the token leaves the address, which people copy
@@ -163,36 +164,58 @@ class Studio {
 
   // --- the waves
 
-  async #show(isTyped = false) {
-    const text = this.text;
-    if (!isTyped || part("text").value !== text) part("text").value = text;
+  #show(isTyped = false) {
+    if (!isTyped || part("text").value !== this.text) part("text").value = this.text;
     this.#state();
     this.#keep();
     this.halt();
-    this.asked = text;
-    const structure = await this.wire.ask({ document: text, question: { ask: "structure" } });
-    if (text !== this.text || structure.is_dropped) return;
-    this.#problems(structure.problems ?? []);
+    this.#latest("structure", (reply, text) => this.#structured(reply, text));
+  }
+
+  // one question of a kind is under way; when its text is not the newest any more, it is asked again
+  async #latest(ask, take) {
+    if (this.asking[ask]) return;
+    this.asking[ask] = true;
+    let text, reply;
+    do {
+      text = this.text;
+      reply = await this.wire.ask({ document: text, question: { ask } });
+    } while (text !== this.text);
+    this.asking[ask] = false;
+    take(reply, text);
+  }
+
+  #structured(structure, text) {
+    this.known = text;
+    this.problems = structure.problems ?? [];
+    this.#problems(this.problems);
     if (!structure.is_text) { this.shown = text; return; }
     this.canvas.motion = null;
     this.canvas.pose = null;
     this.#forget(structure);
     this.canvas.show(structure);
     this.#panels(structure);
-    if (structure.moves) {
-      const motion = await this.wire.ask({ document: text, question: { ask: "motion" } });
-      if (text !== this.text || motion.is_dropped) return;
-      this.#problems([...(structure.problems ?? []), ...(motion.problems ?? [])]);
-      if (motion.poses) {
-        this.canvas.motion = motion;
-        if (this.goTo !== null && this.goTo !== undefined && this.canvas.isShown(this.goTo)) this.canvas.pose = this.goTo;
-        this.#gaps(motion);
-      }
+    if (structure.moves) this.#latest("motion", (reply, asked) => this.#moved(reply, asked));
+    else this.#finish(text);
+  }
+
+  #moved(motion, text) {
+    // the structure of a newer text asks again
+    if (text !== this.known) return;
+    this.#problems([...this.problems, ...(motion.problems ?? [])]);
+    if (motion.poses) {
+      this.canvas.motion = motion;
+      if (this.goTo !== null && this.goTo !== undefined && this.canvas.isShown(this.goTo)) this.canvas.pose = this.goTo;
+      this.#gaps(motion);
     }
+    this.#finish(text);
+  }
+
+  #finish(text) {
     this.goTo = null;
-    if (!this.isFitted && structure.links.length) {
-      this.isFitted = this.history.length === 1;
-      if (this.isFitted) this.canvas.fit();
+    if (!this.isFitted && this.structure.links.length) {
+      // a file that is opened is seen whole; one that is drawn keeps its scale
+      if (this.history.length === 1) this.canvas.fit();
       this.isFitted = true;
     }
     this.#driver();

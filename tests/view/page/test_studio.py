@@ -26,6 +26,9 @@ pytest.importorskip("websockets")
 
 START = '# drawn by gestures\nformat = 1\ntitle = "Drawn"  # kept\n'
 DESK = (1440, 900)
+# What is told of a window that does not come to rest.
+STATE = """[studio.edits, studio.text, studio.shown, studio.wire.socket.readyState, studio.wire.waiting.size,
+  document.querySelector("#notice").textContent, document.querySelector("#problems").textContent]"""
 
 
 @contextmanager
@@ -72,7 +75,7 @@ class Window:
         """Wait until something holds: by asking, as the page's policy forbids scripts of texts."""
         end = time.monotonic() + seconds
         while not self.value(script):
-            assert time.monotonic() < end, script
+            assert time.monotonic() < end, (script, self.complaints, self.value(STATE))
             self.view.wait_for_timeout(15)
 
     def settle(self) -> None:
