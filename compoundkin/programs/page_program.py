@@ -30,8 +30,10 @@ from compoundkin.programs.graph.operation_graph import (
     INPUT,
     OPERATIONS,
     SEED,
+    SIGN,
     InputNumber,
     OperationGraph,
+    group_seed,
 )
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, record_mechanism
 from compoundkin.programs.recording.recorded_motion import ProgramOutput, RecordedLink, RecordedMotion, record_outputs
@@ -70,13 +72,16 @@ class PageProgram(ShortRepr):
     def of(cls, motion: Motion, outputs: Sequence[ProgramOutput] = ()) -> PageProgram:
         """Record a motion; outputs that no program tells are left out.
 
-        Raises InvalidInput where it passes a change point, or has profiles.
+        Where it passes a change point, the signs of the groups that go on in their other modes are seeds. Raises
+        InvalidInput where such a group is beside one without a closed form, or where the mechanism has profiles.
         """
-        if links := changed_modes(motion):
-            what = "the motion passes a change point, where a group goes on in its other mode"
-            raise InvalidInput(Problem(", ".join(links), what, "leave the change point out"))
+        changed = changed_modes(motion)
+        if changed and motion.solving_order.numbered:
+            what = "the motion passes a change point beside a group without a closed form"
+            raise InvalidInput(Problem(", ".join(changed[0].group.links), what, "leave the change point out"))
         order = min(HIGHEST, motion.order)
         signs, still, ends = ProgramConfiguration.of(motion).signs, _zero_rates(motion, order), motion.inputs.ends
+        signs = {k: sign for k, sign in signs.items() if k not in {solver.index for solver in changed}}
         stated = StatedDimensions(motion.mechanism, ends)
         # coordinates of points, and numbers of pairs
         single = [one for one in stated.known.values() if one.is_read and not one.is_vector]
@@ -98,6 +103,27 @@ class PageProgram(ShortRepr):
         free = self.mechanism.recording.free
         read = [one for one in free if one.is_of_link or not self._inputs.isdisjoint(one.inputs)]
         return consistent_dimensions(self.motion, self.mechanism, self.carried[0], self.stated, read)
+
+    @cached_property
+    def signs(self) -> Mapping[InputNumber, int]:
+        """The signs that groups with change points have where other dimensions leave them none."""
+        own = ProgramConfiguration.of(self.motion).signs
+        indices = {group_seed(solver.index): solver.index for solver in self.mechanism.order.solvers}
+        return {one: own[indices[one.name]] for one in self.seeds if one.part == SIGN}
+
+    def keeps_change_points(self, one: FreeDimension) -> bool:
+        """Return whether the change points of the motion hang on nothing that a dimension changes."""
+        return self._meeting.isdisjoint(one.inputs)
+
+    @cached_property
+    def _meeting(self) -> Set[InputNumber]:
+        """What the discriminants of groups with change points depend on."""
+        graph, notes = self.mechanism.graph, self.mechanism.notes
+        names = {one.name for one in self.signs}
+        groups = [solver.index for solver in self.mechanism.order.solvers if group_seed(solver.index) in names]
+        nodes = [self.mechanism.number(note.c[0]).x for k in groups for note in notes[k]]
+        inputs = (graph.nodes[k].given for k in graph.inputs(_once(nodes)))
+        return {one: None for one in inputs if one is not None}.keys()
 
     @property
     def order(self) -> int:

@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import ANGLE, coordinate_dimension, unit_of
-from compoundkin.programs.graph.operation_graph import SEED, TURNS, InputNumber, OperationGraph, group_seed
+from compoundkin.programs.graph.operation_graph import SEED, SIGN, TURNS, InputNumber, OperationGraph, group_seed
 from compoundkin.programs.recording.recorded_march import side_of, state_seeds
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
@@ -24,16 +24,14 @@ from compoundkin.programs.recording.recorded_number import RecordedNumber
 RANGES_SHOWN = 6
 
 
-def changed_modes(motion: Motion) -> tuple[str, ...]:
-    """Return the links of the first group that changes its mode along a motion.
-
-    There are none where no group does. The motion is of one design.
-    """
+def changed_modes(motion: Motion) -> tuple[GroupSolver, ...]:
+    """Return the groups that change their modes along a motion of one design."""
     places = np.arange(motion.shape[-1], dtype=float)[None, :]
-    for solver in motion.solving_order.solvers:
-        if not solver.is_numbered and np.ptp(motion.followed.sign(solver.index, np.array([[0]]), places)):
-            return solver.group.links
-    return ()
+    return tuple(
+        solver
+        for solver in motion.solving_order.solvers
+        if not solver.is_numbered and np.ptp(motion.followed.sign(solver.index, np.array([[0]]), places))
+    )
 
 
 def configuration_notes(motion: Motion, order: int, has_states: bool = False) -> Iterator[str]:
@@ -121,6 +119,9 @@ def _carried_state(mechanism: RecordedMechanism, given: InputNumber) -> CarriedS
         what = f"angle of {given.name}, full turns too"
         return CarriedState(given, angle, f"{given.name}.{ANGLE}", what, is_angle=True)
     for solver in mechanism.order.solvers:
+        if given.name == group_seed(solver.index) and given.part == SIGN:
+            what = f"sign of the mode of {', '.join(solver.group.links)}"
+            return CarriedState(given, RecordedNumber.given(mechanism.graph, given), f"{solver.index + 1}.{SIGN}", what)
         if given.name == group_seed(solver.index) and solver.width:
             k = int(given.part)
             now = mechanism.number(solver.state(mechanism.block)[k])

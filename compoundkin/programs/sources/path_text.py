@@ -105,10 +105,10 @@ def _assembled_node(mechanism: RecordedMechanism, states: Sequence[CarriedState]
 
 def _check_one_configuration(motion: Motion) -> None:
     """Raise InvalidInput where a group changes its mode along the motion."""
-    links = changed_modes(motion)
-    if links:
+    if changed := changed_modes(motion):
         what = "it passes a change point and goes on in its other mode, and a text keeps one"
-        raise InvalidInput(Problem(", ".join(links), what, "compile it with values that lie between two change points"))
+        links = ", ".join(changed[0].group.links)
+        raise InvalidInput(Problem(links, what, "compile it with values that lie between two change points"))
 
 
 def _arguments(path: PathVariants, mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> Iterator[Argument]:

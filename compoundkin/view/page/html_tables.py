@@ -12,7 +12,7 @@ from math import isfinite
 
 import numpy as np
 
-from compoundkin.model.attributes import with_superscripts
+from compoundkin.model.attributes import DEGREES, with_superscripts
 from compoundkin.structure import Structure, roman
 from compoundkin.view.page.markup import breakable, element, lines, safe, screen_reader_text
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
@@ -141,12 +141,17 @@ def _head(shown: HtmlTable) -> str:
 
 def _heading(column: Column, shown: HtmlTable) -> str:
     name = breakable(column.name) if column.name else screen_reader_text("result")
-    unit = f' <span class="unit">[{safe(with_superscripts(column.unit))}]</span>' if column.unit else ""
+    unit = f' <span class="unit">[{safe(_signs(column.unit))}]</span>' if column.unit else ""
     button = element("button", f"{name}{unit}", type="button", class_="sort")
     kind = "number" if column.is_number else None
     quantity = f' data-quantity="{safe(column.name)}"' if shown.poses else ""
     links = _links_attribute(shown.names.about(column.name))
     return f'<th scope="col"{class_attribute(kind)}{links}{quantity}>{button}</th>'
+
+
+def _signs(unit: str) -> str:
+    """Return a unit as a page has it everywhere: with the sign of degrees, and raised powers."""
+    return "°" if unit == DEGREES else with_superscripts(unit)
 
 
 def _body(shown: HtmlTable) -> str:
@@ -204,7 +209,7 @@ def cell_html(column: Column, cell: Cell, text: str) -> str:
         inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
         return f'<td data-sort="{int(cell)}" data-copy="{word}">{inside}</td>'
     kind = "number" if column.is_number else "long" if len(text) > LONG else None
-    inside = "<br>".join(map(safe, (with_superscripts(text) if column.name == UNIT else text).split("\n")))
+    inside = "<br>".join(map(safe, (_signs(text) if column.name == UNIT else text).split("\n")))
     return f"<td{class_attribute(kind)}{''.join(_exact_attributes(column, cell, text))}>{inside}</td>"
 
 

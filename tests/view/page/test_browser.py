@@ -168,7 +168,7 @@ def test_a_table_is_copied_with_every_digit(made: Made, opened: Open, script: st
     one.wait_for_timeout(150)
     text = one.value("window.taken") if script else one.value("navigator.clipboard.readText()")
     rows = [line.split("\t") for line in text.splitlines()]
-    assert rows[0][:3] == ["crank [deg]", "G.position.x [mm]", "G.position.y [mm]"]
+    assert rows[0][:3] == ["crank [°]", "G.position.x [mm]", "G.position.y [mm]"]
     assert len(rows) == 26
     motion = catalog.motion(SIX_BAR)
     places = motion.points["G"].position

@@ -125,7 +125,9 @@ class LiveData:
         own = seed_values(program.seeds, self.motion)
         for row, (given, state) in enumerate(zip(program.seeds, program.carried[0], strict=True), len(program.drives)):
             values = packed_doubles(own[given][0][self.chosen])
-            kinds = {"angle": state.is_angle, "corrected": state.is_corrected}
+            kinds: dict[str, Any] = {"angle": state.is_angle, "corrected": state.is_corrected}
+            if given in program.signs:
+                kinds["sign"] = program.signs[given]
             yield {"row": row, "now": self.places[state.now.x], "own": values, **kinds}
 
     def _dimension(self, one: FreeDimension) -> dict[str, Any]:
@@ -140,6 +142,7 @@ class LiveData:
             "kind": kind,
             "unit": unit,
             "value": value,
+            **({"keeps": self.program.keeps_change_points(one)} if self.program.signs else {}),
         }
 
     def _drive(self, name: str) -> dict[str, Any]:

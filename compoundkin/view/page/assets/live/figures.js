@@ -56,8 +56,8 @@
   // --- what there is to follow ------------------------------------------------------------------------------------------
   const unitOf = (text) => {
     const order = text.endsWith("/s²") ? 2 : text.endsWith("/s") ? 1 : 0;
-    const kind = text.startsWith("rad") || text.startsWith("deg") ? "angle" : text ? "length" : null;
-    return { order, kind, by: text === "deg" ? DEGREE : 1 };
+    const kind = text.startsWith("rad") || text === "°" ? "angle" : text ? "length" : null;
+    return { order, kind, by: text === "°" ? DEGREE : 1 };
   };
   const rows = [...document.querySelectorAll("tr[data-figure]")].map((tr) => {
     const [kind, ...names] = JSON.parse(tr.dataset.figure);

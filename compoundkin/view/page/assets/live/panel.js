@@ -131,10 +131,12 @@
     update() {
       const { row } = this, value = this.value, own = row.original ? row.original() : value;
       const changed = Boolean(row.original) && !row.isSame(value, own);
-      this.root.hidden = row.late && !changed && document.activeElement !== this.input;
+      const hides = row.late && !changed && document.activeElement !== this.input;
+      // to write what is there already makes the browser look at the styles of the whole page
+      if (this.root.hidden !== hides) this.root.hidden = hides;
       this.root.classList.toggle("changed", changed);
       this.was.textContent = changed ? `was ${page.written(own)}` : "";
-      if (this.back) this.back.hidden = !changed;
+      if (this.back && this.back.hidden === changed) this.back.hidden = !changed;
       // what somebody is typing, right or wrong, stays
       if (!this.bad && (document.activeElement !== this.input || this.input.value === this.shown)) this.write();
     }

@@ -19,6 +19,8 @@
     // `values` are those of the drivers at all poses, `single` a machine of one pose, `start` where everything starts
     constructor({ size, states, sides, dimensions }, program, { start, values, single }) {
       Object.assign(this, { program, size, all: states, sides, start, single });
+      this.signs = states.flatMap(({ sign, own }, index) => (sign === undefined ? [] : [{ index, sign, own: page.unpacked(own, values[0].length) }]));
+      this.special = dimensions.flatMap(({ keeps, value }, index) => (keeps === false ? [[index, value]] : []));
       this.drives = (k) => values.map((one) => one[k]);
       this.corrected = states.some(({ corrected }) => corrected);
       this.units = dimensions.map(({ kind, value }) => (kind === "angle" ? 1 : kind === "ratio" ? Math.abs(value) : size));
@@ -40,6 +42,9 @@
     // pose; otherwise they are followed from there.
     carried(machine, numbers, near, home = null) {
       const values = near.values.map((row) => row.slice());
+      // a change point is there as long as all that it hangs on is; else a group stays in the mode in which it was drawn
+      const passes = this.special.every(([index, value]) => numbers[index] === value);
+      for (const { index, sign, own } of this.signs) values[index] = passes ? own.slice() : own.map(() => sign);
       const strides = this.corrected ? this.strides(numbers, near.numbers) : 1;
       for (let step = 1; step <= strides; step++) {
         machine.take(between(near.numbers, numbers, step / strides));
