@@ -378,9 +378,9 @@ def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance:
     found = places("points", points)
     if links not in (4, 6):
         raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4 or 6"))
-    found = found[np.append(True, np.abs(np.diff(found)) > 0.0)]
+    found = np.concatenate([found[:1], found[1:][np.diff(found) != 0.0]])
     if len(found) < FEWEST_OF_CURVE:
-        what = f"{count_phrase(len(found), 'different point')} say little of a curve"
+        what = f"{count_phrase(len(found), 'different point')}: too few for a curve"
         raise InvalidInput(Problem("points", what, f"give {FEWEST_OF_CURVE} or more, or take the task `points`"))
     meets = abs(found[-1] - found[0]) <= MEETING * extent(found)
     is_closed = bool(meets if closed is None else closed)

@@ -164,6 +164,7 @@ def test_conditions_hold_for_curves_too() -> None:
         (EGG, {"links": 5}, "take 4 or 6"),
         ([1, 2, np.nan, 4, 5, 6, 7, 8, 9], {}, "not finite"),
         (np.ones(20), {}, "1 different point"),
+        ([], {}, "0 different points"),
     ],
 )
 def test_wrong_curves_say_what_would_do(points: Any, options: Any, words: str) -> None:
