@@ -160,7 +160,7 @@ def test_conditions_hold_for_curves_too() -> None:
 @pytest.mark.parametrize(
     ("points", "options", "words"),
     [
-        (EGG[:5], {}, "say little of a curve"),
+        (EGG[:5], {}, "too few for a curve"),
         (EGG, {"links": 5}, "take 4 or 6"),
         ([1, 2, np.nan, 4, 5, 6, 7, 8, 9], {}, "not finite"),
         (np.ones(20), {}, "1 different point"),
