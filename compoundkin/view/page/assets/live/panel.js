@@ -177,6 +177,9 @@
       this.now = (name) => this.design.value(name);
       this.own = (name) => this.design.own[this.design.index.get(name)];
       this.build(live.panel);
+      for (const kind of ["focusin", "focusout"]) {
+        this.root.addEventListener(kind, ({ target }) => document.documentElement.classList.toggle("measuring", kind === "focusin" && Boolean(target.closest(".dimension"))));
+      }
       player.listeners.push(() => this.soon());
       for (const kind of ["change", "commit"]) this.design.on(kind, () => this.soon());
       this.update();
@@ -243,7 +246,12 @@
     update() {
       this.waits = 0;
       for (const field of this.fields) field.update();
-      for (const group of this.root.querySelectorAll(".group")) group.hidden = !group.querySelector(".dimension:not([hidden])");
+      // classes for what :has() could tell: with it every change of a text makes the browser look at the styles of all links
+      for (const group of this.root.querySelectorAll(".group")) {
+        const isBare = !group.querySelector(".dimension:not([hidden])");
+        if (group.hidden !== isBare) group.hidden = isBare;
+        group.classList.toggle("altered", Boolean(group.querySelector(".dimension.changed")));
+      }
       this.root.classList.toggle("changed", this.design.isChanged);
     }
   }
