@@ -23,7 +23,7 @@ Examples:
 \b
 A task file:
   format = 1
-  task = "poses"           # or points, mixed, curve, function, swing, stroke, dwell
+  task = "poses"   # points, mixed, curve, function, swing, stroke, dwell
   link = "plate"
   poses = [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]]   # x, y, degrees
   [conditions]
