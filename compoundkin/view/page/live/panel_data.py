@@ -27,6 +27,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN, pairs_among
 from compoundkin.programs.dimensions import FreeDimension, StatedDimensions, mechanism_with
+from compoundkin.programs.sources.fixed_configuration import changed_modes
 
 # Of so many pivots of the frame every distance is a row; of more those from the first.
 FEW_PIVOTS = 3
@@ -363,8 +364,10 @@ def configuration_modes(motion: Motion) -> tuple[list[Mode], bool]:
     """
     mechanism, solvers = motion.mechanism, motion.solving_order.solvers
     found = []
+    changed = changed_modes(motion)
     for solver in solvers:
-        if solver.modes == 2:
+        # a mode that is stated holds along the whole motion; where it changes, the drawing says which it is there
+        if solver.modes == 2 and solver not in changed:
             own = next((one for one in mechanism.modes if set(one.links) & set(solver.group.links)), None)
             found.append(mode(motion.sign(solver.index, 0), *(own.links if own else solver.group.links[:1])))
     return found, any(solver.is_numbered for solver in solvers)
