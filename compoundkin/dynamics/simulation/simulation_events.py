@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import islice
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -630,7 +631,10 @@ def first_passed(
             if (passed := one.passed(chart, times, by_ends)) is not None:
                 found.append(Passed(one, passed.time, between(np.array(passed.time)), passed.at))
         else:
-            found += [Passed(one, time, between(np.array(time))) for time in _zeros(one, chart, times, between)]
+            zeros = _zeros(one, chart, times, between)
+            # all but a user's own interrupt the step, so that later zeros are none
+            wanted = zeros if one.asked else islice(zeros, 1)
+            found += [Passed(one, time, between(np.array(time))) for time in wanted]
     return sorted(found, key=lambda one: one.time)
 
 
