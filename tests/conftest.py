@@ -20,7 +20,7 @@ sys.dont_write_bytecode = False
 os.environ.setdefault("COMPOUNDKIN_CACHE", str(TESTS.parent / ".pytest_cache" / "compiled"))
 sys.path.insert(0, str(TESTS.parent))
 
-# Twelve thousand tests keep many objects: going through all of them so often takes a twentieth of the time.
+# Nine thousand tests keep many objects: going through all of them so often takes a twentieth of the time.
 gc.set_threshold(100_000, 20, 50)
 
 _EXAMPLES = 25 if os.environ.get("COMPOUNDKIN_TESTS") == "all" else 10
@@ -38,7 +38,7 @@ SLOW = {
     "test_wrong_objects.py": 24,
     "view/report/test_catalog.py": 19,
     "dynamics/test_motors.py": 18,
-    "test_docs_examples.py": 18,
+    "test_docs_examples.py": 26,
     "view/page/test_viewer.py": 17,
     "model/pairs/test_minimal_kind.py": 16,
     "configurations/test_random.py": 15,
@@ -48,7 +48,10 @@ SLOW = {
     "kinematics/test_home.py": 14,
     "kinematics/test_scale.py": 14,
     "files/test_catalog.py": 13,
+    "view/plot/test_plot_command.py": 14,
+    "files/test_hostile_names.py": 12,
     "cli/test_process.py": 12,
+    "cli/test_mcp.py": 11,
     "kinematics/test_inner_contacts.py": 11,
     "view/page/test_attack.py": 11,
     "kinematics/test_configuration_curve.py": 10,
@@ -61,7 +64,13 @@ SLOW = {
     "dynamics/test_published_machines.py": 8,
     "studies/test_tolerance.py": 8,
     "kinematics/groups/test_contract.py": 8,
+    "programs/test_jax.py": 8,
+    "dynamics/test_friction_chart.py": 8,
+    "studies/test_goals.py": 8,
     "studies/test_clusters.py": 7,
+    "dimensional/test_motion_generation.py": 7,
+    "dimensional/test_function_generation.py": 6,
+    "dimensional/test_added_dyads.py": 6,
 }
 
 

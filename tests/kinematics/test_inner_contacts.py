@@ -43,9 +43,10 @@ def met(way: Callable[[np.ndarray], np.ndarray], angle: float) -> np.ndarray:
     values = level(t)
     side = np.flatnonzero(values[:-1] * values[1:] < 0.0)
     low, high = t[side], t[side + 1]
-    for _ in range(50):
+    # forty-five halvings of a two-thousandth of a turn: less than rounding
+    for _ in range(45):
         middle = 0.5 * (low + high)
-        same = level(low) * level(middle) > 0.0
+        same = values[side] * level(middle) > 0.0
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return bent(low) * np.exp(1j * angle)
 
