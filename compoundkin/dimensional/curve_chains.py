@@ -128,7 +128,7 @@ def curve_chains(links: int = 6, sliders: bool = True) -> tuple[CurveChain, ...]
     """Return the chains of at most so many links: four, or six.
 
     >>> [len(curve_chains(links)) for links in (4, 6)]
-    [2, 20]
+    [2, 24]
     """
     found = [_four_links(False), *([_four_links(True)] if sliders else [])]
     if links >= 6:

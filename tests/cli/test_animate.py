@@ -44,7 +44,7 @@ def test_a_file_has_it_too(run: Run) -> None:
     ("args", "said"),
     [
         (("six-bar", "-o", "a.avi"), "not saved as '.avi'"),
-        (("six-bar", "-o", "none/a.gif"), "no such folder"),
+        (("six-bar", "-o", "none/a.gif"), "there is no folder none"),
         (("six-bar", "--path", "Q"), "no such point"),
         (("six-bar", "--fps", "0"), "does not fit"),
         (("six-bar", "--seconds", "-1"), "does not fit"),

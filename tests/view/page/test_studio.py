@@ -36,6 +36,7 @@ def served_studio() -> Iterator[StudioServer]:
     """A server in a thread, at a free port."""
     listener = socket.socket()
     listener.bind((HOST, 0))
+    listener.listen()  # a window may come before the server runs
     served = StudioServer(Path("none.toml"), START, "token-of-tests", f"{HOST}:{listener.getsockname()[1]}")
     served.start()
     how = {"ws": "websockets-sansio", "lifespan": "off", "log_level": "critical", "timeout_graceful_shutdown": 1}
