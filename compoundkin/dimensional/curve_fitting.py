@@ -204,6 +204,8 @@ def _begun(matches: Sequence[AtlasMatch], target: Number) -> Iterator[_Designs]:
                 continue
             designs, wanted = np.array(own, float), np.conj(target) if mirrored else target
             curves, clear = chain.curves(designs, POSES)
+            if not clear.any():  # more poses come nearer to limits than those of the atlas
+                continue
             laid = [_best_laid(z, wanted) for z in resampled(curves[clear], PLACES)]
             unknown = [[np.log(abs(scale)), np.angle(scale), place.real, place.imag] for scale, place in laid]
             x = np.hstack([designs[clear], np.array(unknown).reshape(-1, 4)])

@@ -142,6 +142,19 @@ def test_six_links_trace_better_than_four_which_are_given_too() -> None:
         assert mean_distance(path, EGG) * 2.0 < 0.3
 
 
+def test_designs_that_come_near_limits_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found with LInK's letter F: at more poses than those of the atlas all matches of a chain came near a limit."""
+    matches = coupler_atlas(4, 4_000).near(EGG, 8)
+    plain = CurveChain.curves
+
+    def none_is_clear(chain: CurveChain, designs: np.ndarray, poses: int) -> Any:
+        z, clear = plain(chain, designs, poses)
+        return z, clear & (chain is not matches[0].chain)
+
+    monkeypatch.setattr(CurveChain, "curves", none_is_clear)
+    assert all(one.chain is not matches[0].chain for one in curve_fitting.fitted(matches, EGG))
+
+
 def test_an_open_curve_is_traced_forth_and_back() -> None:
     s = np.linspace(0, 1, 40)
     task = ck.tasks.curve(np.exp(2.0j * s) * (1 + 0.2 * s), links=4)
