@@ -35,6 +35,8 @@ TWINS = 0.35
 
 # Samples of a curve, and its harmonics on either side that are kept.
 SAMPLES, HARMONICS = 64, 16
+# Places of curves whose distance is measured.
+MEASURED = 2000
 # Starts that are tried along a curve.
 STARTS = 64
 _ORDERS = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
@@ -69,8 +71,8 @@ class CouplerAtlas(ShortRepr):
     def near(self, curve: Number, count: int = 20) -> list[AtlasMatch]:
         """Return the nearest designs to a closed curve, an array (places,), of different shapes in each chain.
 
-        They are the nearest exactly over rotation, size, start, direction and mirror image: bounds by the magnitudes of
-        coefficients say where correlations need not be looked at.
+        They are the nearest over rotation, size, start (in parts of the arc), direction and mirror image, none is
+        missed: bounds by the magnitudes of coefficients say where correlations need not be looked at.
         """
         wanted = coefficients(np.asarray(curve)[None])[0][0]
         each = max(2, -(-2 * count // len(self.chains)))
@@ -103,13 +105,13 @@ class CouplerAtlas(ShortRepr):
 
 
 @lru_cache(maxsize=4)
-def coupler_atlas(links: int = 6, count: int = 1_000_000, seed: int = 0, sliders: bool = True) -> CouplerAtlas:
+def coupler_atlas(links: int = 6, count: int = 1_000_000, seed: int = 0) -> CouplerAtlas:
     """Return an atlas of so many designs whose driver turns fully, of chains of at most so many links.
 
     >>> len(coupler_atlas(4, 1000))
     1000
     """
-    chains = curve_chains(links, sliders)
+    chains = curve_chains(links)
     shares = [count * (k + 1) // len(chains) - count * k // len(chains) for k in range(len(chains))]
     made = [_made(chain, share, seed + k) for k, (chain, share) in enumerate(zip(chains, shares, strict=True))]
     return CouplerAtlas(chains, tuple(designs for designs, _ in made), tuple(found for _, found in made))
@@ -127,7 +129,7 @@ def _made(chain: CurveChain, count: int, seed: int) -> tuple[Number, Number]:
         drawn = drawn.astype(np.float32).astype(float)  # as they are kept
         curves, clear = chain.curves(drawn, POSES)
         drawn, curves = drawn[clear], curves[clear]
-        own, _, radius = coefficients(curves)
+        own, radius = coefficients(curves)
         seen = radius > LEAST_RADIUS * chain.size(drawn)
         designs.append(drawn[seen].astype(np.float32))
         found.append(own[seen].astype(np.complex64))
@@ -135,25 +137,24 @@ def _made(chain: CurveChain, count: int, seed: int) -> tuple[Number, Number]:
     return np.concatenate(designs)[:count], np.concatenate(found)[:count]
 
 
-def resampled(curves: Number, samples: int, closed: bool = True) -> Number:
-    """Return curves (curves, places) evenly along their arcs, (curves, samples)."""
-    z = np.concatenate([curves, curves[:, :1]], axis=1) if closed else curves
+def resampled(curves: Number, samples: int) -> Number:
+    """Return closed curves (curves, places) evenly along their arcs, (curves, samples)."""
+    z = np.concatenate([curves, curves[:, :1]], axis=1)
     along = np.zeros(z.shape)
     np.cumsum(np.abs(np.diff(z, axis=1)), axis=1, out=along[:, 1:])
     total = along[:, -1:]
     along /= np.where(total > 0.0, total, 1.0)
     # one interpolation for all rows: each has an interval of its own
     rows = 2.0 * np.arange(len(z))[:, None]
-    wanted = np.arange(samples) / samples if closed else np.linspace(0.0, 1.0, samples)
+    wanted = np.arange(samples) / samples
     return np.interp((rows + wanted).ravel(), (rows + along).ravel(), z.ravel()).reshape(len(z), samples)
 
 
-def coefficients(curves: Number) -> tuple[Number, Number, Number]:
-    """Return the descriptors of closed curves, (curves, 2 HARMONICS), with their places and RMS radii (curves,)."""
-    found = np.fft.fft(resampled(curves, SAMPLES), axis=1) / SAMPLES
-    place, found = found[:, 0], found[:, _ORDERS]
+def coefficients(curves: Number) -> tuple[Number, Number]:
+    """Return the descriptors of closed curves, (curves, 2 HARMONICS), and their RMS radii (curves,)."""
+    found = np.fft.fft(resampled(curves, SAMPLES), axis=1)[:, _ORDERS] / SAMPLES
     radius = np.sqrt((np.abs(found) ** 2).sum(axis=1))
-    return found / np.where(radius > 0.0, radius, 1.0)[:, None], place, radius
+    return found / np.where(radius > 0.0, radius, 1.0)[:, None], radius
 
 
 def likeness(descriptors: Number, wanted: Number) -> tuple[Number, Number]:
@@ -174,12 +175,12 @@ def likeness(descriptors: Number, wanted: Number) -> tuple[Number, Number]:
     return np.maximum(plain, mirrored), mirrored > plain
 
 
-def mean_distance(curve: Number, target: Number, samples: int = 2000) -> float:
+def mean_distance(curve: Number, target: Number) -> float:
     """Return the mean nearest distance of closed curves both ways, summed, in the target's RMS radius.
 
     It is taken at places that lie evenly along the arcs, to the lines between those of the other curve.
     """
-    one, two = (resampled(each[None], samples)[0] for each in (curve, target))
+    one, two = (resampled(each[None], MEASURED)[0] for each in (curve, target))
     radius = np.sqrt(np.mean(np.abs(two - two.mean()) ** 2))
     return float((_nearest_distances(one, two).mean() + _nearest_distances(two, one).mean()) / radius)
 

@@ -2,7 +2,7 @@
 
 A chain is a four-bar or a slider-crank; each dyad more lies on two of its links. With a dyad on two links of a four-bar
 that are not both its crank and frame this gives the six-bars of Watt and Stephenson that a crank on the frame drives
-through dyads alone (H. Dijksman, Motion Geometry of Mechanisms, 1976, ch. 1).
+through dyads alone (E. A. Dijksman, Motion Geometry of Mechanisms, Cambridge 1976).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
+from compoundkin.dimensional.candidates import COUPLER, POINT
 from compoundkin.model.attributes import POSITION, component_names
 from compoundkin.model.elements import Item, Link, drive, link, mode
 from compoundkin.model.geometry import FRAME
@@ -23,14 +24,11 @@ from compoundkin.model.pairs import slide
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.compiled_path import CompiledPath, compile
 
-CRANK, COUPLER, ROCKER, SLIDER, ROD, LEVER, GUIDE = "crank", "coupler", "rocker", "slider", "rod", "lever", "guide"
+CRANK, ROCKER, SLIDER, ROD, LEVER, GUIDE = "crank", "rocker", "slider", "rod", "lever", "guide"
 GUIDE_OFFSET = f"{GUIDE}.offset"
-# The traced point.
-POINT = "P"
-# The crank is so long, and its pivot on the other side of the frame so far away, where designs begin.
-_LENGTHS = {"crank.B.x": (0.1, 1.2)}
-# Lengths of other links, and coordinates of points, in parts of the frame's length of two.
-LENGTH, PLACE = (0.4, 6.0), 4.0
+# From where to where lengths of cranks and of other links are drawn, coordinates of points and offsets of guides on
+# either side of zero; the frame of a four-bar is two long.
+CRANKS, LENGTHS, PLACES, OFFSETS = (0.1, 1.2), (0.4, 6.0), (-4.0, 4.0), (-1.5, 1.5)
 
 
 class FreeNumber(NamedTuple):
@@ -101,47 +99,48 @@ class CurveChain(ShortRepr):
         return Call({CRANK: np.arange(poses) * (TURN / poses)}, self.dimensions(designs))
 
 
-def _number(name: str) -> FreeNumber:
-    return FreeNumber(name, *_LENGTHS.get(name, LENGTH), True)
+def _length(name: str, between: tuple[float, float] = LENGTHS) -> FreeNumber:
+    return FreeNumber(name, *between, True)
 
 
 def _place(link_name: str, letter: str) -> list[FreeNumber]:
     point = f"{link_name}.{letter}"
-    return [FreeNumber(name, -PLACE, PLACE, False, point) for name in component_names(point)]
+    return [FreeNumber(name, *PLACES, False, point) for name in component_names(point)]
 
 
-# The links that a second dyad lies on, beside the one that it begins on.
-_DYADS = ((COUPLER, FRAME), (ROCKER, FRAME), (COUPLER, ROCKER), (CRANK, COUPLER), (CRANK, ROCKER))
-_SLIDER_DYADS = ((COUPLER, FRAME), (CRANK, COUPLER))
-_TITLES = {
+# The two links of a four-bar that a second dyad lies on, and what the six-bar is then called.
+_SIX_BARS = {
     (COUPLER, FRAME): "Stephenson III",
     (ROCKER, FRAME): "Watt II",
     (COUPLER, ROCKER): "Watt I",
     (CRANK, COUPLER): "Watt I, its ternary link driven",
     (CRANK, ROCKER): "Stephenson I",
 }
+# Those of a slider-crank.
+_SIX_BARS_WITH_SLIDER = {(COUPLER, FRAME): "Stephenson III with slider", (CRANK, COUPLER): "Watt I with slider"}
 _POINTS = {"E": 1.0 + 1.0j, "F": 0.5 + 1.5j, POINT: 1.0 + 0.8j}
 
 
 @cache
-def curve_chains(links: int = 6, sliders: bool = True) -> tuple[CurveChain, ...]:
+def curve_chains(links: int = 6) -> tuple[CurveChain, ...]:
     """Return the chains of at most so many links: four, or six.
 
     >>> [len(curve_chains(links)) for links in (4, 6)]
     [2, 24]
     """
-    found = [_four_links(False), *([_four_links(True)] if sliders else [])]
+    found = [_four_links(False), _four_links(True)]
     if links >= 6:
-        for with_slider in (False, True)[: 1 + sliders]:
-            for pair in _SLIDER_DYADS if with_slider else _DYADS:
-                found += [_six_links(with_slider, pair, traced, sign) for sign in (1, -1)
-                          for traced in ((ROD,) if FRAME in pair else (ROD, LEVER))]  # fmt: skip
+        for with_slider in (False, True):
+            for pair, title in (_SIX_BARS_WITH_SLIDER if with_slider else _SIX_BARS).items():
+                # a link on the frame traces a circle
+                traced = (ROD,) if FRAME in pair else (ROD, LEVER)
+                found += [_six_links(title, with_slider, pair, name, sign) for sign in (1, -1) for name in traced]
     return tuple(found)
 
 
-def guide(name: str, angle: float, offset: float) -> Item:
+def guide(angle: float, offset: float) -> Item:
     """Return the guide of a slider at a distance from the crank's pivot."""
-    return slide(SLIDER, on=FRAME, at="C", through="A", angle=angle, offset=offset, name=name)
+    return slide(SLIDER, on=FRAME, at="C", through="A", angle=angle, offset=offset, name=GUIDE)
 
 
 def _base(with_slider: bool, extra: dict[str, dict[str, complex]]) -> tuple[list[Item], list[FreeNumber]]:
@@ -150,15 +149,14 @@ def _base(with_slider: bool, extra: dict[str, dict[str, complex]]) -> tuple[list
     def points(name: str, **own: complex) -> Link:
         return link(name, **own, **extra.get(name, {}))
 
-    crank, numbers = points(CRANK, A=0, B=0.5), [_number("crank.B.x"), _number("coupler.C.x")]
+    crank, numbers = points(CRANK, A=0, B=0.5), [_length("crank.B.x", CRANKS), _length("coupler.C.x")]
     items: list[Item]
     if with_slider:
-        # the guide runs at a distance from the crank's pivot
         items = [points(FRAME, A=0), crank, points(COUPLER, B=0, C=2), link(SLIDER, C=0)]
-        items += [guide(GUIDE, 0.0, 0.3), mode(1, SLIDER)]
-        return items, [*numbers, FreeNumber(GUIDE_OFFSET, -1.5, 1.5, False)]
+        items += [guide(0.0, 0.3), mode(1, SLIDER)]
+        return items, [*numbers, FreeNumber(GUIDE_OFFSET, *OFFSETS, False)]
     items = [points(FRAME, A=0, D=2), crank, points(COUPLER, B=0, C=2), points(ROCKER, D=0, C=2), mode(1, ROCKER)]
-    return items, [*numbers, _number("rocker.C.x")]
+    return items, [*numbers, _length("rocker.C.x")]
 
 
 def _four_links(with_slider: bool) -> CurveChain:
@@ -167,12 +165,11 @@ def _four_links(with_slider: bool) -> CurveChain:
     return CurveChain(title, 4, Mechanism(title, *items, drive(CRANK)), (*numbers, *_place(COUPLER, POINT)))
 
 
-def _six_links(with_slider: bool, pair: tuple[str, str], traced: str, sign: int) -> CurveChain:
+def _six_links(title: str, with_slider: bool, pair: tuple[str, str], traced: str, sign: int) -> CurveChain:
     first, second = pair
     items, numbers = _base(with_slider, {first: {"E": _POINTS["E"]}, second: {"F": _POINTS["F"]}})
     rod, lever = ({POINT: _POINTS[POINT]} if name == traced else {} for name in (ROD, LEVER))
     dyad: list[Item] = [link(ROD, E=0, G=2.5, **rod), link(LEVER, F=0, G=2.5, **lever), mode(sign, LEVER)]
-    numbers += [*_place(first, "E"), *_place(second, "F"), _number("rod.G.x"), _number("lever.G.x")]
-    title = "Six-bar with slider" if with_slider else _TITLES[pair]
+    numbers += [*_place(first, "E"), *_place(second, "F"), _length("rod.G.x"), _length("lever.G.x")]
     mechanism = Mechanism(title, *items, *dyad, drive(CRANK))
     return CurveChain(title, 6, mechanism, (*numbers, *_place(traced, POINT)))

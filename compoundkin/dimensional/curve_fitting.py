@@ -9,16 +9,15 @@ against each other, so that a curve comes near as a whole. Rotation, size and pl
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number, unwrapped
-from compoundkin.dimensional.candidates import Candidates, Linkage
+from compoundkin.dimensional.candidates import POINT, Candidates, Linkage
 from compoundkin.dimensional.coupler_atlas import AtlasMatch, coupler_atlas, mean_distance, resampled
-from compoundkin.dimensional.curve_chains import CRANK, GUIDE, GUIDE_OFFSET, POINT, CurveChain, guide
+from compoundkin.dimensional.curve_chains import CRANK, GUIDE_OFFSET, CurveChain, guide
 from compoundkin.dimensional.tasks import CurveTask
 from compoundkin.kinematics import solve
 from compoundkin.model.attributes import POSITION
@@ -58,47 +57,47 @@ class FittedCurve(NamedTuple):
     mirrored: bool
     apart: float
 
+    def as_seen(self, z: Any) -> Any:
+        """Return vectors as they are, or mirrored."""
+        return np.conj(z) if self.mirrored else z
 
-@dataclass
-class _Designs:
+    def laid(self, z: Any) -> Any:
+        """Return places of the chain where they lie on the curve."""
+        return self.as_seen(self.scale * z + self.place)
+
+    def turned(self, u: Any) -> Any:
+        """Return orientations of links of the chain as they are on the curve."""
+        return self.as_seen(self.scale / abs(self.scale) * u)
+
+
+class _Designs(NamedTuple):
     """Designs of one chain that are refined together to a target, of RMS radius one about zero, perhaps mirrored.
 
-    `x` are their numbers, then the logarithm of the scale, its angle and the place, (designs, numbers + 4); `r` and `j`
-    residuals and slopes there, `damping` the weights of Levenberg's term.
+    `x` are their numbers, then the logarithm of the scale, its angle and the place, (designs, numbers + 4).
     """
 
     chain: CurveChain
     mirrored: bool
     target: Number
     x: Number
-    r: Number
-    j: Number
-    damping: Number
 
-    def begin(self, early: bool) -> None:
-        """Hold places by arc length against each other, or the nearest ones."""
-        self.r, self.j, _ = _residuals(self.chain, self.x, self.target, early)
-        self.damping = np.full(len(self.x), FIRST)
-
-    def refine(self, steps: int, early: bool = False) -> None:
-        """Take so many steps with all designs that still have hope."""
+    def refined(self, steps: int, early: bool = False) -> tuple[_Designs, Number]:
+        """Return them after so many steps, and the sum of squares of each; `early` ones are by the arc's length."""
+        x = self.x.copy()
+        r, j, _ = _residuals(self.chain, x, self.target, early)
+        damping = np.full(len(x), FIRST)
         for _ in range(steps):
-            alive = np.flatnonzero(self.damping < HOPELESS)
+            alive = np.flatnonzero(damping < HOPELESS)
             if not len(alive):
-                return
-            ahead = self.x[alive] - np.clip(
-                _levenberg(self.r[alive], self.j[alive], self.damping[alive]), -FARTHEST, FARTHEST
-            )
-            r, j, clear = _residuals(self.chain, ahead, self.target, early)
-            better = clear & ((r**2).sum(axis=1) < (self.r[alive] ** 2).sum(axis=1))
+                break
+            step = _levenberg(r[alive], j[alive], damping[alive])
+            ahead = x[alive] - np.clip(step, -FARTHEST, FARTHEST)
+            tried, steep, clear = _residuals(self.chain, ahead, self.target, early)
+            better = clear & ((tried**2).sum(axis=1) < (r[alive] ** 2).sum(axis=1))
             to = alive[better]
-            self.x[to], self.r[to], self.j[to] = ahead[better], r[better], j[better]
-            self.damping[alive] = np.clip(self.damping[alive] * np.where(better, EASIER, HARDER), LEAST, 2.0 * HOPELESS)
-
-    @property
-    def cost(self) -> Number:
-        """The sum of squares of each design."""
-        return (self.r**2).sum(axis=1)
+            x[to], r[to], j[to] = ahead[better], tried[better], steep[better]
+            damping[alive] = np.clip(damping[alive] * np.where(better, EASIER, HARDER), LEAST, 2.0 * HOPELESS)
+        return self._replace(x=x), (r**2).sum(axis=1)
 
 
 def traced(task: CurveTask) -> Candidates:
@@ -127,31 +126,24 @@ def linkage_of(one: FittedCurve, task: CurveTask) -> Linkage:
     own = one.chain.program.mechanism(dimensions)
     angles = np.arange(POSITIONS) * (TURN / POSITIONS)
     motion = solve(own, {CRANK: angles}, modes=one.chain.program.modes, order=0)
-    turn, size = one.scale / abs(one.scale), abs(one.scale)
-
-    def mirrored(z: Any) -> Any:
-        return np.conj(z) if one.mirrored else z
-
-    def laid(z: Any) -> Any:
-        return mirrored(one.scale * z + one.place)
-
-    z = {name: laid(np.ravel(pose.z.c[0]) + np.zeros(POSITIONS)) for name, pose in motion.poses.items()}
-    u = {name: mirrored(turn * (np.ravel(pose.u.c[0]) + np.zeros(POSITIONS))) for name, pose in motion.poses.items()}
+    size = abs(one.scale)
+    z = {name: one.laid(np.ravel(pose.z.c[0]) + np.zeros(POSITIONS)) for name, pose in motion.poses.items()}
+    u = {name: one.turned(np.ravel(pose.u.c[0]) + np.zeros(POSITIONS)) for name, pose in motion.poses.items()}
     z[FRAME], u[FRAME] = np.zeros(POSITIONS, complex), np.ones(POSITIONS, complex)
     points = {
-        name: {letter: complex(laid(p) if name == FRAME else mirrored(size * p)) for letter, p in each.items()}
+        name: {letter: complex(one.laid(p) if name == FRAME else one.as_seen(size * p)) for letter, p in each.items()}
         for name, each in own.geometry.points.items()
     }
     pairs = list[Item]()
     if GUIDE_OFFSET in dimensions:
-        offset = size * float(np.real(dimensions[GUIDE_OFFSET]))
-        pairs.append(guide(GUIDE, float(np.angle(mirrored(turn))), -offset if one.mirrored else offset))
+        offset = size * float(dimensions[GUIDE_OFFSET])
+        pairs.append(guide(float(np.angle(one.turned(1.0))), -offset if one.mirrored else offset))
     joints = [[p for letter, p in each.items() if letter != POINT] for name, each in points.items() if name != FRAME]
     return Linkage(
         title=own.title,
         links=tuple(link(name, **each) for name, each in points.items()),
         pairs=tuple(pairs),
-        places={letter: complex(laid(np.ravel(point.position)[0])) for letter, point in motion.points.items()},
+        places={letter: complex(one.laid(np.ravel(point.position)[0])) for letter, point in motion.points.items()},
         z=z,
         u=u,
         drivers={CRANK: unwrapped(np.angle(u[CRANK]))},
@@ -178,20 +170,13 @@ def fitted(matches: Sequence[AtlasMatch], curve: Number) -> list[FittedCurve]:
     turn = complex(first[np.abs(first).argmax()])
     size = complex(np.sqrt(np.mean(np.abs(target - middle) ** 2)) * (turn / abs(turn) if turn else 1.0))
     target = (target - middle) / size
-    parts = [part for part in _begun(matches, target) if len(part.x)]
-    for part in parts:
-        part.begin(early=True)
-        part.refine(EARLY, early=True)
-        part.begin(early=False)
-        part.refine(FIRST_STEPS)
-    costs = np.sort(np.concatenate([part.cost for part in parts])) if parts else np.zeros(0)
+    parts = [part.refined(EARLY, early=True)[0].refined(FIRST_STEPS) for part in _begun(matches, target)]
+    costs = np.sort(np.concatenate([cost for _, cost in parts])) if parts else np.zeros(0)
     found = list[FittedCurve]()
-    for part in parts:
+    for part, cost in parts:
         # the best of all, and the best of its chain
-        part.x = part.x[(part.cost <= costs[:BEST][-1]) | (part.cost == part.cost.min())]
-        part.begin(early=False)
-        part.refine(STEPS)
-        found += _laid(part, size, middle)
+        best = (cost <= costs[:BEST][-1]) | (cost == cost.min())
+        found += _laid(part._replace(x=part.x[best]).refined(STEPS)[0], size, middle)
     return sorted(found, key=lambda one: one.apart)
 
 
@@ -208,9 +193,8 @@ def _begun(matches: Sequence[AtlasMatch], target: Number) -> Iterator[_Designs]:
                 continue
             laid = [_best_laid(z, wanted) for z in resampled(curves[clear], PLACES)]
             unknown = [[np.log(abs(scale)), np.angle(scale), place.real, place.imag] for scale, place in laid]
-            x = np.hstack([designs[clear], np.array(unknown).reshape(-1, 4)])
-            none = np.zeros(0)
-            yield _Designs(chain, mirrored, wanted, x, none, none, none)
+            x = np.hstack([designs[clear], np.array(unknown)])
+            yield _Designs(chain, mirrored, wanted, x)
 
 
 def _best_laid(z: Number, target: Number) -> tuple[complex, complex]:

@@ -23,6 +23,8 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 # How many numbers each letter of an SVG path takes.
 _COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 _FLAGS = (3, 4)
+# After which letters a smooth curve mirrors their last control point; after others it begins straight.
+_MIRRORED = {"S": "CS", "T": "QT"}
 
 
 def read_curve(path: str | os.PathLike[str]) -> Number:
@@ -149,48 +151,52 @@ def _transform(text: str, where: str) -> Number:
 def _of_path(text: str, where: str) -> list[Number]:
     """Return the pieces of an SVG path. Source: SVG 2, W3C 2018, chapter 9."""
     parts: list[list[complex]] = []
-    at = start = handle = 0j
+    handle, before = 0j, ""  # the last control point, which a smooth curve of its kind mirrors
     for letter, numbers in _commands(text, where):
-        upper, before = letter.upper(), at
-        origin = 0j if letter.isupper() else at
-        pairs = [origin + complex(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=False)]
-        if upper == "M":
-            at = start = pairs[0]
-            parts.append([at])
-            handle = at
-            continue
-        if not parts:
-            parts.append([at])
-        if upper == "Z":
-            new, handle = [start], start
-        elif upper in "HV":
-            at = (
-                complex(origin.real + numbers[0], at.imag)
-                if upper == "H"
-                else complex(at.real, origin.imag + numbers[0])
-            )
-            new, handle = [at], at
-        elif upper == "L":
-            new, handle = pairs, pairs[0]
-        elif upper == "A":
-            end = origin + complex(*numbers[5:])
-            new, handle = _arc(before, end, numbers), end
+        at = parts[-1][-1] if parts else 0j
+        if letter in "Mm":
+            parts.append([(at if letter == "m" else 0j) + complex(*numbers)])
         else:
-            smooth = 2 * before - handle if upper in "ST" else None
-            controls = pairs if smooth is None else [smooth, *pairs]
-            new, handle = _bezier([before, *controls]), controls[-2]
-        at = new[-1]
-        parts[-1] += new
-        if upper not in "CSQT":
-            handle = at
-        if upper == "Z":
-            parts.append([at])
+            is_smooth = before in _MIRRORED.get(letter.upper(), "")
+            new, handle = _next_places(letter, numbers, (parts[-1][0], at, handle if is_smooth else at))
+            parts[-1] += new
+            if letter in "Zz":
+                parts.append(new)
+        before = letter.upper()
     return [np.array(part) for part in parts if len(part) > 1]
+
+
+def _next_places(
+    letter: str, numbers: list[float], places: tuple[complex, complex, complex]
+) -> tuple[list[complex], complex]:
+    """Return the places along a command of a path, and its last control point.
+
+    `places` are where the piece began, where the path is, and the control point that a smooth curve mirrors.
+    """
+    start, at, handle = places
+    kind, origin = letter.upper(), at if letter.islower() else 0j
+    if kind == "Z":
+        return [start], start
+    if kind == "H":
+        return [complex(origin.real + numbers[0], at.imag)], at
+    if kind == "V":
+        return [complex(at.real, origin.imag + numbers[0])], at
+    if kind == "A":
+        return _arc(at, origin + complex(*numbers[5:]), numbers), at
+    controls = [origin + complex(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
+    if kind == "L":
+        return controls, at
+    if kind in _MIRRORED:
+        controls.insert(0, 2 * at - handle)
+    return _bezier([at, *controls]), controls[-2]
 
 
 def _commands(text: str, where: str) -> Iterator[tuple[str, list[float]]]:
     """Yield the letters of a path with their numbers, repeated ones one by one."""
-    for letter, rest in re.findall(r"([MLHVCSQTAZmlhvcsqtaz])([^MLHVCSQTAZmlhvcsqtaz]*)", text):
+    found = re.findall(r"([MLHVCSQTAZmlhvcsqtaz])([^MLHVCSQTAZmlhvcsqtaz]*)", text)
+    if found and found[0][0] not in "Mm":
+        raise InvalidInput(Problem(where, f"a path begins with {found[0][0]}, not with M", "write the path anew"))
+    for letter, rest in found:
         count = _COUNTS[letter.upper()]
         if not count:
             yield letter, []

@@ -18,9 +18,10 @@ import pytest
 from click.testing import CliRunner
 
 from compoundkin.cli import cli
-from compoundkin.cli.studio import MOST_BYTES, POLICY, REFUSED, AnsweringProcess, opened
+from compoundkin.cli.studio import opened
 from compoundkin.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import resolve
+from compoundkin.studio.server import MOST_BYTES, POLICY, REFUSED, AnsweringProcess
 
 sync = pytest.importorskip("websockets.sync.client")
 exceptions = pytest.importorskip("websockets.exceptions")

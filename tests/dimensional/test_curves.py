@@ -17,6 +17,7 @@ from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, l
 from compoundkin.dimensional.curve_chains import CurveChain, curve_chains
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
+from compoundkin.synthesis.chains.mechanism_names import structure_name
 from tests.dimensional.test_path_generation import planted_curve
 
 EGG = np.exp(1j * np.linspace(0, 2 * np.pi, 60, endpoint=False))
@@ -96,6 +97,13 @@ def test_the_nearest_are_those_of_a_search_through_all(monkeypatch: pytest.Monke
     found = made.near(EGG, 30)
     assert [one.apart for one in found] == sorted(one.apart for one in found)
     assert len({one.chain.title for one in found}) > 3
+
+
+@pytest.mark.parametrize("chain", curve_chains(), ids=lambda chain: chain.title)
+def test_chains_are_what_they_are_called(chain: CurveChain) -> None:
+    own, plain = (text.split(",")[0].split(" with ")[0].lower() for text in
+                  (chain.title, str(structure_name(ck.decompose(chain.mechanism)))))  # fmt: skip
+    assert own == plain
 
 
 @pytest.mark.parametrize("chain", curve_chains()[::5], ids=lambda chain: chain.title)
@@ -225,6 +233,8 @@ def test_a_path_of_an_svg(tmp_path: Path) -> None:
     cubic = read_curve(file_of(tmp_path, "d.svg", svg.format('<path d="M0 0C0 1 1 1 1 0S2-1 2 0"/>')))
     assert np.isclose(cubic.imag.min(), -1.5)
     assert np.isclose(cubic.imag.max(), 1.5)
+    straight = read_curve(file_of(tmp_path, "f.svg", svg.format('<path d="M0 0C0 1 1 1 1 0T2 0"/>')))
+    assert np.allclose(straight[straight.real > 12].imag, 0)  # after a cubic a quadratic mirrors nothing
     polygon = read_curve(file_of(tmp_path, "e.svg", svg.format('<polygon points="0,0 1,0 1,1"/>')))
     assert np.allclose(polygon, [10, 12, 12 - 2j, 10])
 
@@ -248,6 +258,7 @@ def test_a_polyline_of_a_dxf(tmp_path: Path) -> None:
         ("c.svg", "<svg", "it is no SVG"),
         ("c.svg", "<svg><path d='M0 0 L1'/></svg>", "has 1 numbers"),
         ("c.svg", "<svg><g transform='warp(3)'><path d='M0 0 L1 1'/></g></svg>", "warp"),
+        ("c.svg", "<svg><path d='L1 1 2 2'/></svg>", "begins with L"),
         ("c.svg", "<svg><circle r='3'/></svg>", "there is no curve in it"),
         ("c.dxf", "no drawing", "it is no DXF drawing"),
     ],

@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.cli.studio import HOST, StudioServer
 from compoundkin.files.mechanism_files import loads
+from compoundkin.studio.server import HOST, StudioServer
 
 uvicorn = pytest.importorskip("uvicorn")
 pytest.importorskip("starlette")
