@@ -1,10 +1,12 @@
-"""What several tests need: random series, pairs of every kind, and random mechanisms whose pose is known."""
+"""What several tests need: random series, pairs of every kind, random mechanisms whose pose is known, interrupts."""
 
 from __future__ import annotations
 
 import json
+import signal
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, field, fields
 from math import factorial
 from pathlib import Path
@@ -240,3 +242,13 @@ def differences(values: Any, step: float) -> list[Any]:
     powers = np.vander(offsets.astype(float), increasing=True)
     weights = np.linalg.inv(powers)  # row k gives the k-th coefficient
     return [np.asarray(values) @ weights[k] * factorial(k) / step**k for k in (1, 2, 3)]
+
+
+@contextmanager
+def interrupts_heard() -> Iterator[None]:
+    """Processes started now hear Ctrl-C, also where the tests run in the background of a shell that ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -9,8 +9,6 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +16,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from compoundkin.cli import cli
+from tests.support import interrupts_heard
 
 COMMAND = [sys.executable, "-m", "compoundkin"]
 ROOT = Path(__file__).parents[2]
@@ -178,16 +177,6 @@ def test_names_that_the_encoding_lacks_are_no_error(tmp_path: Path) -> None:
 
 
 # --- signals --------------------------------------------------------------------------------------------
-
-
-@contextmanager
-def interrupts_heard() -> Iterator[None]:
-    """Processes started now hear Ctrl-C, also where the tests run in the background of a shell that ignores it."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.full

@@ -22,6 +22,7 @@ from compoundkin.cli.studio import opened
 from compoundkin.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import resolve
 from compoundkin.studio.server import MOST_BYTES, POLICY, REFUSED, AnsweringProcess
+from tests.support import interrupts_heard
 
 sync = pytest.importorskip("websockets.sync.client")
 exceptions = pytest.importorskip("websockets.exceptions")
@@ -37,7 +38,8 @@ class Served:
     def __init__(self, path: Path) -> None:
         words = [sys.executable, "-m", "compoundkin", "studio", path.name, "--no-browser"]
         self.path, self.wires = path, ExitStack()
-        self.process = subprocess.Popen(words, cwd=path.parent, stderr=subprocess.PIPE, text=True)
+        with interrupts_heard():
+            self.process = subprocess.Popen(words, cwd=path.parent, stderr=subprocess.PIPE, text=True)
         assert self.process.stderr is not None
         first = self.process.stderr.readline()
         found = re.search(r"http://(127\.0\.0\.1:\d+)/#(\S+)", first)
@@ -175,18 +177,20 @@ def test_what_takes_too_long_is_ended_and_the_next_question_is_answered() -> Non
 
 def test_it_ends_at_once_by_an_interrupt_and_leaves_nothing(tmp_path: Path) -> None:
     served = Served(tmp_path / "new.toml")
-    wire, opening = served.entered()
-    assert opening["is_new"]
-    start = time.monotonic()
-    served.process.send_signal(signal.SIGINT)
-    _, told = served.process.communicate(timeout=20)
-    assert time.monotonic() - start < 5
-    assert (served.process.returncode, told.splitlines()[-1]) == (0, "The studio has ended.")
-    assert "Traceback" not in told
-    assert list(tmp_path.iterdir()) == []
-    with pytest.raises(exceptions.ConnectionClosed):
-        wire.recv(5)
-    served.end()
+    try:
+        wire, opening = served.entered()
+        assert opening["is_new"]
+        start = time.monotonic()
+        served.process.send_signal(signal.SIGINT)
+        _, told = served.process.communicate(timeout=20)
+        assert time.monotonic() - start < 5
+        assert (served.process.returncode, told.splitlines()[-1]) == (0, "The studio has ended.")
+        assert "Traceback" not in told
+        assert list(tmp_path.iterdir()) == []
+        with pytest.raises(exceptions.ConnectionClosed):
+            wire.recv(5)
+    finally:
+        served.end()
 
 
 def test_what_it_begins_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,6 +20,7 @@ from jsonschema import Draft202012Validator
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.studies import load_study, study_schema
+from tests.support import interrupts_heard
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "study-files.md").read_text("utf-8")
@@ -115,11 +116,8 @@ def test_ctrl_c_leaves_what_is_written_and_a_second_run_goes_on() -> None:
     Path(NAME).write_text(BIG, "utf-8")
     args = [sys.executable, "-m", "compoundkin", "study", NAME, "-o", "rows", "--chunk", "4096"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
+    with interrupts_heard():
         stopped = subprocess.Popen(args, stderr=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
-    finally:
-        signal.signal(signal.SIGINT, before)
     until = time.monotonic() + 60
     while not list(Path("rows").glob("*.parquet")) and time.monotonic() < until:
         time.sleep(0.01)
