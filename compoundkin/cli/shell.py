@@ -72,6 +72,30 @@ def _ended(number: int, _: object) -> NoReturn:
     _leave()
 
 
+@contextmanager
+def deferred_signals(act: Callable[[], object]) -> Iterator[None]:
+    """Within, a signal to end calls `act`; only behind the block does it raise.
+
+    What runs tasks of its own swallows exceptions that are raised wherever a task happens to be.
+    """
+    came: list[int] = []
+
+    def note(number: int, _: object) -> None:
+        came.append(number)
+        act()
+
+    heard = [number for number in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(number) is _ended]
+    for number in heard:
+        signal.signal(number, note)
+    try:
+        yield
+    finally:
+        for number in heard:
+            signal.signal(number, _ended)
+    if came:
+        _ended(came[0], None)
+
+
 def _leave() -> NoReturn:
     """Leave by an exception, so that unfinished work is cleaned up."""
     if _heard[-1] == signal.SIGINT:

@@ -7,7 +7,7 @@ import json
 import secrets
 import socket
 import threading
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ import click
 
 from compoundkin.base.errors import InvalidInput, Problem, missing_extra
 from compoundkin.cli.file_options import complete_mechanism, is_foreign_file, load_mechanism
-from compoundkin.cli.shell import say
+from compoundkin.cli.shell import deferred_signals, say
 
 if TYPE_CHECKING:
     from compoundkin.studio.server import StudioServer
@@ -80,8 +80,11 @@ def command(file: str, no_browser: bool) -> int:
 
 async def _serve(server: Any, listener: socket.socket, served: StudioServer) -> None:
     """Serve until a signal comes; nothing that runs is waited for."""
+    serving = asyncio.ensure_future(server.serve([listener]))
+    loop = asyncio.get_running_loop()
     try:
-        await server.serve([listener])
+        with deferred_signals(lambda: loop.call_soon_threadsafe(serving.cancel)), suppress(asyncio.CancelledError):
+            await serving
     finally:
         served.end()
 

@@ -197,7 +197,7 @@ def test_ctrl_c_is_no_traceback() -> None:
 
 SIGNALLED = """
 import os, signal, sys
-from compoundkin.cli.shell import counting, guarded
+from compoundkin.cli.shell import counting, deferred_signals, guarded
 
 class Finalized:
     def __del__(self):
@@ -206,6 +206,12 @@ class Finalized:
 def run():
     if sys.argv[1] == "evaluated":  # a text that is evaluated, as CSS selectors are
         eval("os.kill(os.getpid(), signal.SIGINT)")
+    if sys.argv[1] == "swallowed":  # by what runs callbacks, as servers do
+        with deferred_signals(lambda: print("told")):
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+            except BaseException:
+                pass
     with counting("working", "things") as progress:
         if sys.argv[1] == "dropped":  # where Python drops exceptions
             Finalized()
@@ -217,15 +223,15 @@ guarded(run)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="no signals")
-@pytest.mark.parametrize("where", ["evaluated", "dropped"])
-def test_ctrl_c_is_heard_wherever_it_comes(where: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("where", "out"), [("evaluated", b""), ("dropped", b""), ("swallowed", b"told\n")])
+def test_ctrl_c_is_heard_wherever_it_comes(where: str, out: bytes, tmp_path: Path) -> None:
     (tmp_path / "signalled.py").write_text(SIGNALLED, encoding="utf-8")
     with interrupts_heard():
         ended = subprocess.run(
             [sys.executable, "-m", "signalled", where], cwd=tmp_path, env=ENVIRONMENT,
             capture_output=True, timeout=60, check=False,
         )  # fmt: skip
-    assert (ended.returncode, ended.stdout) == (130, b"")
+    assert (ended.returncode, ended.stdout) == (130, out)
     assert ended.stderr.splitlines()[-1] == b"Interrupted."
 
 
