@@ -23,6 +23,7 @@ import click
 
 from compoundkin.base.errors import missing_extra
 from compoundkin.base.suffixes import suffix_for
+from compoundkin.cli.shell import leave_at_once
 
 # A call may take so many seconds; a mechanism may have so many characters, a reply as many.
 SECONDS, MOST_TEXT = 60.0, 200_000
@@ -285,7 +286,11 @@ def command() -> int:
     made = server()
     import anyio
 
-    anyio.run(_serve, made)
+    try:
+        anyio.run(_serve, made)
+    except (KeyboardInterrupt, SystemExit):
+        # what was begun has been ended; the thread that waits for a line of the other program cannot be
+        leave_at_once()
     return 0
 
 

@@ -103,6 +103,13 @@ def _leave() -> NoReturn:
     sys.exit(128 + _heard[-1])
 
 
+def leave_at_once() -> NoReturn:
+    """Leave for the signal that came, though a library's thread still waits for something."""
+    if _heard[-1] == signal.SIGINT:
+        say("Interrupted.")
+    os._exit(128 + _heard[-1])
+
+
 def _warned(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a warning in a line of its own; its place in the code is of no use on the command line."""
     say(f"Warning: {message}")

@@ -7,6 +7,8 @@ import csv
 import io
 import json
 import os
+import signal
+import subprocess
 import sys
 import time
 import tomllib
@@ -21,7 +23,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.cli import mcp as server_module
 from compoundkin.files.mechanism_files import loads
-from tests.support import FOUR_BAR
+from tests.support import FOUR_BAR, interrupts_heard
 
 anyio = pytest.importorskip("anyio")
 mcp = pytest.importorskip("mcp")
@@ -78,6 +80,26 @@ def test_a_process_answers_over_its_streams_as_the_package_does() -> None:
     (row,) = csv.DictReader(text(result).splitlines())
     motion = ck.solve(loads(FOUR_BAR), {"crank": ck.deg(35)}, modes={"rocker": -1})
     assert float(row["rocker.angle [deg]"]) == pytest.approx(np.degrees(float(motion.links["rocker"].angle)), abs=1e-9)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no signals")
+@pytest.mark.parametrize(("number", "told"), [(signal.SIGINT, b"Interrupted.\n"), (signal.SIGTERM, b"")])
+def test_it_ends_by_a_signal_while_its_client_is_silent(number: signal.Signals, told: bytes) -> None:
+    command = [sys.executable, "-m", "compoundkin", "mcp"]
+    with interrupts_heard():
+        served = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert served.stdin is not None
+    assert served.stdout is not None
+    try:
+        served.stdin.write(b'{"jsonrpc": "2.0", "id": 1, "method": "ping"}\n')
+        served.stdin.flush()
+        assert json.loads(served.stdout.readline())["id"] == 1
+        served.send_signal(number)
+        served.wait(20)  # its input is still open
+        assert (served.returncode, served.communicate()[1]) == (128 + number, told)
+    finally:
+        served.kill()
+        served.communicate()
 
 
 def test_reports_forces_and_better_dimensions() -> None:
