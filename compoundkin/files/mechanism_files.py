@@ -96,22 +96,21 @@ def changed_text(text: str, changes: Mapping[str, str], syntax: Syntax = "toml",
     points = { A = [0, 6.5] }  # mm
     """
     syntax = known_syntax(syntax)
+    wanted, written = parsed(text, syntax, where), dict[toml_text.Way, str]()
     for name, value in changes.items():
-        text = _with_value(text, name, value, syntax, where)
+        _set_value(wanted, written, name, value)
+    text = toml_text.changed(text, wanted, syntax, written)
     loads(text, syntax, where)
     return text
 
 
-# A value as it stands in a text: a number or a quoted word.
-_VALUE = re.compile(r'"(?:[^"\\\n]|\\.)*"|(?<![\w."-])[-+]?\d[\w.+-]*|\b(?:true|false)\b')
 # How coordinates and parts of a point are written.
 _COORDINATES = {"x": 0, "y": 1}
 _POLAR = {"radius": 0, "angle": 1}
 
 
-def _with_value(text: str, name: str, value: str, syntax: Syntax, where: str) -> str:
-    """Return a text with one value replaced, where that and nothing else changes what the text says."""
-    whole = parsed(text, syntax, where)
+def _set_value(whole: dict[str, Any], written: dict[toml_text.Way, str], name: str, value: str) -> None:
+    """Give a document another value, and note how it is written."""
     places = _places(whole)
     pinned = [link for link, own in whole.get("links", {}).items() if name in own.get("points", ())]
     if len(pinned) > 1 and not re.fullmatch(r"\s*[-+.\d].*", value):
@@ -121,25 +120,13 @@ def _with_value(text: str, name: str, value: str, syntax: Syntax, where: str) ->
     if name not in places:
         raise UnknownName(Problem(name, "there is no such value in the file", _meant(name, whole, places)))
     *way, last = places[name]
-    wanted = parsed(text, syntax, where)
-    holder: Any = wanted
+    holder: Any = whole
     for key in way:
         holder = holder[key]
-    old = holder[last]
-    new = value if isinstance(old, str) else _number(name, value)
-    if old == new:
-        return text
-    holder[last] = new
-    written = json.dumps(new, ensure_ascii=False) if isinstance(new, str) else value.strip()
-    for found in _VALUE.finditer(text):
-        changed = text[: found.start()] + written + text[found.end() :]
-        try:
-            is_it = parsed(changed, syntax, where) == wanted
-        except InvalidInput:
-            continue
-        if is_it:
-            return changed
-    raise InvalidInput(Problem(name, f"{old!r} cannot be replaced in the text alone", "change it in an editor"))
+    if isinstance(holder[last], str):
+        holder[last] = value
+    else:
+        holder[last], written[places[name]] = _number(name, value), value.strip()
 
 
 def _meant(name: str, whole: Mapping[str, Any], places: Mapping[str, tuple[Any, ...]]) -> str:

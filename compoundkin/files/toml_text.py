@@ -1,7 +1,8 @@
-"""A document as TOML that is pleasant to read, and a text of TOML changed only where another document wants it.
+"""A document as TOML that is pleasant to read, and a text changed only where another document wants it.
 
-Short tables and lists stand on one line, in one order of keys. A text that is changed keeps its comments and layout:
-what is another value, more or gone is replaced, inserted or cut out at its place, and the text is read again.
+Short tables and lists stand on one line, in one order of keys. A text that is changed keeps its comments, its layout
+and its line ends: what is another value, more or gone is replaced, inserted or cut out at its place, and the text is
+read again. A text of JSON is changed so too: it is one inline table whose keys have another sign behind them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from compoundkin.base.errors import InvalidInput, Problem
@@ -19,6 +21,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 WIDTH = 100
 # The keys, and the places in arrays, that lead to a value.
 Way: TypeAlias = tuple[str | int, ...]
+NOTHING: Mapping[Way, str] = MappingProxyType({})
 
 
 def dumps(document: Mapping[str, Any]) -> str:
@@ -126,30 +129,40 @@ def _key(key: str) -> str:
     return tomli_w.dumps({key: 0})[: -len(" = 0\n")]
 
 
-def changed(text: str, wanted: Mapping[str, Any]) -> str:
-    """Return a text of TOML changed so that it says what is wanted; its comments and layout stay.
+def changed(text: str, wanted: Mapping[str, Any], syntax: str = "toml", written: Mapping[Way, str] = NOTHING) -> str:
+    """Return a text of TOML or JSON changed so that it says what is wanted; comments, layout and line ends stay.
 
-    Raises InvalidInput where the text alone cannot be changed so, such as a table written in several places.
+    `written` are values as they shall stand in the text, by the keys and places in arrays that lead to them. Raises
+    InvalidInput where the text alone cannot be changed so, such as a table written in several places.
 
     >>> print(changed("a = 1  # one\\nb = [1, 2]\\n", {"a": 2, "b": [1, 2, 3]}))
     a = 2  # one
     b = [1, 2, 3]
     <BLANKLINE>
+    >>> changed('{"a": 1, "b":  [1]}', {"a": 2, "b": [1]}, "json", {("a",): "2.0"})
+    '{"a": 2.0, "b":  [1]}'
     """
-    old = tomllib.loads(text)
+    read = tomllib.loads if syntax == "toml" else json.loads
+    old = read(text)
     if old == wanted:
         return text
     # a last line without an end would take in what is written after it
-    text += "" if not text or text.endswith("\n") else "\n"
+    more = "" if not text or text.endswith("\n") else "\n"
     try:
-        edits = _Edits(text, _Layout(text))
+        edits = _Edits(text + more, _Layout(text + more, _SIGNS[syntax]), written)
         edits.table((), old, wanted)
         new = edits.applied()
-        if tomllib.loads(new) == wanted:
+        if more and all(stop <= len(text) for _, stop, _ in edits.splices):
+            new = new[:-1]
+        if read(new) == wanted:
             return new
-    except (_NoPlace, tomllib.TOMLDecodeError):
+    except (_NoPlace, ValueError):
         pass
     raise InvalidInput(Problem("", "this cannot be written into the text at its place", "change it in the text"))
+
+
+# The sign between a key and its value.
+_SIGNS = {"toml": "=", "json": ":"}
 
 
 class _NoPlace(Exception):
@@ -173,19 +186,28 @@ _STRING = re.compile(
 )
 _BARE = re.compile(r"[^\s,\]}#]+(?: \d[^\s,\]}#]*)?")
 _HEAD = re.compile(r"\[\[?")
+_APART = re.compile(r"\n(\r?\n)\Z")
 
 
 @dataclass
 class _Layout:
-    """Where the sections, entries and values of a text of TOML stand: by their ways, from where to where."""
+    """Where the sections, entries and values of a text stand: by their ways, from where to where."""
 
     text: str
+    sign: str
     sections: list[_Section] = field(default_factory=list)
     entries: dict[Way, tuple[int, int]] = field(default_factory=dict)
     values: dict[Way, tuple[int, int]] = field(default_factory=dict)
     own: dict[Way, Way] = field(default_factory=dict)  # of an entry in lines: the way of its section
 
     def __post_init__(self) -> None:
+        if self.sign == ":":
+            self._value(self.skip_blank(0), ())
+        else:
+            self._note_lines()
+
+    def _note_lines(self) -> None:
+        """Note the sections of TOML, and the entries in their lines."""
         at, section, counts = 0, _Section((), 0, 0), dict[Way, int]()
         self.sections.append(section)
         while (at := self._skip(_BLANK, at)) < len(self.text):
@@ -245,7 +267,7 @@ class _Layout:
     def _entry(self, at: int, way: Way, section: Way | None) -> int:
         """Note a key with its value; return where it ends."""
         keys, stop = self._keys(at)
-        if self.text[stop : stop + 1] != "=":
+        if self.text[stop : stop + 1] != self.sign:
             raise _NoPlace
         whole = (*way, *keys)
         end = self._value(self._skip(_SPACES, stop + 1), whole)
@@ -293,11 +315,13 @@ class _Edits:
 
     text: str
     layout: _Layout
+    written: Mapping[Way, str]
     splices: list[tuple[int, int, str]] = field(default_factory=list)
 
     def applied(self) -> str:
         """Return the text with all replacements; of several at one place those noted first stand first."""
         new, last = [], 0
+        is_crlf = 2 * self.text.count("\r\n") > self.text.count("\n")
         for start, end, by in sorted(self.splices, key=lambda one: one[:2]):
             if start < last:
                 # cut out already, with what held it
@@ -305,7 +329,7 @@ class _Edits:
                     raise _NoPlace
                 last = max(last, end)
                 continue
-            new += [self.text[last:start], by]
+            new += [self.text[last:start], by.replace("\n", "\r\n") if is_crlf else by]
             last = end
         return "".join([*new, self.text[last:]])
 
@@ -319,7 +343,7 @@ class _Edits:
         if way in self.layout.values:
             if gone or new:
                 ways = [(*way, key) for key in gone]
-                self._inside(way, ways, [f"{_key(k)} = {_inline(v)}" for k, v in new.items()])
+                self._inside(way, ways, [self._entry(k, v) for k, v in new.items()])
             return
         for key in gone:
             self._cut((*way, key))
@@ -332,17 +356,30 @@ class _Edits:
         elif isinstance(old, list) and isinstance(new, list) and (way in self.layout.values or _lists_tables(old)):
             self._list(way, old, new)
         elif way in self.layout.values:
-            self.splices.append((*self.layout.values[way], _text(new) if isinstance(new, str) else _inline(new)))
+            self.splices.append((*self.layout.values[way], self.written.get(way) or self._value(new)))
         else:
             raise _NoPlace
+
+    def _value(self, value: Any) -> str:
+        """Return a value as it is written."""
+        if self.layout.sign == ":":
+            return json.dumps(value, ensure_ascii=False)
+        return _text(value) if isinstance(value, str) else _inline(value)
+
+    def _entry(self, key: str, value: Any) -> str:
+        """Return an entry of an inline table."""
+        if self.layout.sign == ":":
+            return f"{json.dumps(key, ensure_ascii=False)}: {self._value(value)}"
+        return f"{_key(key)} = {_inline(value)}"
 
     def _list(self, way: Way, old: list[Any], new: list[Any]) -> None:
         """Change an array: what is equal in both stays, items between are changed, cut out or inserted."""
         before, after = ([json.dumps(one, sort_keys=True, default=str) for one in items] for items in (old, new))
         ways = SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
         in_line = way in self.layout.values
-        if in_line and not _lists_tables(old) and not any(what == "equal" for what, *_ in ways):
-            self.splices.append((*self.layout.values[way], _inline(new)))
+        is_other = len(old) != len(new) and not any(what == "equal" for what, *_ in ways)
+        if in_line and not _lists_tables(old) and is_other:
+            self.splices.append((*self.layout.values[way], self._value(new)))
             return
         gone: list[Way] = []
         for what, i, j, k, m in ways:
@@ -353,7 +390,7 @@ class _Edits:
                 self._change((*way, i + one), old[i + one], new[k + one])
             gone += [(*way, one) for one in range(i + both, j)]
             if k + both < m and in_line:
-                self._inside(way, [], [_inline(one) for one in new[k + both : m]], j)
+                self._inside(way, [], [self._value(one) for one in new[k + both : m]], j)
             elif k + both < m:
                 self._insert_tables(way, new[k + both : m], j)
         if gone and in_line:
@@ -387,10 +424,17 @@ class _Edits:
         for k in (k for k, is_out in enumerate(out) if is_out):
             self.splices.append((*self._with_comma(spans, k, not all(out[:k])), ""))
         at = len(spans) if before is None else before
-        if new and at:
-            self.splices.append((spans[at - 1][1], spans[at - 1][1], "".join(f", {one}" for one in new)))
+        if new and at == len(spans):
+            place, glue = spans[-1][1], self._glue(spans[-1][0])
+            self.splices.append((place, place, "".join(f",{glue}{one}" for one in new)))
         elif new:
-            self.splices.append((spans[0][0], spans[0][0], "".join(f"{one}, " for one in new)))
+            place, glue = spans[at][0], self._glue(spans[at][0])
+            self.splices.append((place, place, "".join(f"{one},{glue}" for one in new)))
+
+    def _glue(self, place: int) -> str:
+        """Return what stands between items: a line's end with its indentation, where this one begins its line."""
+        before = self.text[self.layout.line_start(place) : place]
+        return " " if before.strip() else f"\n{before}"
 
     def _with_comma(self, spans: Sequence[tuple[int, int]], k: int, is_after_others: bool) -> tuple[int, int]:
         """Return from where to where an item is cut out: with the comma before it, or after it where it is the first.
@@ -418,8 +462,8 @@ class _Edits:
                 self.splices.append((self.layout.line_start(start), self.layout.line_end(end), ""))
         for section in self.layout.sections:
             if section.way and section.way[:size] == way:
-                is_apart = self.text[: section.start].endswith("\n\n")
-                self.splices.append((section.start - is_apart, section.end, ""))
+                apart = _APART.search(self.text[: section.start])
+                self.splices.append((section.start - len(apart[1]) if apart else section.start, section.end, ""))
         if len(self.splices) == before:
             raise _NoPlace
 

@@ -8,7 +8,6 @@ part of one is set aside, named with its remedy, and the rest is taken apart.
 from __future__ import annotations
 
 import cmath
-import json
 import re
 import warnings
 from collections.abc import Iterator, Mapping
@@ -596,11 +595,7 @@ def _edit(document: str, question: Mapping[str, Any]) -> Reply:
                 place = drawing.places[letter]
                 wanted["drawn"][letter] = [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
     made = edited(wanted, edit, drawing)
-    if syntax_of(document) == "json":
-        text = json.dumps(wanted, indent=2, ensure_ascii=False) + "\n"
-    else:
-        text = toml_text.changed(document, wanted)
-    return {"text": text, "made": made, "problems": []}
+    return {"text": toml_text.changed(document, wanted, syntax_of(document)), "made": made, "problems": []}
 
 
 QUESTIONS = {"structure": _structure, "motion": _motion, "edit": _edit}

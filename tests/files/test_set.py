@@ -45,6 +45,15 @@ def test_equal_numbers_are_told_apart(file: Path) -> None:
     assert made.sketch["B"] == 24
 
 
+def test_numbers_stand_as_they_are_given(file: Path) -> None:
+    """In a text from Windows too, without an end of its last line."""
+    before = file.read_text().rstrip().replace("\n", "\r\n")
+    file.write_bytes(before.encode())
+    assert run("set", file, "crank.B.x=22.50", "drawn.B.x=2.4e1", "drawn.B.y=1")[0] == 0
+    after = file.read_bytes().decode()
+    assert after == before.replace(", B = [25, 0]", ", B = [22.50, 0]").replace("\nB = [25, 0]", "\nB = [2.4e1, 1]")
+
+
 def test_text_driver_and_polar_point(file: Path) -> None:
     file.write_text(file.read_text().replace("P = [35, 30]", "P = { polar = [46, 40] }"))
     assert run("set", file, 'title=Of "mine"', "crank.speed=10", "coupler.P.angle=41")[0] == 0

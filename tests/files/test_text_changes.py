@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import random
 import tomllib
 from typing import Any
@@ -134,3 +135,43 @@ def test_random_changes_are_made_and_undone(name: str) -> None:
 def test_what_is_changed_from_nothing_reads_like_what_is_written() -> None:
     wanted = tomllib.loads(TEXT)
     assert tomllib.loads(changed("format = 1\n", wanted)) == tomllib.loads(dumps(wanted))
+
+
+def test_line_ends_stay_as_they_are() -> None:
+    """Of a text from Windows also those of what is new, and a last line without an end."""
+    wanted = tomllib.loads(TEXT)
+    wanted["links"]["bar"] = {"points": ["B", "C"]}
+    wanted["drawn"]["C"] = [3, 4]
+    del wanted["slides"][0]
+    new = changed(TEXT.replace("\n", "\r\n"), wanted)
+    assert new.count("\n") == new.count("\r\n")
+    assert new == changed(TEXT, wanted).replace("\n", "\r\n")
+    assert changed("a = 1\nb = 2", {"a": 3, "b": 2}) == "a = 3\nb = 2"
+
+
+def test_an_item_stands_as_its_neighbours_do() -> None:
+    wanted = tomllib.loads(TEXT)
+    wanted["outputs"].append("C.position")
+    expected = TEXT.replace("    'B.position',\n", "    'B.position',\n    \"C.position\",\n")
+    assert changed(TEXT, wanted) == expected
+
+
+def test_a_text_of_json_keeps_its_layout() -> None:
+    text = '{\n  "title": "m",\n  "links": {"frame": {"points": {"A": [0.50, 0]}}},\n  "own":  7\n}\n'
+    wanted = json.loads(text)
+    wanted["links"]["frame"]["points"]["A"] = [0.5, 1]
+    wanted["drawn"] = {"A": [1, 2]}
+    expected = text.replace("0.50, 0", "0.50, 1").replace('"own":  7', '"own":  7,\n  "drawn": {"A": [1, 2]}')
+    assert changed(text, wanted, "json") == expected
+
+
+@pytest.mark.parametrize("indent", [None, 2])
+def test_random_changes_of_json_are_made_and_undone(indent: int | None) -> None:
+    before, dice = tomllib.loads(TEXT), random.Random(3)
+    text = json.dumps(before, indent=indent)
+    for _ in range(60):
+        wanted = copy.deepcopy(before)
+        altered(wanted, dice)
+        new = changed(text, wanted, "json")
+        assert json.loads(new) == wanted
+        assert json.loads(changed(new, before, "json")) == before
