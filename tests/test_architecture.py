@@ -267,7 +267,9 @@ OWN = ("self", "cls")
 
 
 def test_no_private_member_of_another_modules_object() -> None:
-    only_shrinks(f"{where(path)}: {name}" for path in FILES for name in private_names(path))
+    # os._exit is documented, with its underscore
+    documented = {"cli/shell.py: _exit"}
+    only_shrinks((f"{where(path)}: {name}" for path in FILES for name in private_names(path)), documented)
 
 
 # --- what is imported when ----------------------------------------------------------------------------------
