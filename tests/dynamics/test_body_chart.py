@@ -60,10 +60,7 @@ def test_parallelograms_fall_through_their_change_points() -> None:
 
 @pytest.mark.parametrize(
     ("name", "until"),
-    [
-        ("peaucellier", 0.02),
-        *(pytest.param(name, 0.1, marks=pytest.mark.full) for name in ("peaucellier", "hart-inversor")),
-    ],
+    [("peaucellier", 0.1), pytest.param("hart-inversor", 0.1, marks=pytest.mark.full)],
 )
 def test_inversors_go_through_their_singular_configurations(name: str, until: float) -> None:
     """Their points go on along the straight line, or leave it where the configurations meet, and no energy is lost."""

@@ -346,3 +346,40 @@ def test_random_machines_with_motors_stops_and_friction(number: int) -> None:
     found = tried(6, number, 30.0)
     assert found is not None
     assert found.how == "done"
+
+
+def test_counted_angles_are_followed_beyond_the_end_of_a_table() -> None:
+    """The states of wheels behind it were those of the start, unsolvable from there: it ended in a traceback."""
+    found = tried(21, 19, 60.0, 1.1)
+    assert found is not None
+    assert found.how == "done"
+
+
+def test_pairs_that_never_slide_have_no_sense() -> None:
+    """A bar from one point of a crank through a block at another: its slide slid in a random sense where no table is.
+
+    There friction had no solution, so that machines wedged that just turned.
+    """
+    crank = ck.Mechanism(
+        "A bar through a block on one crank",
+        *(ck.link("frame", O=0), ck.link("crank", O=0, A=1, B=2 + 1j)),
+        *(ck.link("bar", A=0, D=1), ck.link("block", B=0)),
+        ck.slide("block", on="bar", at="B", through="A", toward="D", name="guide"),
+        *(ck.drive("crank"), ck.drawn(O=0, A=1, B=2 + 1j)),
+        *(ck.mass(link, 1.0, inertia=0.2) for link in ("crank", "bar", "block")),
+        *(ck.friction("A", 0.1, radius=0.1), ck.friction("guide", 0.1)),
+        units=SI,
+    )
+    chart = chart_of(ck.solve(crank, {"crank": [0.3]}), ("crank",), {})
+    assert isinstance(chart, FrictionTable)
+    for value in (0.3, 1.1, 2.9):
+        assert not chart._senses(chart.state(0.0, np.array([value]), np.array([2.0]))).any()
+
+
+def test_a_friction_that_equilibrium_does_not_determine_is_refused() -> None:
+    """Conjugate cams are squeezed between each other as one likes: the force in the cam's pin is anything."""
+    plain = ck.load("conjugate-cams")
+    masses = [ck.mass(link, 1.0, inertia=100.0) for link in ("cam", "follower")]
+    rubbing = plain.replace(*masses, ck.friction("A", 0.1, radius=3.0), units=SI, unit="")
+    with pytest.raises(ck.errors.InvalidInput, match="equilibrium does not determine the normal force in A"):
+        ck.simulate(rubbing, until=0.01)

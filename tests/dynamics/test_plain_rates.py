@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dynamics.reactions import undetermined
 from compoundkin.dynamics.reactions.undetermined import pressing_force
-from compoundkin.dynamics.simulation import tabulated_chart
-from compoundkin.dynamics.simulation.coordinate_change import chart_of
+from compoundkin.dynamics.simulation import simulation_events, tabulated_chart
+from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
 from compoundkin.dynamics.simulation.friction_table import tabulated_pressing
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
@@ -179,3 +180,72 @@ def test_what_presses_a_contact_is_tabulated(name: str) -> None:
         state = chart.state(0.7, np.array([value]), np.array([3.0]))
         assert found == pytest.approx(pressing_force(ck.force_analysis(state.motion), contact), rel=1e-11)
     assert known >= 6
+
+
+def pressed_cam(*more: Any) -> ck.Mechanism:
+    """A cam with a spring-loaded roller follower: no dwell, in which a stop could not hold the cam."""
+    plain = ck.load("cam-return-spring")
+    size = plain.geometry.size
+    masses = [ck.mass(link, 1.0, inertia=0.1 * size**2) for link in plain.links if link != "frame"]
+    units = {"length": "mm", "mass": "kg", "force": "N"}
+    return plain.replace(*masses, ck.gravity(0, -9.81), *more, unit="", units=units)
+
+
+@pytest.mark.parametrize("kind", ["friction", "elastic", "rigid", "elastic with friction"])
+def test_what_presses_a_contact_under_friction_and_at_stops_is_known_in_three_ways(kind: str) -> None:
+    """By the table, by the forces of a solved state with what the stops hold, and by the equations of all pairs."""
+    plain = pressed_cam()
+    (driver,), structure = plain.drives, ck.decompose(plain)
+    (guide,) = (pair.name for pair in structure.pairs if pair.is_simple and not pair.free_is_angle)
+    pin = structure.driven[driver.name].pair.name
+    contact = next(pair.name for pair in plain.written_pairs if as_profile_contact(pair) is not None)
+    rubs = (ck.friction(pin, 0.2, radius=4.0), ck.friction(guide, 0.1)) if "friction" in kind else ()
+    reach = ck.solve(plain, {driver.name: np.linspace(0.0, 6.3, 64)}).pairs[guide].value
+    high = float(np.min(reach)) if "elastic" in kind else float(np.max(reach)) + 1.0
+    hardness = {"stiffness": 5.0, "damping": 0.1} if "elastic" in kind else {}
+    ends = () if kind == "friction" else (ck.stop(guide, high=high, **hardness, name="ends"),)
+    cam = plain.replace(*rubs, *ends, ck.torque(driver.link, lambda t: 300.0 * np.cos(t)))
+    chart = chart_of(ck.solve(cam, {driver.name: [0.3]}), (driver.name,), {})
+    assert isinstance(chart, TabulatedChart)
+    speed = 0.0 if kind == "rigid" else 3.0
+    simulation_events.begin_at_stops(chart, np.array([0.3, speed, 0.0]))
+    for value in np.linspace(-2.3, 2.7, 5).tolist():
+        state = np.array([value, speed, 0.0])
+        chart.begin(0.7, state[:1], state[1:2])
+        chart.closed = chart.stop_contacts
+        here = chart.state(0.7, state[:1], state[1:2])
+        links, by = by_links(chart, here)
+        n = len(links.free)
+        links.begin(0.7, by[:n], by[n:])
+        known = simulation_events._pressed(contact, chart, here, state)
+        assert abs(known) > 0.1
+        assert tabulated_pressing(chart, contact, 0.7, value, speed) == pytest.approx(known, rel=1e-9)
+        assert links.pressing(contact, 0.7, by[:n], by[n:]) == pytest.approx(known, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", [pytest.param("conjugate-cams", marks=pytest.mark.full), "constant-breadth-yoke"])
+def test_cams_that_hold_each_other_are_pressed_without_bound(name: str) -> None:
+    """By the table, and by the equations of all pairs: their states of self-stress squeeze both contacts."""
+    plain = ck.load(name)
+    size, (driver,) = plain.geometry.size, plain.drives
+    masses = [ck.mass(link, 1.0, inertia=0.1 * size**2) for link in plain.links if link != "frame"]
+    units = {"length": "mm", "mass": "kg", "force": "N"}
+    cam = plain.replace(*masses, ck.gravity(0, -9.81), unit="", units=units)
+    chart = chart_of(ck.solve(cam, {driver.name: [0.3]}), (driver.name,), {})
+    links, state = by_links(chart, chart.state(0.0, np.array([0.3]), np.array([3.0])))
+    n, contacts = len(links.free), [pair.name for pair in cam.written_pairs if as_profile_contact(pair) is not None]
+    assert len(contacts) == 2
+    for contact in contacts:
+        assert tabulated_pressing(chart, contact, 0.0, 0.3, 3.0) == np.inf
+        assert links.pressing(contact, 0.0, state[:n], state[n:]) == np.inf
+
+
+def test_what_contacts_that_share_a_force_have_to_spare() -> None:
+    """By one state of self-stress in closed form, as by the linear program, for random forces."""
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        normals, state = rng.normal(size=4), rng.normal(size=4)
+        one = undetermined._spare_along(normals, state)
+        # a copy of the state changes nothing, and is solved by the linear program
+        assert one == pytest.approx(undetermined._spare(normals, np.array([state, state])), rel=1e-9, abs=1e-9)
+        assert undetermined._spare_along(normals, np.abs(state)) == np.inf

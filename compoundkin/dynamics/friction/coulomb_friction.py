@@ -530,7 +530,13 @@ def _influence(
 
 def normal_forces_of(at: LoadedBlock, contacts: tuple[LoadedContact, ...], reactions: Reactions) -> list[Number]:
     """Return the normal forces of all contacts under some reactions, each in one row; those of pins are complex."""
-    wrenches = _of_pairs(at, reactions)
+    return normal_forces_by(at, contacts, _of_pairs(at, reactions))
+
+
+def normal_forces_by(
+    at: LoadedBlock, contacts: tuple[LoadedContact, ...], wrenches: Mapping[str, Wrench]
+) -> list[Number]:
+    """Return these by the wrenches in the mechanism's own pairs."""
     return [in_one_row(one, at) for contact in contacts for one in contact.normal_forces(at, wrenches[contact.name])]
 
 

@@ -82,6 +82,12 @@ def friction_contacts_of(motion: Motion) -> tuple[LoadedContact, ...]:
     return tuple(found.values())
 
 
+def undetermined_friction(contact: LoadedContact) -> InvalidInput:
+    """Return the error of a friction whose normal force equilibrium does not determine."""
+    what = f"equilibrium does not determine the normal force in {contact.name}"
+    return InvalidInput(Problem(f"frictions.{contact.friction.pair}", what, "leave this friction out"))
+
+
 def _named(motion: Motion, name: str) -> Iterator[str]:
     """Yield the pairs of a name: itself, that of a full name or of a driver, or all of a multiple pin by its letter.
 

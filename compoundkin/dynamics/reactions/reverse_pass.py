@@ -217,11 +217,7 @@ def self_stress(motion: Motion) -> SelfStress:
     parts, units = parts_left_out(structure), dict[int, tuple[Dropped, float]]()
     with np.errstate(all="ignore"):
         for at in loaded_blocks(motion) if parts else ():
-            for number, (part, unit) in enumerate(_units(at, parts)):
-                loads = {part.second: unit, part.first: -unit}
-                found = reverse_pass(motion.solving_order, at.block, loads).pairs
-                state = own_wrenches(structure, found, motion.failed[at.designs, at.poses].shape)
-                add_wrench(state, part, unit)
+            for number, (part, unit, state) in enumerate(stressed_blocks(at, parts)):
                 units[number] = part.dropped, 1.0 if np.any(unit.force) else 1.0 / motion.size
                 for name, wrench in state.items():
                     store.take((number, name), wrench, at.designs, at.poses)
@@ -238,6 +234,17 @@ def self_stress(motion: Motion) -> SelfStress:
     ]
     freed, sizes = tuple(units[k][0] for k in there), tuple(units[k][1] for k in there)
     return SelfStress(motion, tuple(states[k] for k in there), freed, sizes)
+
+
+def stressed_blocks(at: LoadedBlock, parts: Sequence[LeftOut]) -> Iterator[tuple[LeftOut, Wrench, dict[str, Wrench]]]:
+    """Yield parts left out with their units, and the wrenches in all pairs of a block under each."""
+    motion = at.motion
+    for part, unit in _units(at, parts):
+        loads = {part.second: unit, part.first: -unit}
+        found = reverse_pass(motion.solving_order, at.block, loads).pairs
+        state = own_wrenches(motion.structure, found, motion.failed[at.designs, at.poses].shape)
+        add_wrench(state, part, unit)
+        yield part, unit, state
 
 
 def as_force(motion: Motion, pair: str, wrench: Wrench) -> Number:

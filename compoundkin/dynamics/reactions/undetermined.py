@@ -65,13 +65,22 @@ def pressing_force(forces: ForceResult, name: str) -> float:
     if not forces.relaxed:
         return normals[name]
     units = {one: own.pair.wrenches(own.ends, own.poses)[0].force for one, own in held.items()}
-    rows = [{one: float(np.ravel(dot(units[one], state[one].force))[0]) for one in held}
+    rows = [[float(np.ravel(dot(units[one], state[one].force))[0]) for one in held]
             for state in forces.self_stress.states]  # fmt: skip
-    shared = [row for row in rows if abs(row[name]) > NO_PART * max(map(abs, row.values()))]
-    if not shared:
-        return normals[name]
-    own = [one for one in held if any(abs(row[one]) > NO_PART * max(map(abs, row.values())) for row in shared)]
-    return _spare(np.array([normals[one] for one in own]), np.array([[row[one] for one in own] for row in shared]))
+    return spare_force(list(held).index(name), np.array([*normals.values()]), np.reshape(rows, (-1, len(held))))
+
+
+def spare_force(which: int, normals: Number, states: Number) -> float:
+    """Return the force that presses one of some contacts, by those without self-stress and its states, each a row.
+
+    Where states have it with others it is what they have to spare while none pulls.
+    """
+    large = np.abs(states) > NO_PART * np.max(np.abs(states), axis=1, keepdims=True, initial=0.0)
+    shared = large[:, which]
+    if not shared.any():
+        return float(normals[which])
+    own = large[shared].any(axis=0)
+    return _spare(normals[own], states[shared][:, own])
 
 
 def _spare(normals: Number, states: Number) -> float:
@@ -79,12 +88,24 @@ def _spare(normals: Number, states: Number) -> float:
     from scipy.optimize import linprog
 
     states = states / np.max(np.abs(states), axis=1, keepdims=True)
+    if len(states) == 1:
+        return _spare_along(normals, states[0])
     # n + s . x >= t with the greatest t
     columns = np.column_stack([-states.T, np.ones(len(normals))])
     goal = np.append(np.zeros(len(states)), -1.0)
     scale = float(np.max(np.abs(normals))) or 1.0
     found = linprog(goal, A_ub=columns, b_ub=normals / scale, bounds=(None, None))
     return np.inf if found.status == UNBOUNDED else -float(found.fun) * scale
+
+
+def _spare_along(normals: Number, state: Number) -> float:
+    """Return this by a single state: the least is where a force that grows with the state meets one that falls."""
+    grows, falls = state > 0.0, state < 0.0
+    if not (grows.any() and falls.any()):
+        return np.inf
+    up, down = state[grows][:, None], -state[falls]
+    met = (normals[grows][:, None] * down + normals[falls] * up) / (up + down)
+    return float(np.min(met))
 
 
 # The status of a linear program without an end.

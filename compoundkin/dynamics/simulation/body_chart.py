@@ -22,6 +22,7 @@ from compoundkin.base.arrays import Number, cross, dot, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, moving_masses
+from compoundkin.dynamics.reactions.undetermined import spare_force
 from compoundkin.dynamics.simulation.driver_state import (
     ONLY,
     LoadedState,
@@ -33,7 +34,7 @@ from compoundkin.dynamics.simulation.driver_state import (
     rotors_that_lose,
 )
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding, is_no_contact, pressed, sprung
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.driver_values import mapped
 from compoundkin.kinematics.motion import Motion
@@ -42,7 +43,8 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, Poses, constraint_scales
+from compoundkin.model.pairs.contract import Ends, Poses, as_transmitting_pair, constraint_scales
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 # Equations that move a link by less than this part of what others do say nothing new: what drifts off redundant pairs
 # between two projections is far below, and a change point is that near for an instant only.
@@ -261,6 +263,30 @@ class BodyChart:
         return sprung(self.closed, here, here.rates) if self.closed else here.rates
 
     pressing_rates = unheld_rates
+
+    def pressing(self, name: str, time: float, values: Number, speeds: Number) -> float | None:
+        """Return the force that presses a contact with a profile, by the forces that the equations of pairs have.
+
+        None with gears and belts, whose equations do not tell where teeth and strands are.
+        """
+        held, first = list[tuple[str, int, float]](), self._first_row
+        for one in self.pairs:
+            contact = as_profile_contact(one.pair)
+            if as_transmitting_pair(one.pair) is not None:
+                return None
+            if contact is not None and not contact.has_ends:
+                held.append((one.pair.name, first, float(one.scales[0])))
+            first += len(one.scales)
+        names, rows, scales = zip(*held, strict=True)
+        here = self._projected(time, values, speeds)
+        forces, states = here.pair_forces(), here.self_stress
+        at, sizes = list(rows), np.array(scales)
+        return spare_force(names.index(name), forces[at] / sizes, states[at].T / sizes)
+
+    @property
+    def _first_row(self) -> int:
+        """The first of the equations of pairs that are neither pins nor slides."""
+        return 2 * (len(self.pins.own) + len(self.slides.own))
 
     @property
     def rigid(self) -> tuple[StopContact, ...]:
@@ -495,16 +521,44 @@ class BodyState:
         return self.chart.equations(self)
 
     @cached_property
-    def _parts(self) -> tuple[Number, Number, float]:
-        """The pseudoinverse of the Jacobian, its null space, and its least singular value as a part of the greatest."""
+    def _parts(self) -> tuple[Number, Number, float, Number]:
+        """The pseudoinverse of the Jacobian, its null spaces, and its least singular value as a part of the greatest.
+
+        The second null space is that of the forces which balance each other.
+        """
         u, s, v = np.linalg.svd(self.equations.jacobian)
         rank = int(np.count_nonzero(s > RANK * s[0])) if len(s) else 0
-        return (v[:rank].T / s[:rank]) @ u[:, :rank].T, v[rank:].T, float(s[rank - 1] / s[0]) if rank else 1.0
+        least = float(s[rank - 1] / s[0]) if rank else 1.0
+        return (v[:rank].T / s[:rank]) @ u[:, :rank].T, v[rank:].T, least, u[:, rank:]
 
     @property
     def inverse(self) -> Number:
         """The pseudoinverse of the Jacobian."""
         return self._parts[0]
+
+    @property
+    def self_stress(self) -> Number:
+        """The states of self-stress: forces in the equations that balance each other, in columns."""
+        return self._parts[3]
+
+    def pair_forces(self) -> Number:
+        """Return the forces in the equations, the least ones where several balance the same."""
+        found: Number = self.inverse.T @ (self.chart.scales * self.constraint)
+        return found
+
+    @property
+    def constraint(self) -> Number:
+        """The forces in the pairs along all coordinates, with the contacts at stops and in latches."""
+        free = sprung(self.chart.closed, self, self.rates)
+        found = pressed(self.chart.closed, self, self.rates)
+        given = self.forces[0] + self.forces[1]
+        for one in self.chart.closed:
+            if one.stop.is_elastic:
+                given = given + one.at(self).normal * one.push(self)
+        if rigid := [one.at(self) for one in self.chart.rigid]:
+            given = given + holding(rigid, self, free) @ np.array([one.normal for one in rigid])
+        whole: Number = self.terms.matrix @ found.accelerations + self.terms.bias - given
+        return whole
 
     @property
     def least(self) -> float:
@@ -616,9 +670,13 @@ class BodyState:
     @cached_property
     def motion(self) -> Motion:
         """The state as a motion of one pose, with velocities and accelerations."""
+        return self.moved(self.accelerations)
+
+    def moved(self, accelerations: Number) -> Motion:
+        """Return the state as such a motion with other accelerations."""
         chart, start = self.chart, self.chart.start
         column = np.concatenate([self.values, self.speeds])[:, None]
-        second = self.accelerations[:, None]
+        second = accelerations[:, None]
         drives: dict[str, tuple[Number, ...]] = {
             name: tuple(part[None] for part in course)
             for name, course in chart.courses(np.zeros(1), column, second).items()

@@ -15,8 +15,8 @@ from compoundkin.dynamics.mass_motion import moving_masses
 from compoundkin.dynamics.simulation.driver_state import (
     DriverState,
     LinearAngle,
+    PushedState,
     Rates,
-    SeenState,
     by_drivers,
     first_angle,
     prescribed_rates,
@@ -103,7 +103,7 @@ class DriverChart:
         whole, rates = np.concatenate([values, given[0]]), np.concatenate([speeds, given[1]])
         return DriverState(self, time, whole, rates, given[2], self._block(whole, rates))
 
-    def seen(self, time: float, values: Number, speeds: Number) -> SeenState:
+    def seen(self, time: float, values: Number, speeds: Number) -> PushedState:
         """Return a state as contacts see it."""
         return self.state(time, values, speeds)
 
@@ -114,18 +114,22 @@ class DriverChart:
     def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state, between both sides of a jump where a load holds a speed."""
         free = self.free_rates(time, values, speeds)
-        return pressed(self._added, self.state(time, values, speeds), free) if self._added else free
+        return pressed(self._added, self.seen(time, values, speeds), free) if self._added else free
 
     def unheld_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state without the rigid contacts."""
         free = self.free_rates(time, values, speeds)
-        return sprung(self._added, self.state(time, values, speeds), free) if self._added else free
+        return sprung(self._added, self.seen(time, values, speeds), free) if self._added else free
 
     pressing_rates = unheld_rates
 
     def free_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state without the contacts at stops and in latches."""
         return self.rates(time, values, speeds) if self.held is None else self.held.rates(self, time, values, speeds)
+
+    def pressing(self, name: str, time: float, values: Number, speeds: Number) -> float | None:
+        """Return the force that presses a contact, None where it is to be found from the forces of the state."""
+        return None
 
     @property
     def _added(self) -> tuple[StopContact, ...]:
@@ -197,9 +201,7 @@ class DriverChart:
 
     def _follow(self, world: Mapping[str, Pose], values: Number | None) -> None:
         """Store the states of groups without signs, and the counted angles with their rates by the drivers."""
-        for solver in (s for s in self.order.solvers if s.is_numbered):
-            bodies = [_still(world[body.links[0]]) for body in solver.group.bodies]
-            self.states[solver.index] = equations_of(solver).state(bodies).reshape(1, 1, -1)
+        self._store_states(world)
         for link in self.order.turning:
             if (turned := world[link].theta) is None:
                 continue
@@ -209,6 +211,12 @@ class DriverChart:
                 else by_drivers(turned.c[1], self.names)
             )
             self.near[link] = LinearAngle(float(np.ravel(turned.c[0])[0]), values, slopes)
+
+    def _store_states(self, world: Mapping[str, Pose]) -> None:
+        """Store the states of groups without signs."""
+        for solver in (s for s in self.order.solvers if s.is_numbered):
+            bodies = [_still(world[body.links[0]]) for body in solver.group.bodies]
+            self.states[solver.index] = equations_of(solver).state(bodies).reshape(1, 1, -1)
 
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
         """Return an angle of a pair with its full turns."""

@@ -207,7 +207,11 @@ class DriverState:
     @cached_property
     def motion(self) -> Motion:
         """The state as a motion of one pose, with velocities and accelerations."""
-        second = np.concatenate([self.accelerations, self.prescribed])
+        return self.moved(self.accelerations)
+
+    def moved(self, accelerations: Number) -> Motion:
+        """Return the state as such a motion with other accelerations of the free drivers."""
+        second = np.concatenate([accelerations, self.prescribed])
         return accelerated_motion(self, self.chart.start, self.speeds, second[:, None])
 
 
@@ -390,16 +394,27 @@ class SeenState(Protocol):
         """The rates of all coordinates."""
 
 
-class KnownState(SeenState, Protocol):
+class PushedState(SeenState, Protocol):
+    """The part of a state that the forces of contacts need."""
+
+    @property
+    def prescribed(self) -> Number:
+        """The accelerations of the prescribed drivers that are coordinates."""
+
+    @property
+    def terms(self) -> InertiaTerms:
+        """The mass matrix, the bias and the weights."""
+
+    def response(self, along: Number) -> Number:
+        """Return the accelerations of all coordinates by a force along them alone."""
+
+
+class KnownState(PushedState, Protocol):
     """The part of a state that events and stops need, whichever coordinates it is in."""
 
     @property
     def chart(self) -> Any:
         """What it is a state of."""
-
-    @property
-    def prescribed(self) -> Number:
-        """The accelerations of the prescribed drivers that are coordinates."""
 
     @property
     def time(self) -> float:
@@ -417,19 +432,15 @@ class KnownState(SeenState, Protocol):
     def motion(self) -> Motion:
         """The state as a motion of one pose, with velocities and accelerations."""
 
+    def moved(self, accelerations: Number) -> Motion:
+        """Return the state as such a motion with other accelerations of the free coordinates."""
+
     @property
     def kinetic(self) -> float:
         """The kinetic energy."""
 
-    @property
-    def terms(self) -> InertiaTerms:
-        """The mass matrix, the bias and the weights."""
-
     def slopes(self, pair: Pair) -> Number:
         """Return the rates of a pair's coordinate by all coordinates."""
-
-    def response(self, along: Number) -> Number:
-        """Return the accelerations of all coordinates by a force along them alone."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,6 +44,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law, as_law, constant_speed, motion_table
 from compoundkin.model.loads.attachments import Effort, effort
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs.contract import Ends
 
 # A driver whose equivalent inertia is below this part of the heaviest link's moves no mass: rounding squared.
 NO_MASS = 1e-20
@@ -385,16 +386,16 @@ def simulated_motion(stretches: list[ChartStretch], more: tuple[Effort, ...] = (
     """
     if len(stretches) == 1:
         return _solved(_asked(stretches[0]), more)
-    parts = [_solved(one) for one in stretches]
+    parts = [_poses_of(one) for one in stretches]
     times = np.concatenate([one.times[one.asked] for one in stretches])
     poses = _joined(parts, stretches)
     known = {one.chart.free: one.chart for one in reversed(stretches) if isinstance(one.chart, DriverChart)}
     charts, tried = list(known.values()), list[Motion]()
-    for chart in charts[:TRIES]:
+    # the coordinates of all links keep digits that those of drivers lose next to limit positions
+    by_drivers = all(isinstance(one.chart, DriverChart) for one in stretches)
+    for chart in charts[: TRIES if by_drivers else 1]:
         motion, agrees = _driven_by(chart, parts, stretches, times, poses, more)
-        # the coordinates of all links keep digits that those of drivers lose next to limit positions
-        agrees = agrees and all(isinstance(one.chart, DriverChart) for one in stretches)
-        if agrees and _starts_alike(motion, stretches[0].chart.start):
+        if by_drivers and agrees and _starts_alike(motion, stretches[0].chart.start):
             return motion
         tried.append(motion)
     # no coordinate is regular everywhere, or only the first one starts with its turns: each pose is that of the
@@ -447,15 +448,35 @@ def _has_poses(motion: Motion, poses: Mapping[str, Pose]) -> bool:
     )
 
 
-def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pose]:
+class _StretchPoses(NamedTuple):
+    """The poses of all links at the times of a stretch, in a row, with the sides of pairs."""
+
+    poses: Mapping[str, Pose]
+    ends: Mapping[str, Ends]
+    times: int
+
+    def row(self, value: Number) -> Number:
+        """Return a value at all times."""
+        return np.broadcast_to(value, (1, self.times))
+
+
+def _poses_of(stretch: ChartStretch) -> _StretchPoses:
+    """Return the poses of a stretch. By the coordinates of all links nothing is to be solved for them."""
+    chart, count = stretch.chart, len(stretch.times)
+    if isinstance(chart, DriverChart):
+        motion = _solved(stretch)
+        return _StretchPoses(motion.poses, motion.inputs.ends, count)
+    return _StretchPoses(chart.poses(stretch.states, stretch.accelerations), chart.ends, count)
+
+
+def _joined(parts: list[_StretchPoses], stretches: list[ChartStretch]) -> dict[str, Pose]:
     """Return the poses of all links at the requested times, in a row."""
 
     def row(name: str, side: str, k: int) -> Number:
         found = []
-        for motion, one in zip(parts, stretches, strict=True):
-            c = getattr(motion.poses[name], side).c
-            value = c[k] if k < len(c) else 0.0
-            found.append(np.broadcast_to(value, motion.failed.shape)[:, one.asked])
+        for part, one in zip(parts, stretches, strict=True):
+            c = getattr(part.poses[name], side).c
+            found.append(part.row(c[k] if k < len(c) else 0.0)[:, one.asked])
         return np.concatenate(found, axis=1)
 
     def series(name: str, side: str) -> Series:
@@ -466,7 +487,7 @@ def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pos
 
 def _driven_by(
     chart: DriverChart,
-    parts: list[Motion],
+    parts: list[_StretchPoses],
     stretches: list[ChartStretch],
     times: Number,
     poses: Mapping[str, Pose],
@@ -482,15 +503,15 @@ def _driven_by(
     return motion, bool(np.all(motion.regular)) and _has_poses(motion, poses)
 
 
-def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[ChartStretch]) -> SolvedCourse:
+def _followed(chart: DriverChart, name: str, parts: list[_StretchPoses], stretches: list[ChartStretch]) -> SolvedCourse:
     """Return the course of a chart's driver over all stretches, read off their motions."""
     own = chart.start.structure.driven[name]
     sense, found, begins, last = float(own.pair.driven_by(own.drive.link)), [], [], None
-    for motion, one in zip(parts, stretches, strict=True):
+    for part, one in zip(parts, stretches, strict=True):
         # by the poses: at a multiple pin another driver leads to other pairs
-        ends = motion.inputs.ends.get(own.pair.name) or own.pair.ends(motion.mechanism.geometry)
-        series = own.pair.coordinate(ends, tuple(motion.poses[link] for link in own.pair.members))
-        rows = [np.broadcast_to(series.derivative(k), motion.failed.shape)[0] * sense for k in range(ORDER + 1)]
+        ends = part.ends.get(own.pair.name) or own.pair.ends(chart.mechanism.geometry)
+        series = own.pair.coordinate(ends, tuple(part.poses[link] for link in own.pair.members))
+        rows = [part.row(series.derivative(k))[0] * sense for k in range(ORDER + 1)]
         if own.pair.free_is_angle:
             rows[0] = np.unwrap(rows[0])
             rows[0] = rows[0] + (0.0 if last is None else whole_turns(last - rows[0][0]))

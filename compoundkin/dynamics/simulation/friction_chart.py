@@ -31,7 +31,11 @@ from compoundkin.dynamics.friction.coulomb_friction import (
     PoseInfluence,
     solve_coulomb,
 )
-from compoundkin.dynamics.friction.friction_contacts import LoadedContact, friction_contacts_of
+from compoundkin.dynamics.friction.friction_contacts import (
+    LoadedContact,
+    friction_contacts_of,
+    undetermined_friction,
+)
 from compoundkin.dynamics.simulation.body_chart import NO_MASS, BodyChart, BodyState
 from compoundkin.dynamics.simulation.driver_state import Rates, needs_time
 from compoundkin.model.geometry import FRAME
@@ -204,8 +208,7 @@ class FrictionChart(BodyChart):
         free = v[np.count_nonzero(s > RANK * s[0]) :]
         for contact, place in zip(self.contacts, self.places, strict=True):
             if free.size and np.max(np.abs(free[:, place.rows])) > UNDETERMINED:
-                what = f"equilibrium does not determine the normal force in {contact.name}"
-                raise InvalidInput(Problem(f"frictions.{contact.friction.pair}", what, "leave this friction out"))
+                raise undetermined_friction(contact)
 
     def state(self, time: float, values: Number, speeds: Number) -> FrictionState:
         """Return the state at the coordinates of all links and their rates."""
@@ -627,6 +630,11 @@ class FrictionState(BodyState):
     def accelerations(self) -> Number:
         """The accelerations of all coordinates, with friction."""
         return self.solution.accelerations
+
+    @property
+    def constraint(self) -> Number:
+        """The forces in the pairs along all coordinates."""
+        return self.solution.constraint
 
     @property
     def rates(self) -> Rates:

@@ -21,7 +21,6 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
-    ALL_GROWN,
     ONE,
     TINY,
     FrictionInfluence,
@@ -29,6 +28,7 @@ from compoundkin.dynamics.friction.coulomb_friction import (
     NotUniqueMotion,
     PoseInfluence,
     block_with_friction,
+    normal_forces_by,
     normal_forces_of,
     solve_coulomb,
 )
@@ -37,12 +37,21 @@ from compoundkin.dynamics.friction.friction_contacts import (
     LoadedContact,
     friction_contacts_of,
     in_one_row,
-    senses,
     speed_of_fastest,
+    undetermined_friction,
 )
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
-from compoundkin.dynamics.reactions.reverse_pass import reverse_pass, reverse_passes
-from compoundkin.dynamics.simulation.driver_state import DriverState, Rates, accelerated_motion, needs_time
+from compoundkin.dynamics.reactions.reverse_pass import (
+    LeftOut,
+    parts_left_out,
+    reverse_pass,
+    reverse_passes,
+    self_stress,
+    stressed_blocks,
+)
+from compoundkin.dynamics.reactions.undetermined import spare_force
+from compoundkin.dynamics.simulation.driver_state import DriverState, PushedState, Rates, accelerated_motion, needs_time
+from compoundkin.dynamics.simulation.stop_contacts import holding
 from compoundkin.dynamics.simulation.tabulated_chart import (
     DRIVE_SCALES,
     POINTS,
@@ -67,7 +76,7 @@ PLACES, HALVINGS = 64, 50
 NEARLY = 0.01
 # Frictions are mild where their influences stay below this sum, which is checked at so many places of a piece.
 MILD, CHECKED = 0.8, 16
-# Behind a step a second motion is sought among all solutions where up to so many normal forces act.
+# Behind a step and at rest a second motion is sought among all solutions where up to so many normal forces act.
 GROWN = 6
 # A course begins so far ahead in its stretch, as a part of the table: it has just left the reversal behind it.
 AHEAD = 1e-10
@@ -131,7 +140,7 @@ class NormalForceState:
         """The driver's effort without acceleration, None where it is not unique."""
         here = PoseInfluence(self.layout, self.own, self.by, self.senses)
         found = None if here.weights is None else here.solution(here.weights)
-        sizes = self._searched(here, ALL_GROWN) if found is None else found.sizes
+        sizes = self._searched(here, GROWN) if found is None else found.sizes
         return None if sizes is None else -self.push - float(self.along.dot(sizes))
 
     def _searched(self, here: PoseInfluence, grown: int) -> Number | None:
@@ -168,6 +177,22 @@ class FrictionTable(TabulatedChart):
     has_left: bool = False
     rests: bool = False
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check_determined()
+
+    def _check_determined(self) -> None:
+        """Raise InvalidInput where equilibrium does not determine the normal force of a friction."""
+        if self.start.structure.relaxation is None:
+            return
+        stress, ends, poses = self_stress(self.start), self.start.inputs.ends, self.start.poses
+        for contact in self.contacts:
+            place = poses[contact.pair.members[1]].at(ends[contact.name][1].point).c[0]
+            found = stress.open([(contact.name, 1.0)], place)
+            is_open = found.force | found.moment if contact.friction.length is not None else found.force
+            if np.any(is_open) and np.any(np.asarray(contact.friction.factor) > 0.0):
+                raise undetermined_friction(contact)
+
     @cached_property
     def largest(self) -> list[float]:
         """The largest components of normal forces up to now."""
@@ -178,11 +203,6 @@ class FrictionTable(TabulatedChart):
     def contacts(self) -> tuple[LoadedContact, ...]:
         """The pairs with friction."""
         return friction_contacts_of(self.start)
-
-    def state(self, time: float, values: Number, speeds: Number) -> DriverState:
-        """Return the state at a value and a speed of the driver."""
-        self.follow_table(float(values[0]))
-        return super().state(time, values, speeds)
 
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state. The work is that of loads without a potential, and of friction."""
@@ -229,13 +249,22 @@ class FrictionTable(TabulatedChart):
 
     def accelerated(self, state: DriverState) -> Number:
         """Return the acceleration at a state, at which the driver has no effort."""
+        return np.array([self._freed(state).acceleration])
+
+    def free_motion(self, time: float, values: Number, speeds: Number) -> FreeMotion:
+        """Return the motion at which the driver has no effort, with the frictions."""
+        found = self._in_table(time, float(values[0]), float(speeds[0]), self.direction)
+        if found is not None:
+            return self._free(found.normal, time, self.sides)
+        return self._freed(self.state(time, values, speeds))
+
+    def _freed(self, state: DriverState) -> FreeMotion:
+        """Return this motion at a solved state."""
         found = self._in_table(state.time, float(state.values[0]), float(state.speeds[0]), self.direction)
         if found is not None:
-            return np.array([self._free(found.normal, state.time, self.sides).acceleration])
+            return self._free(found.normal, state.time, self.sides)
         second = np.array([[0.0, 1.0]])
-        return np.array(
-            [self._free(self._solved(state, state.speeds, second, self.direction), state.time).acceleration]
-        )
+        return self._free(self._solved(state, state.speeds, second, self.direction), state.time)
 
     def friction_powers(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the powers of all frictions, never positive."""
@@ -375,7 +404,7 @@ class FrictionTable(TabulatedChart):
         rows = piece.terms.dot(basis)
         others = pressed.layout.none
         if self.has_others:
-            more = self.wrenches_of_others(piece, basis, time, value, speed)
+            more = self.wrenches_of_others(self.loaded_at(piece, basis, time, np.array([value]), speed))
             if more is None:
                 return None
             others = more
@@ -405,7 +434,10 @@ class FrictionTable(TabulatedChart):
 
     def _senses(self, state: DriverState) -> Number:
         """Return the sense in which each pair slides as the driver's coordinate grows."""
-        return senses(self.contacts, self._loaded(state, np.ones(1), np.zeros((1, 1))))[:, 0]
+        at = self._loaded(state, np.ones(1), np.zeros((1, 1)))
+        rates = np.array([float(np.ravel(contact.sliding(at))[0]) for contact in self.contacts])
+        least = AT_REST * float(np.ravel(speed_of_fastest(at))[0])
+        return np.where(np.abs(rates) > least, np.sign(rates), 0.0 * rates)
 
     def _loaded(self, state: DriverState, speeds: Number, second: Number) -> LoadedBlock:
         motion = accelerated_motion(state, self.start, speeds, second)
@@ -423,14 +455,19 @@ class TabulatedState(NamedTuple):
 class ForceLayout:
     """The rows of a table of normal forces: those of the equation of motion, frictions along the driver, normal forces.
 
-    Normal forces have rows under loads alone, for a unit acceleration, for a unit squared speed, for a unit of each
-    friction, and for a unit force along x, along y and a unit moment on each of the `touched` links.
+    Normal forces, those in the `pressed` contacts, have rows under loads alone, for a unit acceleration, for a unit
+    squared speed, for a unit of each friction, for a unit force along x, along y and a unit moment on each of the
+    `touched` links, for a unit effort along each of the pairs with `stops`, and in each state of self-stress.
     """
 
     contacts: tuple[LoadedContact, ...]
     loads: Sequence[Sequence[Load]]
     touched: tuple[str, ...]
     components: NormalForceComponents
+    pressed: tuple[LoadedContact, ...]
+    stops: tuple[str, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    states: int = 0
 
     @cached_property
     def none(self) -> Number:
@@ -442,7 +479,8 @@ class ForceLayout:
         """The scales of rows by number: frictions along the driver have one each, normal forces one for each cause."""
         n, wide = len(self.contacts), len(self.components.together)
         first = max(DRIVE_SCALES) + 1
-        causes = [0, 1, 1, *[2] * n, *(3 + k for _ in self.touched for k in (0, 0, 1))]
+        alone = len(self.stops) + self.states
+        causes = [0, 1, 1, *[2] * n, *(3 + k for _ in self.touched for k in (0, 0, 1)), *(5 + k for k in range(alone))]
         return (*DRIVE_SCALES, *range(first, first + n), *(first + n + k for k in causes for _ in range(wide)))
 
     def state(self, rows: Number, speed: float, sliding: Number, others: Number, is_mild: bool) -> TabulatedState:
@@ -482,8 +520,10 @@ class ForceLayout:
             yield in_one_row(unit.power(poses[1]) - unit.power(poses[0]), at)
         order = at.motion.solving_order
         for reactions in reverse_passes(order, at.block, list(self._causes(at, units))):
-            forces = normal_forces_of(at, self.contacts, reactions)
+            forces = normal_forces_of(at, self.pressed, reactions)
             yield from self.components.split(np.transpose(forces)).T
+        for _, _, wrenches in stressed_blocks(at, self.left_out):
+            yield from self.components.split(np.transpose(normal_forces_by(at, self.pressed, wrenches))).T
 
     def _causes(self, at: LoadedBlock, units: Sequence[Wrench]) -> Iterator[dict[str, Wrench]]:
         """Yield the loads of each cause of normal forces."""
@@ -498,6 +538,7 @@ class ForceLayout:
         yield from (contact.on_links(unit) for contact, unit in zip(self.contacts, units, strict=True))
         for link in self.touched:
             yield from ({link: Wrench(force * ones, moment * ones)} for force, moment in UNITS)
+        yield from (_summed(list(at.unit_effort(pair))) for pair in self.stops)
 
 
 # A unit force along x, one along y, and a unit moment about the origin.
@@ -538,7 +579,10 @@ class NormalForceTable:
 
 
 class ContactForces:
-    """The forces that press contacts which may let go, without friction: a table over a driver, as of normal forces."""
+    """The forces that press contacts which may let go: a table over a driver, as of normal forces.
+
+    Where it is not accurate, its rows are those of the solved pose.
+    """
 
     def __init__(self, chart: TabulatedChart, contacts: tuple[LoadedContact, ...]) -> None:
         assert chart.table is not None
@@ -550,21 +594,57 @@ class ContactForces:
         self.index = {contact.name: k for k, contact in enumerate(contacts)}
 
     def pressing(self, name: str, chart: TabulatedChart, time: float, value: float, speed: float) -> float | None:
-        """Return the force that presses a contact at a state of a chart, None where the table has none."""
-        inside = chart.tabulated(value)
-        piece = piece_at(self.pieces, self.starts, inside) if name in self.index else None
-        if piece is None:
+        """Return the force that presses a contact at a state of a chart, None where it is not known."""
+        if name not in self.index:
             return None
-        basis, n = piece.basis(inside), len(self.layout.contacts)
-        causes = piece.terms[4 + n :].dot(basis).reshape(-1, n)[:, self.index[name]]
-        second = float(chart.rates(time, np.array([value]), np.array([speed])).accelerations[0])
-        found = causes[0] + second * causes[1] + speed * speed * causes[2]
-        if chart.has_others:
-            more = chart.wrenches_of_others(piece, basis, time, value, speed)
-            if more is None:
+        values, speeds = np.array([value]), np.array([speed])
+        causes = self._causes(chart, value)
+        second, sizes = self._moved(chart, time, values, speeds)
+        known = [1.0, second, speed * speed, *sizes]
+        if chart.has_others or chart.closed:
+            seen = chart.seen(time, values, speeds)
+            others = chart.wrenches_of_others(seen.loaded)
+            if others is None:
                 return None
-            found += more[2:].dot(causes[3 + n :])
-        return float(found)
+            known += [*others[2:], *self._at_stops(chart, seen, time, values, speeds)]
+        normals = np.array(known) @ causes[: len(known)]
+        return spare_force(self.index[name], normals, causes[len(causes) - self.layout.states :])
+
+    def _moved(self, chart: TabulatedChart, time: float, values: Number, speeds: Number) -> tuple[float, Number]:
+        """Return the acceleration and the frictions; those that act while a rigid stop holds it are not known."""
+        if isinstance(chart, FrictionTable) and not chart.rigid:
+            found = chart.free_motion(time, values, speeds)
+            return found.acceleration, found.sizes
+        second = chart.followed_rates(time, values, speeds).accelerations
+        return float(second[0]), np.zeros(len(self.layout.contacts))
+
+    def _causes(self, chart: TabulatedChart, value: float) -> Number:
+        """Return the normal forces in all contacts by each cause, (causes, contacts)."""
+        inside, first = chart.tabulated(value), len(DRIVE_SCALES) + len(self.layout.contacts)
+        piece = piece_at(self.pieces, self.starts, inside)
+        if piece is not None:
+            rows = piece.terms[first:].dot(piece.basis(inside))
+        else:
+            state = chart.state(0.0, np.array([value]), np.ones(1))
+            motion = accelerated_motion(state, chart.start, state.speeds, np.zeros((1, 1)))
+            rows = self.layout.terms(motion)[first:, 0]
+        found: Number = rows.reshape(-1, len(self.index))
+        return found
+
+    def _at_stops(
+        self, chart: TabulatedChart, seen: PushedState, time: float, values: Number, speeds: Number
+    ) -> Number:
+        """Return the efforts along the pairs with stops: those of elastic ones may be among the other loads."""
+        efforts = dict.fromkeys(self.layout.stops, 0.0)
+        rigid = chart.rigid
+        if rigid:
+            free = chart.unheld_rates(time, values, speeds)
+            for one, force in zip(rigid, holding([one.at(seen) for one in rigid], seen, free).tolist(), strict=True):
+                efforts[one.stop.pair] += one.side * force
+        for one in chart.closed if chart.adds_stops else ():
+            if one.stop.is_elastic:
+                efforts[one.stop.pair] += one.side * one.push(seen)
+        return np.array([*efforts.values()])
 
 
 def _usual_sizes(layout: ForceLayout, motion: Motion) -> dict[int, float]:
@@ -581,19 +661,17 @@ def _usual_sizes(layout: ForceLayout, motion: Motion) -> dict[int, float]:
 def tabulated_pressing(chart: TabulatedChart, name: str, time: float, value: float, speed: float) -> float | None:
     """Return the force that presses a contact, from a table made once; None where it is to be found from the state.
 
-    That is so with friction, stops and redundant pairs, and where the effort of a motor depends on the acceleration.
+    That is so where the effort of a motor depends on the acceleration, and while a load holds a speed.
     """
-    start, table = chart.start, chart.table
-    if type(chart) is not TabulatedChart or table is None or chart.laws or chart.held is not None or chart.closed:
+    table = chart.table
+    if table is None or chart.laws or chart.held is not None or chart.rotors_that_lose:
         return None
-    if start.structure.relaxation is not None or chart.rotors_that_lose:
-        return None
-    if chart.pressing is None or chart.pressing[0] is not table:
+    if chart.contact_forces is None or chart.contact_forces[0] is not table:
         pairs = (pair for pair in chart.order.pairs.values()
                  if (own := as_profile_contact(pair)) is not None and not own.has_ends)  # fmt: skip
         contacts = (LoadedContact(one, Friction(one.name, 0.0)) for one in map(as_friction_pair, pairs) if one)
-        chart.pressing = table, ContactForces(chart, tuple(contacts))
-    forces: ContactForces = chart.pressing[1]
+        chart.contact_forces = table, ContactForces(chart, tuple(contacts))
+    forces: ContactForces = chart.contact_forces[1]
     return forces.pressing(name, chart, time, value, speed)
 
 
@@ -601,7 +679,7 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     """Return the table of normal forces of a chart with a table, None where they are nowhere accurate."""
     table = chart.table
     assert table is not None
-    layout = _layout(chart, table.motion, chart.contacts)
+    layout = _layout(chart, table.motion)
     sizes = _usual_sizes(layout, table.motion) | _sizes_of_scales(layout, table.motion) | dict(table.least)
     pieces = accurate_pieces(table.course, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
@@ -611,15 +689,24 @@ def normal_force_table(chart: FrictionTable) -> NormalForceTable | None:
     return NormalForceTable(layout, pieces, [piece.low for piece in pieces], edges, found, mild)
 
 
-def _layout(chart: TabulatedChart, motion: Motion, contacts: tuple[LoadedContact, ...]) -> ForceLayout:
-    """Return the layout of the rows, whose number the first block shows."""
-    at = next(iter(loaded_blocks(motion)))
+def _layout(chart: TabulatedChart, motion: Motion, pressed: tuple[LoadedContact, ...] | None = None) -> ForceLayout:
+    """Return the layout of the rows, whose number the first block shows.
+
+    They are those of the contacts with friction, or of others that are `pressed`, with what stops and self-stress do.
+    """
+    at, rubbing = next(iter(loaded_blocks(motion))), chart.contacts if isinstance(chart, FrictionTable) else ()
+    contacts = rubbing if pressed is None else pressed
     nothing = reverse_pass(motion.solving_order, at.block, {})
     each = [normal_forces_of(at, (contact,), nothing) for contact in contacts]
     rows = [row for own in each for row in own]
     owners = [k for k, own in enumerate(each) for _ in own]
     vectors = [k for k, row in enumerate(rows) if np.iscomplexobj(row)]
-    return ForceLayout(contacts, chart.timeless, chart.touched, NormalForceComponents(owners, vectors))
+    found = ForceLayout(rubbing, chart.timeless, chart.touched, NormalForceComponents(owners, vectors), contacts)
+    if pressed is None:
+        return found
+    left_out = parts_left_out(motion.structure)
+    stops = dict.fromkeys(one.stop.pair for one in chart.stop_contacts)
+    return replace(found, stops=tuple(stops), left_out=left_out, states=len(list(stressed_blocks(at, left_out))))
 
 
 def _stretches(

@@ -57,6 +57,8 @@ from compoundkin.model.loads.stop import Stop
 SHORTER = 8.0
 # The integration stalls where a step is below this part of the longest.
 STALLED = 1e-7
+# In a gap of a table next to a change point steps that short are so for rounding, and each of their states is solved.
+STALLED_IN_GAP = 1e-4
 # The name of the event where friction holds a mechanism.
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
@@ -383,14 +385,15 @@ def _changed(chart: Chart, solver: Any, course: SimulatedCourse) -> tuple[Chart,
         return None
     n = len(chart.free)
     is_regular = chart.is_regular(solver.y[:n])
-    if _stalls(solver, course) and solver.status != "failed" and solver.step_size * _decay(chart, solver) > DYING:
+    stalls = _stalls(chart, solver, course)
+    if stalls and solver.status != "failed" and solver.step_size * _decay(chart, solver) > DYING:
         return None
     is_singular = chart.digits_lost(solver.t, solver.y) > course.tolerance or not is_regular
     if _hesitates(solver, course) and (chart.mechanism.frictions or not is_singular):
         beyond = _beyond_jump(chart, solver, course)
         if beyond is not None:
             return chart, beyond
-    stalls = _stalls(solver, course)
+        stalls = _stalls(chart, solver, course)
     if is_regular and not stalls:
         return None
     if isinstance(chart, DriverChart):
@@ -490,9 +493,12 @@ def _hesitates(solver: Any, course: SimulatedCourse) -> bool:
     return bool(solver.step_size < small) and not _grows(course)
 
 
-def _stalls(solver: Any, course: SimulatedCourse) -> bool:
+def _stalls(chart: Chart, solver: Any, course: SimulatedCourse) -> bool:
     """Return whether steps collapse."""
-    collapses = solver.step_size is not None and solver.step_size < STALLED * min(solver.max_step, course.until)
+    least = STALLED
+    if isinstance(chart, TabulatedChart) and chart.is_in_gap(float(solver.y[0])):
+        least = STALLED_IN_GAP
+    collapses = solver.step_size is not None and solver.step_size < least * min(solver.max_step, course.until)
     return solver.status == "failed" or (bool(collapses) and not _grows(course))
 
 

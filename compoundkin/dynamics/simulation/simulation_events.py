@@ -13,6 +13,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState, LoadedState, SimulatedState
@@ -23,6 +24,7 @@ from compoundkin.dynamics.simulation.phases import LANDED, OpenPair, pair_meant
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics.solving_order import AT_END
+from compoundkin.model.loads.attachments import effort
 from compoundkin.model.loads.latch import Latch, Release, as_latch, as_release
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -460,7 +462,23 @@ def _latched(one: StopContact, chart: Chart, here: KnownState, state: Number) ->
 
 def _pressed(name: str, chart: Chart, here: KnownState, state: Number) -> float:
     """Return the normal force in a contact."""
-    return pressing_force(force_analysis(here.motion), name)
+    return pressing_force(_forces(chart, here, state), name)
+
+
+def _forces(chart: Chart, here: KnownState, state: Number) -> Forces:
+    """Return the forces at a state, with what stops and latches hold."""
+    if not chart.closed:
+        return force_analysis(here.motion)
+    n, rigid = len(chart.free), chart.rigid
+    motion = here.moved(chart.followed_rates(here.time, state[:n], state[n : 2 * n]).accelerations)
+    if rigid:
+        free = chart.unheld_rates(here.time, state[:n], state[n : 2 * n])
+        forces = holding([one.at(here) for one in rigid], here, free)
+        held = (effort(one.stop.pair, one.side * force, name=f"hold {k}")
+                for k, (one, force) in enumerate(zip(rigid, forces.tolist(), strict=True)))  # fmt: skip
+        mechanism = motion.mechanism.replace(*held)
+        motion = replace(motion, structure=replace(motion.structure, mechanism=mechanism))
+    return force_analysis(motion)
 
 
 def _pressing(name: str, chart: Chart, time: float, state: Number) -> float:
@@ -468,14 +486,16 @@ def _pressing(name: str, chart: Chart, time: float, state: Number) -> float:
     n = len(chart.free)
     if isinstance(chart, TabulatedChart):
         found = tabulated_pressing(chart, name, time, *state[:2].tolist())
-        if found is not None:
-            return found
+    else:
+        found = chart.pressing(name, time, state[:n], state[n : 2 * n])
+    if found is not None:
+        return found
     return _pressed(name, chart, chart.state(time, state[:n], state[n : 2 * n]), state)
 
 
 def _joining(release: Release, chart: Chart, here: KnownState, state: Number) -> float:
     """Return the force in a pair."""
-    forces = force_analysis(here.motion)
+    forces = _forces(chart, here, state)
     return float(np.abs(np.ravel(forces.pairs[pair_meant(chart, release.pair).name].wrench.force)[0]))
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.dynamics.simulation.driver_state import KnownState, Rates, SeenState
+from compoundkin.dynamics.simulation.driver_state import KnownState, PushedState, Rates, SeenState
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.latch import Latch, as_latch, as_release
 from compoundkin.model.loads.stop import HIGH, LOW, Stop, as_stop
@@ -115,17 +115,20 @@ def contacts_of(loads: Iterable[Load], state: KnownState) -> tuple[StopContact, 
     return tuple(found)
 
 
-def pressed(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> Rates:
+def pressed(contacts: Sequence[StopContact], state: PushedState, free: Rates) -> Rates:
     """Return the rates under the contacts of those without them."""
     found = sprung(contacts, state, free)
     rigid = [one.at(state) for one in contacts if not one.stop.is_elastic]
     if rigid:
         normals = np.array([one.normal for one in rigid])
         found = _pushed(state, found, holding(rigid, state, found) @ normals, 0.0)
+        if normals.shape == (1, 1) and normals[0, 0] != 0.0:
+            # what is held exactly stays so
+            found = found._replace(accelerations=np.array([0.0 - rigid[0].bias / normals[0, 0]]))
     return found
 
 
-def sprung(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> Rates:
+def sprung(contacts: Sequence[StopContact], state: PushedState, free: Rates) -> Rates:
     """Return the rates under the elastic contacts alone."""
     found = free
     for one in (one for one in contacts if one.stop.is_elastic):
@@ -134,7 +137,7 @@ def sprung(contacts: Sequence[StopContact], state: KnownState, free: Rates) -> R
     return found
 
 
-def _pushed(state: KnownState, free: Rates, push: Number, power: float) -> Rates:
+def _pushed(state: PushedState, free: Rates, push: Number, power: float) -> Rates:
     """Return the rates with a further force along the drivers' coordinates, and its power."""
     more = state.response(push)
     # prescribed drivers take their part
@@ -142,19 +145,19 @@ def _pushed(state: KnownState, free: Rates, push: Number, power: float) -> Rates
     return Rates(free.accelerations + more[: len(free.accelerations)], free.power + power + driven)
 
 
-def holding(contacts: Sequence[ContactState], state: KnownState, free: Rates) -> Number:
+def holding(contacts: Sequence[ContactState], state: PushedState, free: Rates) -> Number:
     """Return the forces that hold gaps at rest."""
     normals = np.array([one.normal for one in contacts])
     return -np.linalg.lstsq(_compliance(normals, state), _closing(contacts, state, free), rcond=None)[0]
 
 
-def _closing(contacts: Sequence[ContactState], state: KnownState, free: Rates) -> Number:
+def _closing(contacts: Sequence[ContactState], state: PushedState, free: Rates) -> Number:
     """Return the accelerations of gaps."""
     whole = np.concatenate([free.accelerations, state.prescribed])
     return np.array([float(one.normal @ whole) + one.bias for one in contacts])
 
 
-def _compliance(normals: Number, state: KnownState) -> Number:
+def _compliance(normals: Number, state: PushedState) -> Number:
     """Return the accelerations of gaps by unit forces at them."""
     found: Number = normals @ np.array([state.response(one) for one in normals]).T
     return found

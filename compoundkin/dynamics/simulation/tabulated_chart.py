@@ -19,20 +19,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number, first_entry
+from compoundkin.base.arrays import TURN, Number, first_entry, whole_turns
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
-from compoundkin.dynamics.mass_motion import mass_motions
+from compoundkin.dynamics.mass_motion import InertiaTerms, mass_motions
 from compoundkin.dynamics.simulation.dormand_prince import PlainRates
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import (
     TURNS_OF_SENSES,
+    DriverState,
     KnownCoordinate,
     LoadedState,
+    PushedState,
     Rates,
-    SeenState,
     loaded_state,
     needs_time,
     rotor_forces,
@@ -72,8 +73,9 @@ class TabulatedChart(DriverChart):
                             for loads, known in zip(self.loads, self.timeless, strict=True))  # fmt: skip
         self.table: DriveTable | None = None
         self.wraps = False
-        self.pressing: tuple[DriveTable, Any] | None = None  # what presses contacts, by the table for which it is made
+        self.contact_forces: tuple[DriveTable, Any] | None = None  # by the table for which they are made
         self._straight: dict[int, tuple[float, float]] = {}
+        self.followed = -np.inf  # where the states of groups without signs are those
         first = {name: float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items()}[self.free[0]]
         self._tabulate(first, self.start.poses)
 
@@ -218,11 +220,8 @@ class TabulatedChart(DriverChart):
         links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
         return tuple(dict.fromkeys(link for link in links if link != FRAME))
 
-    def wrenches_of_others(
-        self, piece: TablePiece, basis: Number, time: float, value: float, speed: float
-    ) -> Number | None:
+    def wrenches_of_others(self, at: LoadedState) -> Number | None:
         """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
-        at = self.loaded_at(piece, basis, time, np.array([value]), speed)
         found = np.zeros(2 + 3 * len(self.touched))
         for k, loads in enumerate(self.others):
             for link, wrench in (one for load in loads for one in load.wrenches(at)):
@@ -245,13 +244,14 @@ class TabulatedChart(DriverChart):
         found = {one[0].name: one[0] for one in meant if one is not None}
         return tuple(pair for name, pair in found.items() if name in self.ends and name not in self.driven)
 
-    def seen(self, time: float, values: Number, speeds: Number) -> SeenState:
+    def seen(self, time: float, values: Number, speeds: Number) -> PushedState:
         """Return a state as contacts see it, from the table where that has it."""
         piece, value = self._piece(float(values[0]))
         if piece is None or self.laws:
             return super().seen(time, values, speeds)
-        loaded = self.loaded_at(piece, piece.basis(value), time, values, float(speeds[0]))
-        return TableState(loaded, speeds)
+        basis = piece.basis(value)
+        loaded = self.loaded_at(piece, basis, time, values, float(speeds[0]))
+        return TableState(loaded, speeds, *(piece.terms[:2] @ basis).tolist())
 
     def _driven(self, value: float, speed: float) -> dict[str, KnownCoordinate]:
         """Return the coordinate of the driver's pair."""
@@ -259,11 +259,34 @@ class TabulatedChart(DriverChart):
         sign = own.pair.driven_by(own.drive.link)
         return {own.pair.name: KnownCoordinate(sign * value, sign * speed, np.array([float(sign)]))}
 
-    def follow_table(self, value: float) -> None:
-        """Take the states of groups without signs from the table: in a table they are not followed."""
+    def state(self, time: float, values: Number, speeds: Number) -> DriverState:
+        """Return the state at a value and a speed of the driver."""
+        self._follow_table(float(values[0]))
+        return super().state(time, values, speeds)
+
+    def _follow_table(self, value: float) -> None:
+        """Take the states of groups without signs from the table: in a table they are not followed.
+
+        In its gaps and beyond its ends they are those of the nearest place of the table, or of the last state.
+        """
+        if not self.states or self.table is None:
+            return
         piece, inside = self._piece(value)
-        if self.states and piece is not None:
-            self._follow(_Columns(piece, piece.basis(inside), 0.0), None)
+        if piece is None:
+            nearest = min(((abs(end - inside), end, one) for one in self.table.pieces for end in (one.low, one.high)),
+                          default=None, key=lambda found: found[0])  # fmt: skip
+            if nearest is None or abs(value - self.followed) <= nearest[0]:
+                return
+            _, inside, piece = nearest
+        self.followed = value + inside - self.tabulated(value)
+        world = _Columns(piece, piece.basis(inside), 0.0)
+        for link, near in self.near.items():
+            # the table has the angles of links without their turns
+            pose = world[link]
+            angle = float(np.ravel(pose.angle.c[0])[0])
+            counted = angle + float(whole_turns(near.at(np.array([value])) - angle))
+            world[link] = Pose(pose.z, pose.u, Series((counted,)))
+        self._store_states(world)
 
     @property
     def memory(self) -> tuple[Any, ...]:
@@ -279,8 +302,10 @@ class TabulatedChart(DriverChart):
         """Update the configuration at an accepted state."""
         value = float(values[0])
         table = self.table
-        if self.turned or table is None or self._piece(value)[0] is None:
+        if self.turned or self.order.turning or table is None or self._piece(value)[0] is None:
+            # counted angles are followed in the table as well, for states beyond it
             super().accept(time, values, speeds)
+            self.followed = value
         if table is not None and not self.wraps and not table.low < value < table.high:
             if not self.is_angle and len(table.pieces) == PIECES:
                 # the mechanism is small against the way that it goes, as one of a letter for each link
@@ -318,6 +343,10 @@ class TabulatedChart(DriverChart):
         ends = value - self.reach, value + self.reach
         self.table = drive_table(here, name, *ends, self.timeless, self.candidates)
         self.wraps = self.table is not None and self.is_angle and not self.order.turning and self._comes_back()
+
+    def is_in_gap(self, value: float) -> bool:
+        """Return whether a value is between pieces of the table."""
+        return self.table is not None and self._piece(value)[0] is None
 
     def breaks(self, low: float, high: float) -> list[LoadBreak]:
         """Return where the loads of the table jump, wake or have corners, between two values in neighbouring turns."""
@@ -426,6 +455,22 @@ class TableState(NamedTuple):
 
     loaded: LoadedState
     speeds: Number
+    inertia: float
+    bias: float
+
+    @property
+    def prescribed(self) -> Number:
+        """Nothing: the only driver is free."""
+        return np.empty(0)
+
+    @property
+    def terms(self) -> InertiaTerms:
+        """The inertia and the bias; weights are among the loads of the table."""
+        return InertiaTerms(np.array([[self.inertia]]), self.bias * np.square(self.speeds), np.zeros(1))
+
+    def response(self, along: Number) -> Number:
+        """Return the acceleration by a force along the driver alone."""
+        return along / self.inertia
 
 
 class _Columns(dict[str, Pose]):
